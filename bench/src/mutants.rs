@@ -145,9 +145,9 @@ fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
 }
 
 /// The depth at a point, and the direction before normalisation.
-type Felt = (f64, [f64; 3]);
+type Value = (f64, [f64; 3]);
 
-fn evaluation(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
+fn evaluation(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Value> {
     at.set(At::point(x, y, z));
     let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];

@@ -2,14 +2,14 @@
 
 use crate::failure::Failure;
 use crate::output::Output;
+use crate::progress::Progress;
 use crate::timing::{Timing, nanoseconds};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::io::Write;
 use std::time::Instant;
 use tools_library::Fig73;
 use touchoff::scenes::{POSES, ScenePath, tube};
-use touchoff::{Cloud, Part, Pose, Probe};
+use touchoff::{Cloud, Part, Pose, Probe, Sampling};
 
 /// The thesis's values of a row: contacts (average and maximum) and query time (average, µs) on a 250 MHz R10000.
 struct Printed {
@@ -30,29 +30,23 @@ struct Row {
     points: usize,
     path: &'static str,
     poses: usize,
-    colliding_avg: f64,
-    colliding_max: usize,
-    ns_avg: f64,
-    ns_p50: u64,
-    ns_p99: u64,
-    ns_max: u64,
+    contacts_mean: f64,
+    contacts_max: usize,
+    query_time_ns: Timing,
 }
 
 /// Measures and prints the table.
 pub(crate) fn demo(json: bool) -> Result<(), Failure> {
     let mut out = Output::lines();
     let mesh = tube();
-    let progress = ProgressBar::new((TABLE_7_1.len() * 2 * POSES) as u64);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} poses {msg}") {
-        progress.set_style(style);
-    }
+    let progress = Progress::steps(TABLE_7_1.len() * 2 * POSES, "poses", json);
     let mut rows = Vec::new();
     for printed in &TABLE_7_1 {
-        let part = Part::from_cloud(&Cloud::uniform(&mesh, printed.points, 1)?);
+        let part = Part::from_cloud(&Cloud::sample(&mesh, Sampling::monte_carlo(printed.points))?);
         for (path, thesis) in
             [(ScenePath::Outside, &printed.outside), (ScenePath::Inside, &printed.inside)]
         {
-            progress.set_message(format!("{} points, {}", printed.points, path.name()));
+            progress.describe(format!("{} points, {}", printed.points, path.name()));
             let row = measure(&part, path, &progress);
             if json {
                 serde_json::to_writer(&mut out, &row)?;
@@ -61,7 +55,7 @@ pub(crate) fn demo(json: bool) -> Result<(), Failure> {
             rows.push((row, thesis));
         }
     }
-    progress.finish_and_clear();
+    drop(progress);
     if !json {
         table(&mut out, &rows)?;
     }
@@ -69,7 +63,8 @@ pub(crate) fn demo(json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn measure(part: &Part, path: ScenePath, progress: &ProgressBar) -> Row {
+/// Measures the queries of one path.
+fn measure(part: &Part, path: ScenePath, progress: &Progress) -> Row {
     let poses: Vec<Pose> = (0..POSES).map(|k| path.pose(k, POSES)).collect();
     let mut probe = Probe::new(part, &Fig73);
     // Warm-up: the first queries allocate their memory.
@@ -77,41 +72,37 @@ fn measure(part: &Part, path: ScenePath, progress: &ProgressBar) -> Row {
         probe.wrench(pose);
     }
     let mut times = Vec::with_capacity(POSES);
-    let (mut sum, mut most) = (0, 0);
-    for (done, pose) in poses.iter().enumerate() {
+    let (mut sum, mut max) = (0, 0);
+    for (index, pose) in poses.iter().enumerate() {
         let start = Instant::now();
         let evaluation = probe.wrench(pose);
         times.push(nanoseconds(start.elapsed()));
         sum += evaluation.colliding;
-        most = most.max(evaluation.colliding);
-        if done % 1_000 == 999 {
-            progress.inc(1_000);
+        max = max.max(evaluation.colliding);
+        if index % 1_000 == 999 {
+            progress.advance(1_000);
         }
     }
-    let timing = Timing::of(&mut times);
     Row {
         points: part.tree().len(),
         path: path.name(),
         poses: POSES,
-        colliding_avg: sum as f64 / POSES as f64,
-        colliding_max: most,
-        ns_avg: timing.avg,
-        ns_p50: timing.p50,
-        ns_p99: timing.p99,
-        ns_max: timing.max,
+        contacts_mean: sum as f64 / POSES as f64,
+        contacts_max: max,
+        query_time_ns: Timing::of(&mut times),
     }
 }
 
 fn table(out: &mut impl Write, rows: &[(Row, &(f64, u32, f64))]) -> std::io::Result<()> {
     writeln!(out, "Ho (1999), table 7.1: the tool of fig. 7.3 along a tube, {POSES} poses a row.")?;
-    writeln!(out, "Each query finds all colliding points, force, torque and niceness.\n")?;
+    writeln!(out, "Each query finds all contacts, force, torque and niceness.\n")?;
     writeln!(
         out,
-        "                 |      colliding, avg (max)     |            time a query, µs"
+        "                 |      contacts, mean (max)     |            time a query, µs"
     )?;
     writeln!(
         out,
-        " points  path    |      here        thesis 1999  |   avg    p50    p99   thesis   ratio"
+        " points  path    |      here        thesis 1999  |  mean    p50    p99   thesis   ratio"
     )?;
     writeln!(
         out,
@@ -119,17 +110,18 @@ fn table(out: &mut impl Write, rows: &[(Row, &(f64, u32, f64))]) -> std::io::Res
     )?;
     for (row, (thesis_avg, thesis_max, thesis_us)) in rows {
         let us = |ns: f64| ns / 1e3;
-        let here = format!("{:.2} ({})", row.colliding_avg, row.colliding_max);
+        let times = &row.query_time_ns;
+        let here = format!("{:.2} ({})", row.contacts_mean, row.contacts_max);
         let there = format!("{thesis_avg:.2} ({thesis_max})");
         writeln!(
             out,
             "{:>7}  {:<7} | {here:>13} {there:>15} | {:>6.2} {:>6.2} {:>6.2} {thesis_us:>8.1} {:>7.0}",
             row.points,
             row.path,
-            us(row.ns_avg),
-            us(row.ns_p50 as f64),
-            us(row.ns_p99 as f64),
-            thesis_us / us(row.ns_avg),
+            us(times.mean),
+            us(times.p50 as f64),
+            us(times.p99 as f64),
+            thesis_us / us(times.mean),
         )?;
     }
     writeln!(

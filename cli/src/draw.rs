@@ -1,45 +1,44 @@
 //! `touchoff draw`: a tool's drawing as SVG or PNG.
 
-use crate::arguments::ParamArguments;
+use crate::arguments::{Draw, ParamArguments};
 use crate::failure::Failure;
-use crate::files;
-use crate::output::{Output, refuse_inputs, write_file};
+use crate::loaded_tool::compile_file;
+use crate::output::{Output, extension, refuse_inputs, write_file};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
 use std::path::Path;
 use tool_dsl::draw::{Lettering, svg};
 
-/// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MOST`.
+/// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MAX_PIXELS`.
 const PIXELS: f32 = 2.0;
-const MOST: f32 = 5e7;
+const MAX_PIXELS: f32 = 5e7;
 
 /// Draws a file's tool into another file, or on standard output.
-pub(crate) fn draw(
-    file: &Path,
-    output: Option<&Path>,
-    given: &ParamArguments,
-) -> Result<(), Failure> {
+pub(crate) fn draw(arguments: &Draw) -> Result<(), Failure> {
+    let Draw { file, output, params } = arguments;
     let Some(output) = output else {
         let mut out = Output::bytes();
-        writeln!(out, "{}", drawing(file, given)?)?;
+        writeln!(out, "{}", drawing(file, params)?)?;
         out.flush()?;
         return Ok(());
     };
-    refuse_inputs([output], [file])?;
-    let bytes = match files::ending(output).as_deref() {
-        Some("svg") => drawing(file, given)?.into_bytes(),
-        Some("png") => png(&drawing(file, given)?)?,
+    refuse_inputs([&**output], [&**file])?;
+    let bytes = match extension(output).as_deref() {
+        Some("svg") => drawing(file, params)?.into_bytes(),
+        Some("png") => png(&drawing(file, params)?)?,
         _ => {
             let better = output.with_extension("svg");
-            return Err(Failure::Form { file: output.display().to_string(), better });
+            return Err(Failure::DrawingFormat { file: output.display().to_string(), better });
         }
     };
     write_file(output, bytes)
 }
 
-fn drawing(file: &Path, given: &ParamArguments) -> Result<String, Failure> {
-    let tool = files::checked(file, given)?;
+/// Returns the drawing of a file's tool as SVG.
+fn drawing(file: &Path, params: &ParamArguments) -> Result<String, Failure> {
+    let tool = compile_file(file, params)?.into_tool();
+    let tool = tool.ok_or(Failure::Files { wrong: 1, all: 1 })?;
     svg(&tool, Lettering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
 }
 
@@ -48,9 +47,9 @@ fn png(svg: &str) -> Result<Vec<u8>, Failure> {
     let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
     let tree = Tree::from_str(svg, &Options::default()).map_err(|error| pixels(&error))?;
     let size = tree.size();
-    let scale = PIXELS.min((MOST / (size.width() * size.height())).sqrt());
-    let [wide, tall] = [size.width(), size.height()].map(|side| (side * scale).ceil() as u32);
-    let mut map = Pixmap::new(wide, tall).ok_or_else(|| pixels(&"it has no size"))?;
+    let scale = PIXELS.min((MAX_PIXELS / (size.width() * size.height())).sqrt());
+    let [width, height] = [size.width(), size.height()].map(|side| (side * scale).ceil() as u32);
+    let mut map = Pixmap::new(width, height).ok_or_else(|| pixels(&"it has no size"))?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut map.as_mut());
     map.encode_png().map_err(|error| pixels(&error))
 }

@@ -11,21 +11,22 @@ use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, n
 /// # Errors
 /// [`Failure::Code`] if there is no such code.
 pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
-    let asked = match code {
+    let requested = match code {
         None => None,
         Some(code) => Some(entry(&code.to_uppercase()).ok_or_else(|| unknown(code))?),
     };
     let mut out = Output::rows();
-    match asked {
+    match requested {
         _ if json => {
-            let all = entries().filter(|row| asked.is_none_or(|asked| asked.code == row.code));
+            let all = entries()
+                .filter(|row| requested.is_none_or(|requested| requested.code == row.code));
             for entry in all {
                 serde_json::to_writer(&mut out, &Row::of(entry))?;
                 writeln!(out)?;
             }
         }
-        Some(entry) => one(entry, &mut out)?,
-        None => list(&mut out)?,
+        Some(entry) => explain_one(entry, &mut out)?,
+        None => list_all(&mut out)?,
     }
     out.flush()?;
     Ok(())
@@ -37,7 +38,7 @@ fn unknown(code: &str) -> Failure {
     Failure::Code { code: code.to_owned(), near: near.join("`, `") }
 }
 
-fn one(entry: &Entry, out: &mut Output) -> Result<(), Failure> {
+fn explain_one(entry: &Entry, out: &mut Output) -> Result<(), Failure> {
     writeln!(out, "{}[{}]: {}\n", severity(entry), entry.code, entry.title)?;
     writeln!(out, "{}\n", entry.explanation)?;
     match entry.remedies().collect::<Vec<_>>().as_slice() {
@@ -57,7 +58,7 @@ fn one(entry: &Entry, out: &mut Output) -> Result<(), Failure> {
     Ok(())
 }
 
-fn list(out: &mut Output) -> Result<(), Failure> {
+fn list_all(out: &mut Output) -> Result<(), Failure> {
     for family in FAMILIES {
         writeln!(out, "{}", family.title)?;
         for entry in family.entries {

@@ -17,7 +17,10 @@ impl Failure {
     /// after a signal, 1 for all else.
     pub(crate) fn status(&self) -> u8 {
         match self {
-            Failure::IsInput { .. } | Failure::Program(_) | Failure::NoInside { .. } => 2,
+            Failure::Usage(_)
+            | Failure::IsInput { .. }
+            | Failure::Program(_)
+            | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
         }
@@ -33,11 +36,11 @@ pub(crate) enum Failure {
     /// A mesh could not be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// There is no such device.
+    /// The options do not go together, or this system lacks the device.
     #[error("{0}")]
-    Device(String),
+    Usage(&'static str),
     /// No diagnostic has such a code.
-    #[error("no code is called `{code}`: {}", near_codes(near))]
+    #[error("no error or warning has the code `{code}`: {}", near_codes(near))]
     Code {
         /// The requested code.
         code: String,
@@ -45,10 +48,12 @@ pub(crate) enum Failure {
         near: String,
     },
     /// A signal ended a session.
-    #[error("the session was interrupted: all of it until then was kept")]
+    #[error("the session was interrupted; what was recorded until then is complete")]
     Interrupted,
     /// The daemon of a SpaceMouse cannot be reached.
-    #[error("{socket}: {source}: is `spacenavd` running?")]
+    #[error(
+        "cannot reach the SpaceMouse at {socket}: {source}: start `spacenavd`, or take another `--device`"
+    )]
     Spacenav {
         /// The daemon's socket.
         socket: &'static str,
@@ -59,8 +64,8 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Core(#[from] touchoff::haptic::RealtimeError),
     /// A recording of the session is incomplete; the reason was reported when it happened.
-    #[error("not all of the session was kept: make room, and record it again")]
-    NotKept,
+    #[error("the recording is incomplete: make room on the disk, and run the session again")]
+    RecordingFailed,
     /// A setting is out of range for the haptic loop.
     #[error(transparent)]
     Setting(#[from] touchoff::haptic::SettingError),
@@ -98,25 +103,31 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Write(#[from] touchoff::program::WriteError),
     /// No format of a map has this file extension.
-    #[error("a map is written as `.csv`, `.json`, `.ply` or `.png`, `{file}` is none of them")]
-    MapForm {
+    #[error(
+        "a map is written as `.csv`, `.json`, `.ply` or `.png`, and `{file}` is none of them: change its extension"
+    )]
+    MapFormat {
         /// The requested file.
         file: String,
     },
     /// No format of a program has this file extension.
-    #[error("a program is written as `.apt` or `.csv`, `{file}` is neither")]
-    ProgramForm {
+    #[error(
+        "a program is written as `.apt` or `.csv`, and `{file}` is neither: change its extension"
+    )]
+    ProgramFormat {
         /// The requested file.
         file: String,
     },
     /// The requested output shows the part, which was not given.
-    #[error("`{file}` shows the part: give it with `--part`")]
-    WantsPart {
+    #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
+    PartMissing {
         /// The file.
         file: String,
     },
     /// The map belongs to another part.
-    #[error("{map} is of another part than {part}: give the mesh that was swept")]
+    #[error(
+        "{map} belongs to another part than {part}: give the mesh that was swept, unchanged and in the same unit"
+    )]
     OtherPart {
         /// The map.
         map: String,
@@ -125,7 +136,8 @@ pub(crate) enum Failure {
     },
     /// The map does not have this tool.
     #[error(
-        "{map} has no `{tool}`, or that of another version: sweep with it first, into another map"
+        "{map} was not swept with this `{tool}`: sweep with it into another map, or give the `--tool` and `--set` of the \
+         sweep"
     )]
     OtherTool {
         /// The map.
@@ -140,7 +152,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Saved(#[from] touchoff::SavedError),
     /// The file's extension is not that of a saved part.
-    #[error("saved parts are told by their name: write `-o {}` instead of `{file}`", .better.display())]
+    #[error("a saved part ends in `.touchoff`: write `-o {}` instead of `{file}`", .better.display())]
     SavedName {
         /// The requested file.
         file: String,
@@ -148,13 +160,18 @@ pub(crate) enum Failure {
         better: std::path::PathBuf,
     },
     /// The inside of the part is unknown.
-    #[error("{file}: {}; mend the mesh, or give `--surface-only`", crate::part::NO_INSIDE)]
+    #[error(
+        "{file}: {}: repair the mesh, or check its surface alone with `--surface-only`",
+        crate::part::NO_INSIDE
+    )]
     NoInside {
         /// The part.
         file: String,
     },
     /// The request needs a mesh.
-    #[error("`{what}` is for meshes: {file} has points and no triangles")]
+    #[error(
+        "`{what}` needs triangles, and {file} has only points: give the mesh that they were sampled from"
+    )]
     NoTriangles {
         /// The part.
         file: String,
@@ -163,23 +180,32 @@ pub(crate) enum Failure {
     },
     /// No bound on the growth of the tool's depth is proved.
     #[error(
-        "how fast depth grows in `{0}` is not proved (`touchoff check` says why), so no number of points \
-         has a tolerance: give `--points`"
+        "no Lipschitz constant of the depth of `{0}` is proved (`touchoff check` says why), so no number of points \
+         guarantees a sampling error: give `--points` instead"
     )]
-    NoSteepness(String),
+    NoLipschitz(String),
     /// No tool has this name.
-    #[error(
-        "no tool is called `{name}`{meant}: `touchoff tools` lists them; a file's name ends in `.tool`"
-    )]
+    #[error("no built-in tool is called `{name}`: {hint}")]
     UnknownTool {
         /// The requested name.
         name: String,
-        /// `; did you mean …?`, or nothing.
-        meant: String,
+        /// The remedy.
+        hint: String,
     },
-    /// `--set` was given, but no `.tool` file.
-    #[error("`--set` is for `.tool` files: {0}")]
-    NothingToSet(&'static str),
+    /// A built-in tool was named where a file is expected.
+    #[error(
+        "`{0}` is a built-in tool, and a file is expected here: `touchoff tools show {0} -o FILE.tool` writes its file"
+    )]
+    FileExpected(String),
+    /// `--set` was given, but no `.tool` file to take the values.
+    #[error("`--set` gives values to the params of `.tool` files, and there is none: {0}")]
+    UnusedParams(&'static str),
+    /// A built-in tool was given values.
+    #[error(
+        "`{0}` is a built-in tool, whose values are fixed, so `--set` does not apply: `touchoff tools show {0} -o \
+         FILE.tool` writes its text to a file, which `--tool FILE.tool --set` changes"
+    )]
+    FixedParams(String),
     /// Some `.tool` files have errors, which were shown.
     #[error("{wrong} of {all} files {} errors", if *.wrong == 1 { "has" } else { "have" })]
     Files {
@@ -189,7 +215,7 @@ pub(crate) enum Failure {
         all: usize,
     },
     /// Some `.tool` files would be changed by `fmt`; their names were printed.
-    #[error("{changed} of {all} files would change: `touchoff fmt` lays them out")]
+    #[error("{changed} of {all} files would be rewritten: run `touchoff fmt` without `--check`")]
     Unformatted {
         /// Number of files that would change.
         changed: usize,
@@ -197,21 +223,41 @@ pub(crate) enum Failure {
         all: usize,
     },
     /// No format of a drawing has this file extension.
-    #[error("a drawing is an `.svg` or a `.png`, `{file}` is neither: write `-o {}`", .better.display())]
-    Form {
+    #[error("a drawing is an `.svg` or a `.png`, and `{file}` is neither: write `-o {}`", .better.display())]
+    DrawingFormat {
         /// The requested file.
         file: String,
         /// A suitable name.
         better: std::path::PathBuf,
     },
+    /// The file's extension is not that of a tool.
+    #[error("a tool's file ends in `.tool`: write `-o {}` instead of `{file}`", .better.display())]
+    ToolFormat {
+        /// The requested file.
+        file: String,
+        /// A suitable name.
+        better: std::path::PathBuf,
+    },
+    /// A file that a tool mounts would replace another.
+    #[error(
+        "`{name}` mounts a file that would replace `{file}`: write the tool to another name or another folder"
+    )]
+    MountedFileExists {
+        /// The file.
+        file: String,
+        /// The tool.
+        name: String,
+    },
     /// A solid without an axis has no section that shows it whole.
-    #[error("`{0}` is a solid without an axis: only tools are drawn")]
+    #[error(
+        "`{0}` is a solid without an axis, and only the sections of tools are drawn: give a `tool`"
+    )]
     NoAxis(String),
     /// A drawing could not be rasterised.
-    #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
+    #[error("the PNG could not be rendered: {0}: write an `.svg`, or another format")]
     Pixels(String),
     /// An output is also an input.
-    #[error("`{output}` is `{input}`, which is read: write to another file")]
+    #[error("the output `{output}` is also an input (`{input}`): write to another file")]
     IsInput {
         /// The output.
         output: String,
@@ -219,7 +265,7 @@ pub(crate) enum Failure {
         input: String,
     },
     /// A file could not be written.
-    #[error("cannot write `{file}`: {source}; does its folder exist, and may you write there?")]
+    #[error("cannot write `{file}`: {}", cause(source))]
     Unwritable {
         /// The file.
         file: String,
@@ -227,17 +273,31 @@ pub(crate) enum Failure {
         source: std::io::Error,
     },
     /// Standard output could not be written.
-    #[error("the output could not be written whole: {0}")]
+    #[error("standard output could not be written: {}", cause(.0))]
     Output(#[from] std::io::Error),
     /// A row could not be written as JSON.
-    #[error("the output could not be written whole: {0}")]
+    #[error("standard output could not be written: {0}: redirect it elsewhere")]
     Json(#[from] serde_json::Error),
+}
+
+/// Returns the cause of a failure to write, and its remedy.
+fn cause(error: &std::io::Error) -> String {
+    use std::io::ErrorKind;
+    match error.kind() {
+        ErrorKind::NotFound => {
+            "its folder does not exist: create it, or write elsewhere".to_owned()
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            format!("{error}: make room, or write elsewhere")
+        }
+        _ => format!("{error}: check its folder and your permissions, or write elsewhere"),
+    }
 }
 
 /// Returns the remedy for an unknown code.
 fn near_codes(near: &str) -> String {
     match near {
-        "" => "`touchoff explain` lists them".to_owned(),
+        "" => "`touchoff explain` lists all codes".to_owned(),
         near => format!("did you mean `{near}`?"),
     }
 }

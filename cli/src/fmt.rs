@@ -1,26 +1,33 @@
 //! `touchoff fmt`: the layout of `.tool` files.
 
+use crate::arguments::Fmt;
 use crate::failure::Failure;
-use crate::output::{Output, show};
+use crate::output::{Output, show, unwritable};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tool_dsl::format::format;
 use tool_dsl::source::{LONGEST, Source, Sources};
 use touchoff::AtomicFile;
+use touchoff::tool::ToolError;
 
-/// Formats files in place, or with `check` only names those that would change. A file with syntax errors stays as
-/// it is. With `json`, writes one object per file to standard output, except for formatted text that goes there
+/// Formats files in place, or with `--check` only names those that would change, and reports the rewritten files on
+/// standard error. A file with syntax errors stays as it is. With `json`, writes one object per file to standard output, except for formatted text that goes there
 /// itself.
-pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Failure> {
-    let (mut wrong, mut changed) = (0, 0);
+pub(crate) fn fmt(arguments: &Fmt, json: bool) -> Result<(), Failure> {
+    let Fmt { check, ref files } = *arguments;
+    let (mut wrong, mut changed, mut rewritten) = (0, 0, 0);
     for file in files {
-        let outcome = one(file, check, json)?;
+        let outcome = format_file(file, check, json)?;
         match outcome {
-            Outcome::Same => {}
+            Outcome::Unchanged => {}
             Outcome::Changed => changed += 1,
-            Outcome::Wrong => wrong += 1,
+            Outcome::Failed => wrong += 1,
+        }
+        if matches!(outcome, Outcome::Changed) && !check && !is_piped(file) {
+            rewritten += 1;
+            message!("rewritten: {}", file.display());
         }
         if json && (check || !is_piped(file)) {
             let mut out = Output::lines();
@@ -29,6 +36,9 @@ pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Fail
             writeln!(out)?;
             out.flush()?;
         }
+    }
+    if rewritten > 0 {
+        message!("{rewritten} of {} files rewritten", files.len());
     }
     match files.len() {
         all if wrong > 0 => Err(Failure::Files { wrong, all }),
@@ -50,21 +60,21 @@ struct Row<'f> {
 #[serde(rename_all = "lowercase")]
 enum Outcome {
     /// The layout is the standard one.
-    Same,
+    Unchanged,
     /// The file was rewritten, or with `--check` would be.
     Changed,
     /// The file has errors, which are on standard error.
-    Wrong,
+    Failed,
 }
 
-fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
+fn format_file(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
     let piped = is_piped(file);
     let shown = file.display();
     let source = match if piped { standard_input() } else { Source::read(file) } {
         Ok(source) => source,
         Err(error) => {
-            say!("error: {shown}: {error}");
-            return Ok(Outcome::Wrong);
+            message!("error: {}", ToolError::Unreadable { file: shown.to_string(), source: error });
+            return Ok(Outcome::Failed);
         }
     };
     let formatted = match format(&source) {
@@ -74,10 +84,10 @@ fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
             for diagnostic in diagnostics {
                 show(&diagnostic, &sources);
             }
-            return Ok(Outcome::Wrong);
+            return Ok(Outcome::Failed);
         }
     };
-    let outcome = if formatted == source.text { Outcome::Same } else { Outcome::Changed };
+    let outcome = if formatted == source.text { Outcome::Unchanged } else { Outcome::Changed };
     match (&outcome, check) {
         (Outcome::Changed, true) if !json => {
             let mut out = Output::lines();
@@ -91,8 +101,8 @@ fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
         }
         (Outcome::Changed, false) => {
             if let Err(error) = AtomicFile::write(file, &formatted) {
-                say!("error: {shown}: {error}");
-                return Ok(Outcome::Wrong);
+                message!("error: {}", unwritable(file, error));
+                return Ok(Outcome::Failed);
             }
         }
         _ => {}

@@ -8,60 +8,56 @@ mod bench;
 mod check;
 mod demo;
 mod draw;
+mod expand;
 mod explain;
 mod failure;
-mod files;
 mod fmt;
 mod haptic;
+mod lengths;
+mod loaded_tool;
 mod part;
 mod postures;
 mod program;
+mod progress;
 mod run;
 mod timing;
+mod tools;
 mod verify;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let done = match arguments.command {
-        None | Some(Command::Demo) => demo::demo(arguments.json),
-        Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
-        Some(Command::Verify(wanted)) => {
-            return ended_or(verify::verify(&wanted, arguments.json), verify::NOT_CHECKED);
+    let Arguments { command, json } = Arguments::read();
+    // A program that could not be checked must not look like one with findings.
+    let min_status =
+        if matches!(command, Some(Command::Verify(_))) { verify::NOT_CHECKED } else { 1 };
+    let success = |()| ExitCode::SUCCESS;
+    let result = match command.unwrap_or(Command::Demo) {
+        Command::Demo => demo::demo(json).map(success),
+        Command::Run(arguments) => run::run(&arguments, json).map(success),
+        Command::Verify(arguments) => verify::verify(&arguments, json),
+        Command::Haptic(arguments) => haptic::haptic(&arguments, json).map(success),
+        Command::Sweep(arguments) => postures::sweep::sweep(&arguments, json).map(success),
+        Command::Map(arguments) => postures::map::map(&arguments, json).map(success),
+        Command::Path(arguments) => postures::path::path(&arguments, json).map(success),
+        Command::Sample(arguments) => part::sample(&arguments, json).map(success),
+        Command::Bench(arguments) => bench::bench(&arguments, json).map(success),
+        Command::Tools(arguments) => tools::tools(&arguments, json).map(success),
+        Command::Check(arguments) => check::check(&arguments, json),
+        Command::Explain(arguments) => {
+            explain::explain(arguments.code.as_deref(), json).map(success)
         }
-        Some(Command::Haptic(wanted)) => haptic::haptic(&wanted, arguments.json),
-        Some(Command::Sweep(wanted)) => postures::sweep::sweep(&wanted, arguments.json),
-        Some(Command::Map(wanted)) => postures::map::map(&wanted, arguments.json),
-        Some(Command::Path(wanted)) => postures::path::path(&wanted, arguments.json),
-        Some(Command::Sample(wanted)) => part::sample(&wanted),
-        Some(Command::Bench(wanted)) => bench::bench(&wanted, arguments.json),
-        Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
-        Some(Command::Check { files, given }) => {
-            return ended(check::check(&files, &given, arguments.json));
-        }
-        Some(Command::Expand { files, stage, given }) => files::expand(&files, stage, &given),
-        Some(Command::Explain { code }) => explain::explain(code.as_deref(), arguments.json),
-        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check, arguments.json),
-        Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
+        Command::Fmt(arguments) => fmt::fmt(&arguments, json).map(success),
+        Command::Expand(arguments) => expand::expand(&arguments).map(success),
+        Command::Draw(arguments) => draw::draw(&arguments).map(success),
     };
-    ended(done.map(|()| ExitCode::SUCCESS))
+    result.unwrap_or_else(|failure| report(&failure, min_status))
 }
 
-fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
-    ended_or(done, 1)
-}
-
-/// Reports a failure and returns its exit status, which is `failed` or higher.
-fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
-    match done {
-        Ok(code) => code,
-        Err(failure) => {
-            let severity = if failure.is_rendered() { "" } else { "error: " };
-            say!("{severity}{failure}");
-            ExitCode::from(failure.status().max(failed))
-        }
-    }
+/// Reports a failure, and returns its exit status, which is `min_status` or higher.
+fn report(failure: &failure::Failure, min_status: u8) -> ExitCode {
+    let severity = if failure.is_rendered() { "" } else { "error: " };
+    message!("{severity}{failure}");
+    ExitCode::from(failure.status().max(min_status))
 }

@@ -83,11 +83,11 @@ fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
 
 /// Prints a line on standard error, with its control characters escaped. Write errors are ignored, as there is no
 /// other place to report them.
-macro_rules! say {
-    ($($words:tt)*) => {{
+macro_rules! message {
+    ($($arguments:tt)*) => {{
         use std::io::Write as _;
-        let words = format!($($words)*);
-        let _ = writeln!(std::io::stderr(), "{}", touchoff::EscapedLines(&words));
+        let text = format!($($arguments)*);
+        let _ = writeln!(std::io::stderr(), "{}", touchoff::EscapedLines(&text));
     }};
 }
 
@@ -104,6 +104,11 @@ pub(crate) fn show(diagnostic: &Diagnostic, sources: &Sources) {
 /// Writes a whole file, which replaces an old one once it is on the disk.
 pub(crate) fn write_file(file: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     AtomicFile::write(file, bytes).map_err(|source| unwritable(file, source))
+}
+
+/// Returns a file's extension in lower case.
+pub(crate) fn extension(file: &Path) -> Option<String> {
+    file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
 /// Returns the failure to write a file.
@@ -150,15 +155,15 @@ fn mounted(tool: &Path) -> Vec<PathBuf> {
 #[cfg(unix)]
 fn is_same_file(one: &Path, other: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let place = |path: &Path| {
+    let identity = |path: &Path| {
         let file = std::fs::metadata(path).ok().filter(|file| file.is_file())?;
         Some((file.dev(), file.ino()))
     };
-    place(one).is_some_and(|one| Some(one) == place(other))
+    identity(one).is_some_and(|one| Some(one) == identity(other))
 }
 
 #[cfg(not(unix))]
 fn is_same_file(one: &Path, other: &Path) -> bool {
-    let place = |path: &Path| path.canonicalize().ok().filter(|path| path.is_file());
-    place(one).is_some_and(|one| Some(one) == place(other))
+    let identity = |path: &Path| path.canonicalize().ok().filter(|path| path.is_file());
+    identity(one).is_some_and(|one| Some(one) == identity(other))
 }

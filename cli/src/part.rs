@@ -2,37 +2,39 @@
 
 use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
-use crate::files::{Found, length};
+use crate::lengths::format_length;
+use crate::loaded_tool::LoadedTool;
 use crate::output::refuse_inputs;
+use crate::progress::Progress;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::cloud::MAX_BLUE_NOISE_POINTS;
 use touchoff::mesh::Geometry;
 use touchoff::tool::ToolInfo;
-use touchoff::{Cloud, CloudError, CoveringRadius, Mesh, Part, Probe, Tool, Unit};
+use touchoff::{Cloud, CloudError, CoveringRadius, Mesh, Part, Probe, Sampling, Tool, Unit};
 
 /// The file extension of saved parts.
 const SAVED: &str = "touchoff";
 
-/// Number of points above which a tolerance is rather proved of the triangles: sampling that many takes seconds,
-/// and querying them no less time than a proof (docs/measured/certified.md).
-const RATHER_PROVED: usize = 1_000_000;
+/// Number of points above which depth is rather certified: sampling that many takes seconds, and querying them no
+/// less time than a proof (docs/measured/certified.md).
+const MAX_POINTS_OF_RUN: usize = 1_000_000;
 
 /// A part, and its mesh if it has one.
 pub(crate) struct Loaded {
     pub(crate) part: Part,
     pub(crate) mesh: Option<Mesh>,
-    /// The tolerance to which depth has to be proved, if the points do not meet it.
-    pub(crate) prove: Option<f64>,
+    /// The tolerance to which depth has to be certified, if the points do not meet the sampling error.
+    pub(crate) certify: Option<f64>,
 }
 
-/// Handling of a tolerance that needs very many points.
+/// Handling of a sampling error that needs very many points.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Fine {
+pub(crate) enum DenseSampling {
     /// Samples up to the largest possible number of points.
-    Points,
-    /// Proves depth of the triangles.
-    Proof,
+    Sample,
+    /// Certifies the depth of the triangles.
+    Certify,
 }
 
 /// Reads the triangles of a part for the request `what`.
@@ -48,7 +50,7 @@ pub(crate) fn mesh(part: &Path, unit: Unit, what: &'static str) -> Result<Mesh, 
     match Geometry::read(part, unit)? {
         Geometry::Mesh(mesh) => {
             for finding in mesh.diagnostics().findings() {
-                say!("{file}: {finding}");
+                message!("{file}: {finding}");
             }
             Ok(mesh)
         }
@@ -58,34 +60,44 @@ pub(crate) fn mesh(part: &Path, unit: Unit, what: &'static str) -> Result<Mesh, 
 
 /// Reads a part and samples its points, for that tool.
 pub(crate) fn load(
-    wanted: &PartFile,
+    arguments: &PartFile,
     info: Option<&ToolInfo>,
-    fine: Fine,
+    dense: DenseSampling,
+    json: bool,
 ) -> Result<Loaded, Failure> {
-    let file = wanted.part.display();
+    let file = arguments.part.display();
     let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
-    if is_saved(&wanted.part) {
-        if wanted.tolerance.is_some() {
-            return Err(no_mesh("--tolerance"));
+    if is_saved(&arguments.part) {
+        if arguments.sampling_error.is_some() {
+            return Err(no_mesh("--sampling-error"));
         }
-        let part = Part::open(&wanted.part)?.converted_to(wanted.unit);
-        return Ok(Loaded { part, mesh: None, prove: None });
+        let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
+        return Ok(Loaded { part, mesh: None, certify: None });
     }
-    match Geometry::read(&wanted.part, wanted.unit)? {
+    match Geometry::read(&arguments.part, arguments.unit)? {
         Geometry::Mesh(mesh) => {
             let survey = mesh.diagnostics();
             for finding in survey.findings() {
-                say!("{file}: {finding}");
+                message!("{file}: {finding}");
             }
-            let (cloud, prove) = spread(&mesh, wanted, info, fine)?;
-            Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh), prove })
+            let (cloud, certify) = sample_cloud(&mesh, arguments, info, (dense, json))?;
+            Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh), certify })
         }
-        Geometry::Points(_) if wanted.tolerance.is_some() => Err(no_mesh("--tolerance")),
+        Geometry::Points(_) if arguments.sampling_error.is_some() => {
+            Err(no_mesh("--sampling-error"))
+        }
         Geometry::Points(points) => {
-            let estimated = if points.areas.is_some() { "cover" } else { "areas and cover" };
-            say!("{file}: {} points, no triangles: {estimated} estimated", points.places.len());
-            let part = Part::from_cloud(&Cloud::from_points(points, wanted.unit)?);
-            Ok(Loaded { part, mesh: None, prove: None })
+            let estimated = if points.areas.is_some() {
+                "covering radius"
+            } else {
+                "areas and covering radius"
+            };
+            message!(
+                "{file}: {} points without triangles: {estimated} are estimated",
+                points.places.len()
+            );
+            let part = Part::from_cloud(&Cloud::from_points(points, arguments.unit)?);
+            Ok(Loaded { part, mesh: None, certify: None })
         }
     }
 }
@@ -107,7 +119,7 @@ pub(crate) fn has_inside(
         (true, _) => Ok(()),
         (false, false) => Err(Failure::NoInside { file: part.display().to_string() }),
         (false, true) => {
-            say!("{}: {NO_INSIDE}; only its surface is looked at", part.display());
+            message!("{}: {NO_INSIDE}; only its surface is checked", part.display());
             Ok(())
         }
     }
@@ -118,87 +130,96 @@ fn is_saved(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED))
 }
 
-/// Samples as many points as requested, or as the tolerance needs. Returns the tolerance that is to be proved if
-/// these would be too many.
-fn spread(
+/// Samples as many points as requested, or as the sampling error needs. Returns the tolerance to which depth is to
+/// be certified if these would be too many.
+fn sample_cloud(
     mesh: &Mesh,
-    wanted: &PartFile,
+    arguments: &PartFile,
     info: Option<&ToolInfo>,
-    fine: Fine,
+    (dense, json): (DenseSampling, bool),
 ) -> Result<(Cloud, Option<f64>), Failure> {
-    let PartFile { sampling, seed, unit, .. } = *wanted;
-    let some = || {
-        let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
-        Cloud::sample(mesh, sampling, points, seed)
+    let PartFile { sampling: method, seed, unit, .. } = *arguments;
+    let sample = || {
+        let points = usize::try_from(arguments.points).unwrap_or(usize::MAX);
+        let _progress = Progress::spinner("sampling", json);
+        Cloud::sample(mesh, Sampling { count: points, method, seed })
     };
-    let Some(tolerance) = wanted.tolerance else { return Ok((some()?, None)) };
+    let Some(error) = arguments.sampling_error else { return Ok((sample()?, None)) };
     let steepest = match info.map(|info| (info, info.depth.lipschitz)) {
         None => 1.0,
         Some((_, Some(steepest))) if steepest > 0.0 => steepest,
-        Some((info, _)) => return Err(Failure::NoSteepness(info.name.to_string())),
+        Some((info, _)) => return Err(Failure::NoLipschitz(info.name.to_string())),
     };
     // The margin is larger than the effect of rounding.
-    let radius = tolerance / steepest * (1.0 - 1e-6);
-    let most = if fine == Fine::Proof { RATHER_PROVED } else { MAX_BLUE_NOISE_POINTS };
-    let wants = format!(
-        "a tolerance of {}: depth grows by {steepest:.4} for each length at most, so no place may be \
-         farther than {} from all points",
-        length(tolerance, unit),
-        length(radius, unit),
+    let radius = error / steepest * (1.0 - 1e-6);
+    let most =
+        if dense == DenseSampling::Certify { MAX_POINTS_OF_RUN } else { MAX_BLUE_NOISE_POINTS };
+    let reason = format!(
+        "for a sampling error of {} no point of the surface may be farther than {} from all samples, as depth \
+         grows by at most {steepest:.4} per length",
+        format_length(error, unit),
+        format_length(radius, unit),
     );
-    match Cloud::with_covering_radius(mesh, radius, sampling, most, seed) {
+    let progress = Progress::spinner("sampling", json);
+    let cloud = Cloud::with_covering_radius(mesh, radius, Sampling { count: most, method, seed });
+    drop(progress);
+    match cloud {
         Ok(cloud) => {
-            say!("{wants}: {} points", cloud.len());
+            message!("{reason}: {} points", cloud.len());
             Ok((cloud, None))
         }
-        Err(CloudError::TooFine { needed, .. }) if fine == Fine::Proof => {
-            let cloud = some()?;
-            say!(
-                "{wants}, which takes some {needed:.0e} points: depth is proved of the triangles instead, \
+        Err(CloudError::TooFine { needed, .. }) if dense == DenseSampling::Certify => {
+            let cloud = sample()?;
+            message!(
+                "{reason}, which takes some {needed:.0e} points: depth is proved for the triangles instead, \
                  force is that of {} points",
                 cloud.len(),
             );
-            Ok((cloud, Some(tolerance)))
+            Ok((cloud, Some(error)))
         }
-        Err(error) => Err(error.into()),
+        Err(failure) => Err(failure.into()),
     }
 }
 
 /// Prints the covering radius of the points and the sampling error for a tool.
 pub(crate) fn about(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
     let Some(CoveringRadius { radius, proved }) = part.tree().covering_radius() else { return };
-    let sure = if proved { "proved" } else { "estimated" };
-    let deeper = match tool.map(|tool| Probe::new(part, tool).sampling_error_bound()) {
-        Some(Some(unseen)) => {
-            format!(": the surface is no more than {} deeper than found", length(unseen, unit))
+    let status = if proved { "proved" } else { "estimated" };
+    let bound = match tool.map(|tool| Probe::new(part, tool).sampling_error_bound()) {
+        Some(Some(error)) => {
+            format!(
+                ": the true depth exceeds the reported one by at most {}",
+                format_length(error, unit)
+            )
         }
-        Some(None) => ": how much deeper it is than found is not known for this tool".to_owned(),
+        Some(None) => ": no bound on the error of depth is proved for this tool".to_owned(),
         None => String::new(),
     };
-    say!(
-        "no place of the surface is farther than {} from all points ({sure}){deeper}",
-        length(radius, unit)
+    message!(
+        "every point of the surface is within {} of a sample ({status}){bound}",
+        format_length(radius, unit)
     );
 }
 
 /// Samples points of a part and saves them.
-pub(crate) fn sample(wanted: &Sample) -> Result<(), Failure> {
-    let tool = wanted.tool.as_deref().map(Path::new);
-    refuse_inputs([&*wanted.output], std::iter::once(&*wanted.part.part).chain(tool))?;
-    let found = match &wanted.tool {
-        Some(name) => Some(Found::find(name, &wanted.given)?),
-        None if wanted.given.is_none() => None,
-        None => return Err(Failure::NothingToSet("name one with `--tool`")),
+pub(crate) fn sample(arguments: &Sample, json: bool) -> Result<(), Failure> {
+    let tool = arguments.tool.as_deref().map(Path::new);
+    refuse_inputs([&*arguments.output], std::iter::once(&*arguments.part.part).chain(tool))?;
+    let loaded = match &arguments.tool {
+        Some(name) => Some(LoadedTool::load(name, &arguments.params)?),
+        None if arguments.params.is_empty() => None,
+        None => return Err(Failure::UnusedParams("name one with `--tool FILE.tool`")),
     };
-    let tool = found.as_ref().map(Found::tool);
-    let output = &wanted.output;
+    let tool = loaded.as_ref().map(LoadedTool::tool);
+    let output = &arguments.output;
     if !is_saved(output) {
         let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
         return Err(Failure::SavedName { file, better });
     }
-    let Loaded { part, .. } = load(&wanted.part, tool.map(Tool::info), Fine::Points)?;
-    about(&part, tool, wanted.part.unit);
+    let Loaded { part, .. } =
+        load(&arguments.part, tool.map(Tool::info), DenseSampling::Sample, json)?;
+    about(&part, tool, arguments.part.unit);
     part.save(output)?;
-    say!("{}: {} points", output.display(), part.tree().len());
+    message!("{}: {} points", output.display(), part.tree().len());
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Programs: reading, checks against tool and unit, position relative to the part, and ignored words.
 
 use crate::failure::Failure;
-use crate::files::{figure, length};
+use crate::lengths::{format_length, format_number};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,8 +18,8 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, 
     program.check_unit(unit)?;
     program.check_poses(info)?;
     if let Some(line) = program.check_cutter(info, unit)? {
-        say!(
-            "{}:{line}: CUTTER is not compared: it cannot describe `{}`",
+        message!(
+            "{}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
             path.display(),
             info.name
         );
@@ -31,27 +31,29 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, 
 pub(crate) fn print(report: &VerifyReport, program: &Program, unit: Unit) {
     let Approach { part, program: tips, distance, line, diameter, proved_clearance: keeps } =
         report.approach;
-    say!("part: {} in {unit}", extent(part, unit));
-    say!(
-        "program: {} positions, tips in {} in {unit}",
+    message!("part: {} in {unit}", extent(part, unit));
+    message!(
+        "program: {} cutter locations, tips in {} in {unit}",
         program.locations.len(),
         extent(tips, unit)
     );
     match (distance, keeps) {
-        (0.0, _) => say!("nearest approach: it touches, line {line}"),
-        (_, None) => say!("nearest approach: {} or less, line {line}", length(distance, unit)),
-        (_, Some(keeps)) => say!(
+        (0.0, _) => message!("nearest approach: contact, line {line}"),
+        (_, None) => {
+            message!("nearest approach: {} or less, line {line}", format_length(distance, unit));
+        }
+        (_, Some(keeps)) => message!(
             "nearest approach: {}, line {line}; at least {} on all motions, more than the tool's diameter of {}",
-            length(distance, unit),
-            length(keeps, unit),
-            length(diameter, unit),
+            format_length(distance, unit),
+            format_length(keeps, unit),
+            format_length(diameter, unit),
         ),
     }
-    passed_over(program);
+    print_ignored(program);
 }
 
 /// Prints the words that were ignored, and how often each occurs.
-pub(crate) fn passed_over(program: &Program) {
+pub(crate) fn print_ignored(program: &Program) {
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for (_, word) in &program.ignored {
         *words.entry(word).or_default() += 1;
@@ -61,14 +63,14 @@ pub(crate) fn passed_over(program: &Program) {
         .map(|(word, count)| if count == 1 { word.to_owned() } else { format!("{word} ({count})") })
         .collect();
     if !list.is_empty() {
-        say!("passed over, as they move nothing: {}", list.join(", "));
+        message!("ignored, as they move nothing: {}", list.join(", "));
     }
 }
 
 /// Formats a box by its two corners.
 fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     let corner = |p: Point3<f64>| {
-        let [x, y, z] = [p.x, p.y, p.z].map(|part| figure(part, unit));
+        let [x, y, z] = [p.x, p.y, p.z].map(|part| format_number(part, unit));
         format!("({x}, {y}, {z})")
     };
     format!("{} to {}", corner(low), corner(high))

@@ -2,15 +2,17 @@
 
 use crate::arguments::Run;
 use crate::failure::Failure;
-use crate::files::{Found, figure, length};
+use crate::lengths::{format_length, format_number};
+use crate::loaded_tool::LoadedTool;
 use crate::output::Output;
-use crate::part::{self, Fine, Loaded, NO_INSIDE};
+use crate::part::{self, DenseSampling, Loaded, NO_INSIDE};
 use crate::program;
+use crate::progress::Progress;
 use crate::timing::{Timing, nanoseconds};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::time::Instant;
 use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
@@ -18,21 +20,25 @@ use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
 
 #[derive(Serialize)]
 struct Row<'a> {
-    pose: usize,
+    /// Index of the cutter location, from 0.
+    location: usize,
     line: usize,
-    colliding: usize,
+    /// Unit of lengths.
+    unit: &'static str,
+    contacts: usize,
     depth: f64,
     /// Upper bound on the depth of the whole surface, if one is proved.
     depth_bound: Option<f64>,
     force: [f64; 3],
     torque: [f64; 3],
     niceness: Option<f64>,
-    integral: f64,
+    /// Sum of weight times magnitude over the contacts.
+    magnitude_integral: f64,
     energy: f64,
-    ns: u64,
+    query_time_ns: u64,
     law: String,
     /// The greatest depth per surface in contact.
-    surfaces: BTreeMap<&'a str, f64>,
+    surface_depths: BTreeMap<&'a str, f64>,
     #[serde(flatten)]
     certified: Option<Certified<'a>>,
 }
@@ -41,7 +47,7 @@ struct Row<'a> {
 #[derive(Serialize)]
 struct Certified<'a> {
     /// An interval that contains the depth of the part's triangles.
-    deepest: [f64; 2],
+    certified_depth: [f64; 2],
     /// The deepest triangle, if one is inside the tool.
     triangle: Option<u32>,
     /// The tool's surface nearest to it there.
@@ -51,39 +57,40 @@ struct Certified<'a> {
 }
 
 impl<'a> Certified<'a> {
-    fn new(found: &Penetration, inside: Option<bool>, info: &'a ToolInfo) -> Certified<'a> {
+    fn new(penetration: &Penetration, inside: Option<bool>, info: &'a ToolInfo) -> Certified<'a> {
         Certified {
-            deepest: found.depth,
-            triangle: found.witness.map(|witness| witness.triangle),
-            surface: found.witness.map(|witness| &*info.surfaces[witness.surface].name),
+            certified_depth: penetration.depth.into(),
+            triangle: penetration.witness.map(|witness| witness.triangle.0),
+            surface: penetration.witness.map(|witness| &*info.surface(witness.surface).name),
             inside,
         }
     }
 
     /// Formats the proved depth for people, as one number if both bounds print alike.
-    fn shown(&self, unit: Unit) -> String {
+    fn format(&self, unit: Unit) -> String {
         if self.inside == Some(true) {
             return "wholly inside the material".to_owned();
         }
-        let [low, high] = self.deepest.map(|depth| figure(depth, unit));
+        let [low, high] = self.certified_depth.map(|depth| format_number(depth, unit));
         let depth = if low == high { high } else { format!("{low} to {high}") };
         format!("{depth} {}", self.surface.unwrap_or_default())
     }
 }
 
 /// Runs a tool along a path.
-pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     // Everything that can be wrong is found before the first row is written.
-    let found = Found::find(&wanted.tool, &wanted.given)?;
-    let tool = found.tool();
-    let unit = wanted.part.unit;
-    let program = program::read(&wanted.path, tool.info(), unit)?;
-    let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.info()), Fine::Proof)?;
-    let certify = [wanted.certify, prove].into_iter().flatten().reduce(f64::min);
+    let loaded = LoadedTool::load(&arguments.tool, &arguments.params)?;
+    let tool = loaded.tool();
+    let unit = arguments.part.unit;
+    let program = program::read(&arguments.program, tool.info(), unit)?;
+    let Loaded { part, mesh, certify } =
+        part::load(&arguments.part, Some(tool.info()), DenseSampling::Certify, json)?;
+    let certify = [arguments.certify, certify].into_iter().flatten().reduce(f64::min);
     let bvh = match (certify, &mesh) {
         (Some(tolerance), Some(mesh)) => Some((TriangleBvh::new(mesh), tolerance)),
         (Some(_), None) => {
-            let file = wanted.part.part.display().to_string();
+            let file = arguments.part.part.display().to_string();
             return Err(Failure::NoTriangles { file, what: "--certify" });
         }
         (None, _) => None,
@@ -92,7 +99,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         Some((bvh, tolerance)) => Some((Certifier::new(bvh, tool)?, *tolerance)),
         None => None,
     };
-    about(wanted, &part, &program, tool.info());
+    about(arguments, &part, &program, tool.info());
     part::about(&part, Some(tool), unit);
 
     let mut out = Output::rows();
@@ -101,104 +108,111 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         writeln!(out, "    line  points   depth ({unit})  {proved}by surface")?;
     }
     let mut probe = Probe::new(&part, tool)
-        .with_law(wanted.law)
-        .with_weights(wanted.weights)
-        .with_centre(wanted.center.unwrap_or(Point3::origin()));
+        .with_law(arguments.law)
+        .with_weights(arguments.weights)
+        .with_centre(arguments.center.unwrap_or(Point3::origin()));
     let proved = part.tree().covering_radius().is_some_and(|cover| cover.proved);
-    let unseen = probe.sampling_error_bound().filter(|_| proved);
+    let sampling_error = probe.sampling_error_bound().filter(|_| proved);
     let mut summary = Summary::default();
-    for (index, stop) in program.locations.iter().enumerate() {
+    // Rows on the same terminal show the progress themselves.
+    let quiet = json || std::io::stdout().is_terminal();
+    let progress = Progress::steps(program.locations.len(), "poses", quiet);
+    for (index, location) in program.locations.iter().enumerate() {
+        progress.advance(1);
         let start = Instant::now();
-        let evaluation = probe.wrench(&stop.pose);
+        let evaluation = probe.wrench(&location.pose);
         let ns = nanoseconds(start.elapsed());
-        let contacts = if evaluation.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
+        let contacts = if evaluation.colliding > 0 { probe.contacts(&location.pose) } else { &[] };
         let surfaces = by_surface(contacts, tool.info());
-        summary.add(stop.line, &evaluation, &surfaces, ns);
+        summary.add(location.line, &evaluation, &surfaces, ns);
         let certified = certifier.as_mut().map(|(certifier, tolerance)| {
             let start = Instant::now();
-            let found = certifier.deepest(&stop.pose, *tolerance);
+            let penetration = certifier.deepest(&location.pose, *tolerance);
             let ns = nanoseconds(start.elapsed());
-            let inside = match found.witness {
+            let inside = match penetration.witness {
                 Some(_) => Some(false),
-                None => certifier.is_buried(&stop.pose),
+                None => certifier.is_buried(&location.pose),
             };
-            summary.certify(stop.line, (&found, inside), ns);
-            Certified::new(&found, inside, tool.info())
+            summary.certify(location.line, (&penetration, inside), ns);
+            Certified::new(&penetration, inside, tool.info())
         });
         if json {
-            let seen = unseen.map(|unseen| evaluation.depth() + unseen);
-            let proved = certified.as_ref().map(|certified| certified.deepest[1]);
-            let bound = [seen, proved].into_iter().flatten().reduce(f64::min);
-            let row = row((index, stop.line), (&evaluation, bound), ns, surfaces, certified);
+            let sampled = sampling_error.map(|sampling_error| evaluation.depth() + sampling_error);
+            let proved = certified.as_ref().map(|certified| certified.certified_depth[1]);
+            let bound = [sampled, proved].into_iter().flatten().reduce(f64::min);
+            let row =
+                row((index, location.line, unit), (&evaluation, bound), ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
         } else if evaluation.colliding > 0
             || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
         {
-            let proved = certified.map(|c| format!("{}; ", c.shown(unit)));
+            let proved = certified.map(|c| format!("{}; ", c.format(unit)));
             let each: Vec<String> = surfaces
                 .iter()
-                .map(|(name, depth)| format!("{name} {}", figure(*depth, unit)))
+                .map(|(name, depth)| format!("{name} {}", format_number(*depth, unit)))
                 .collect();
-            let depth = figure(evaluation.depth(), unit);
-            let (line, points) = (stop.line, evaluation.colliding);
+            let depth = format_number(evaluation.depth(), unit);
+            let (line, points) = (location.line, evaluation.colliding);
             let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
             writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
         }
     }
     out.flush()?;
+    drop(progress);
     summary.print(unit);
     if bvh.is_some_and(|(bvh, _)| !bvh.has_inside()) {
-        say!("{NO_INSIDE}");
+        message!("{NO_INSIDE}");
     }
     Ok(())
 }
 
 /// Prints a description of the input.
-fn about(wanted: &Run, part: &Part, program: &Program, info: &ToolInfo) {
-    program::passed_over(program);
-    say!(
+fn about(arguments: &Run, part: &Part, program: &Program, info: &ToolInfo) {
+    program::print_ignored(program);
+    message!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         info.name,
         part.tree().len(),
         program.locations.len(),
-        wanted.law,
-        wanted.weights,
-        wanted.part.unit,
+        arguments.law,
+        arguments.weights,
+        arguments.part.unit,
     );
 }
 
 fn by_surface<'a>(contacts: &[Contact], info: &'a ToolInfo) -> BTreeMap<&'a str, f64> {
     let mut surfaces = BTreeMap::new();
     for contact in contacts {
-        let deepest: &mut f64 = surfaces.entry(&*info.surfaces[contact.surface].name).or_default();
+        let deepest: &mut f64 =
+            surfaces.entry(&*info.surfaces[contact.surface.0].name).or_default();
         *deepest = deepest.max(contact.depth);
     }
     surfaces
 }
 
 fn row<'a>(
-    (pose, line): (usize, usize),
+    (location, line, unit): (usize, usize, Unit),
     (evaluation, depth_bound): (&Wrench, Option<f64>),
-    ns: u64,
-    surfaces: BTreeMap<&'a str, f64>,
+    query_time_ns: u64,
+    surface_depths: BTreeMap<&'a str, f64>,
     certified: Option<Certified<'a>>,
 ) -> Row<'a> {
-    let parts = |v: Vector3<f64>| [v.x, v.y, v.z];
     Row {
-        pose,
+        location,
         line,
-        colliding: evaluation.colliding,
+        unit: unit.symbol(),
+        contacts: evaluation.colliding,
         depth: evaluation.depth(),
         depth_bound,
-        force: parts(evaluation.force),
-        torque: parts(evaluation.torque),
+        force: evaluation.force.into(),
+        torque: evaluation.torque.into(),
         niceness: evaluation.niceness,
-        integral: evaluation.integral,
+        magnitude_integral: evaluation.integral,
         energy: evaluation.energy,
-        ns,
+        query_time_ns,
         law: evaluation.law.to_string(),
-        surfaces,
+        surface_depths,
         certified,
     }
 }
@@ -247,36 +261,44 @@ impl Summary {
         }
     }
 
-    fn certify(&mut self, line: usize, (found, inside): (&Penetration, Option<bool>), ns: u64) {
+    fn certify(
+        &mut self,
+        line: usize,
+        (penetration, inside): (&Penetration, Option<bool>),
+        ns: u64,
+    ) {
         let proved = self.proved.get_or_insert_default();
         proved.times.push(ns);
-        proved.in_contact += usize::from(found.witness.is_some());
+        proved.in_contact += usize::from(penetration.witness.is_some());
         if inside == Some(true) {
             let (count, first) = proved.inside;
             proved.inside = (count + 1, if count == 0 { line } else { first });
         }
-        if found.depth[1] > proved.deepest.0[1] {
-            proved.deepest = (found.depth, line);
+        if penetration.depth.high > proved.deepest.0[1] {
+            proved.deepest = (penetration.depth.into(), line);
         }
     }
 
     fn print(mut self, unit: Unit) {
         match self.deepest {
-            Some((depth, line)) => say!(
+            Some((depth, line)) => message!(
                 "{} of {} poses in contact, deepest {} at line {line}",
                 self.in_contact,
                 self.poses,
-                length(depth, unit),
+                format_length(depth, unit),
             ),
-            None => say!("none of {} poses in contact", self.poses),
+            None => message!("none of {} poses in contact", self.poses),
         }
         for (name, (poses, depth, line)) in &self.surfaces {
-            say!("  {name:<12} {poses:>6} poses, deepest {} at line {line}", length(*depth, unit));
+            message!(
+                "  {name:<12} {poses:>6} poses, deepest {} at line {line}",
+                format_length(*depth, unit)
+            );
         }
         let timing = Timing::of(&mut self.times);
-        say!(
-            "time a query: {:.2} µs on average, {:.2} median, {:.2} p99, {:.2} at most",
-            timing.avg / 1e3,
+        message!(
+            "query time: mean {:.2} µs, median {:.2}, p99 {:.2}, max {:.2}",
+            timing.mean / 1e3,
             timing.p50 as f64 / 1e3,
             timing.p99 as f64 / 1e3,
             timing.max as f64 / 1e3,
@@ -284,20 +306,20 @@ impl Summary {
         if let Some(mut proved) = self.proved {
             let timing = Timing::of(&mut proved.times);
             if let (count @ 1.., line) = proved.inside {
-                say!(
+                message!(
                     "proved: wholly inside the material at {count} of {} poses, first at line {line}",
                     self.poses
                 );
             }
             let ([low, high], line) = proved.deepest;
-            say!(
-                "proved: {} of {} poses in contact, deepest {} to {} at line {line}; {:.2} µs on average, \
-                 {:.2} median, {:.2} p99, {:.2} at most",
+            message!(
+                "proved: {} of {} poses in contact, deepest {} to {} at line {line}; time: mean {:.2} µs, \
+                 median {:.2}, p99 {:.2}, max {:.2}",
                 proved.in_contact,
                 self.poses,
-                figure(low, unit),
-                length(high, unit),
-                timing.avg / 1e3,
+                format_number(low, unit),
+                format_length(high, unit),
+                timing.mean / 1e3,
                 timing.p50 as f64 / 1e3,
                 timing.p99 as f64 / 1e3,
                 timing.max as f64 / 1e3,

@@ -1,10 +1,12 @@
 //! Statistics of times.
 
+use serde::Serialize;
 use std::time::Duration;
 
-/// Average, median, 99th percentile and maximum, in nanoseconds.
+/// Mean, median, 99th percentile and maximum, in nanoseconds.
+#[derive(Serialize)]
 pub(crate) struct Timing {
-    pub(crate) avg: f64,
+    pub(crate) mean: f64,
     pub(crate) p50: u64,
     pub(crate) p99: u64,
     pub(crate) max: u64,
@@ -17,9 +19,9 @@ impl Timing {
     /// Panics if there are no times.
     pub(crate) fn of(all: &mut [u64]) -> Timing {
         all.sort_unstable();
-        let at = |part: f64| all[((all.len() - 1) as f64 * part).round() as usize];
+        let at = |fraction: f64| all[((all.len() - 1) as f64 * fraction).round() as usize];
         let sum: u64 = all.iter().sum();
-        Timing { avg: sum as f64 / all.len() as f64, p50: at(0.5), p99: at(0.99), max: at(1.0) }
+        Timing { mean: sum as f64 / all.len() as f64, p50: at(0.5), p99: at(0.99), max: at(1.0) }
     }
 }
 

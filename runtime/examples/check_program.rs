@@ -5,7 +5,7 @@ use std::io::Write;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::verify::{FindingKind, Verifier};
-use touchoff::{Program, Unit};
+use touchoff::{Interval, Program, Unit};
 
 touchoff::tool! {
     tool EndMill "12 mm across, 20 mm of it cut, in a holder 50 mm wide" {
@@ -48,18 +48,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let verifier =
         Verifier::new(&wall, &EndMill)?.with_tolerance(0.01)?.with_allowance("holder", -1.0)?;
     let report = verifier.check(&program)?;
-    let name = |surface: usize| &*verifier.info().surfaces[surface].name;
+    let name = |surface| &*verifier.info().surface(surface).name;
     let mut out = std::io::stdout().lock();
     for found in &report.findings {
         write!(out, "wall.apt:{}: at {:.2} of the way, ", found.line, found.time)?;
         match found.kind {
-            FindingKind::Deep { surface, depth: [low, high], witness, .. } => writeln!(
+            FindingKind::Deep { surface, depth: Interval { low, high }, witness, .. } => writeln!(
                 out,
                 "{} is {low:.4} to {high:.4} mm deep in triangle {}",
                 name(surface),
                 witness.triangle
             )?,
-            FindingKind::Near { surface, distance: [low, high], .. } => {
+            FindingKind::Near { surface, distance: Interval { low, high }, .. } => {
                 writeln!(out, "{} is {low:.4} to {high:.4} mm away", name(surface))?;
             }
             other => writeln!(out, "{other:?}")?,

@@ -2,14 +2,14 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::{Part, Pose, Probe, Unit, summary};
+use touchoff::{Part, Pose, Probe, Sampling, Unit, summary};
 
 touchoff::include_tool!("examples/ball.tool");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let low = Point3::new(-10.0, -10.0, -5.0);
     let block = shapes::cuboid(low, Point3::new(10.0, 10.0, 0.0), Unit::Millimetre)?;
-    let part = Part::from_mesh(&block, 100_000, 1)?;
+    let part = Part::from_mesh(&block, Sampling::new(100_000))?;
     let mut probe = Probe::new(&part, &Ball);
     for step in 0..5 {
         let tip = Point3::new(0.0, 0.0, 0.1 - 0.1 * f64::from(step));

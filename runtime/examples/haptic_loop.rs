@@ -6,16 +6,17 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use touchoff::haptic::{
     Device, DeviceLimits, MonotonicClock, Realtime, Session, SessionSettings, SimulatedHand,
-    Tremor, run, state_channel,
+    Tremor, state_channel,
 };
 use touchoff::mesh::shapes;
-use touchoff::{Law, Part, Pose, Probe, Unit};
+use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
 
 touchoff::include_tool!("examples/ball.tool");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (low, high) = (Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.));
-    let part = Part::from_mesh(&shapes::cuboid(low, high, Unit::Millimetre)?, 20_000, 1)?;
+    let part =
+        Part::from_mesh(&shapes::cuboid(low, high, Unit::Millimetre)?, Sampling::new(20_000))?;
     let probe = Probe::new(&part, &Ball).with_law(Law::Gradient);
 
     let (rate, cycles) = (1000.0, 3000);
@@ -34,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 eprintln!("{refused}");
             }
             let clock = &mut MonotonicClock::new(Duration::from_micros(60));
-            run((&mut session, &mut hand), (clock, cycles), &mut watch, &stop)
+            session.run(&mut hand, clock, cycles, &mut watch, &stop)
         });
         while !looped.is_finished() {
             std::thread::sleep(Duration::from_millis(250));

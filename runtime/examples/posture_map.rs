@@ -7,11 +7,11 @@ use std::io::BufWriter;
 use std::sync::atomic::AtomicBool;
 use touchoff::certify::TriangleBvh;
 use touchoff::haptic::{
-    DeviceLimits, ScriptedDevice, Session, SessionSettings, SimulatedClock, run, state_channel,
+    DeviceLimits, ScriptedDevice, Session, SessionSettings, SimulatedClock, state_channel,
 };
 use touchoff::mesh::shapes;
 use touchoff::postures::{MapIdentity, PostureMap, Recorder, Rules, colormap};
-use touchoff::{Part, Pose, Probe, Unit};
+use touchoff::{Part, Pose, Probe, Sampling, Unit};
 
 touchoff::tool! {
     tool BallMill "a ball on a shank, in a holder" {
@@ -28,7 +28,7 @@ touchoff::tool! {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mesh = shapes::sphere(20.0, 3, Unit::Millimetre)?;
-    let (part, bvh) = (Part::from_mesh(&mesh, 50_000, 1)?, TriangleBvh::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, Sampling::new(50_000))?, TriangleBvh::new(&mesh));
 
     // The ball may be 0.05 mm deep; shank and holder may not be in the part.
     let rules = Rules { tolerance: 0.05, niceness: 0.5, allowed: Vec::new() };
@@ -57,9 +57,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // The publisher moves into the thread. When it is dropped, the recorder knows that the loop is over.
         let looped = scope.spawn(move || {
             let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
-            run((&mut session, &mut device), (clock, cycles), &mut watch, &stop)
+            session.run(&mut device, clock, cycles, &mut watch, &stop)
         });
-        let recorded = Recorder::new(&map, (&part, &bvh), &BallMill)
+        let recorded = Recorder::new(&map, &part, &bvh, &BallMill)
             .map_err(Box::<dyn std::error::Error>::from)
             .and_then(|mut recorder| Ok(recorder.follow(&mut samples)?));
         (looped.join().expect("the loop panics at nothing"), recorded)

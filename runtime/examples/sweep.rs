@@ -8,7 +8,7 @@
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::path::{Pattern, plan_path};
+use touchoff::postures::path::{PathRequest, Pattern};
 use touchoff::postures::sweep::{PostureSweep, SweepStats};
 use touchoff::postures::{Directions, Rules};
 use touchoff::verify::Verifier;
@@ -47,7 +47,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let directions = Directions::spread(100);
     let rules = Rules { tolerance: 0.02, niceness: 0.0, allowed: Vec::new() };
     let sweep = PostureSweep::new(
-        (&tube, &bvh),
+        &tube,
+        &bvh,
         tools.to_vec(),
         &directions,
         rules.clone(),
@@ -73,7 +74,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("of {} triangles Slim is best at {}, Stout at {}", access.len(), best[0], best[1]);
 
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 0.5 };
-    let led = plan_path((&tube, &bvh), (&Slim, &rules), (&directions, &access), &pattern)?;
+    let led = PathRequest {
+        mesh: &tube,
+        bvh: &bvh,
+        tool: &Slim,
+        rules: &rules,
+        directions: &directions,
+        accessibility: &access,
+        pattern: &pattern,
+    }
+    .plan()?;
     println!(
         "a path of {} stops, {} of them on the surface",
         led.locations.len(),

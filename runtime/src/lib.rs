@@ -1,36 +1,100 @@
 //! Contact between a cutting tool and a workpiece at any pose, for 5-axis machining: haptics, certified
 //! interference, postures and program verification.
 //!
-//! A tool is written in a small language and compiled by [`include_tool!`], [`tool!`] or
-//! [`tool_library!`] into straight-line code. A [`Part`] is a mesh sampled as a weighted point cloud, in
-//! a bounding volume hierarchy. A [`Probe`] evaluates a tool at the points of a part: [`Probe::detect`],
-//! [`Probe::deepest`], [`Probe::posture`], [`Probe::wrench`], [`Probe::contacts`]. [`certify`] proves
-//! bounds for all points of the triangles, [`verify`] checks programs, and the features `haptic` and
-//! `postures` add the haptic loop and posture maps.
+//! A tool is written in a small language and compiled into straight-line code by [`include_tool!`], [`tool!`] or
+//! [`tool_library!`]. A workpiece is a triangle mesh: sampled as a weighted point cloud for fast queries, or searched
+//! as triangles for proved ones. Every answer says its error.
+//!
+//! # A tour
+//!
+//! **Load.** [`Mesh::read_stl`] and [`mesh::Geometry`] read files, whose unit the caller states. [`Part::from_mesh`]
+//! samples a mesh; [`Part::save`] and [`Part::open`] keep the result. **Write a tool**, or take one from the package
+//! `tools-library`. **Query**: a [`Probe`] evaluates a tool at the points of a part.
 //!
 //! ```
-//! use touchoff::{Part, Pose, Probe, Unit, mesh::shapes};
+//! use touchoff::{Part, Pose, Probe, Sampling, Unit, mesh::shapes};
 //! use nalgebra::{Point3, Vector3};
 //!
 //! touchoff::tool! {
-//!     tool Ball "a ball of 3 mm radius" {
+//!     tool Ball "6 mm ball" {
 //!         units mm;
-//!         region ball as ball cutting where hypot(d, z - 3) <= 3 {
-//!             depth: 3 - hypot(d, z - 3);
-//!         }
+//!         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
 //!         niceness cutting: 1 - depth/3;
 //!     }
 //! }
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
-//! let part = Part::from_mesh(&block, 20_000, 1)?;
+//! let part = Part::from_mesh(&block, Sampling::new(20_000))?;
 //! let mut probe = Probe::new(&part, &Ball);
 //! let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.5), Vector3::z())?;
-//! let felt = probe.wrench(&pose);
-//! assert!(felt.colliding > 0 && felt.force.z > 0.0);
+//! let wrench = probe.wrench(&pose);
+//! assert!(wrench.colliding > 0 && wrench.force.z > 0.0);
+//! // The surface between the points is no deeper than this.
+//! assert!(probe.depth_bound(&pose).is_some_and(|bound| bound >= 0.5));
 //! # Ok(()) }
 //! ```
+//!
+//! **Certify.** A [`Certifier`](certify::Certifier) bounds depth, clearance and motions over all points of the
+//! triangles. **Verify.** A [`Verifier`](verify::Verifier) checks a [`Program`] with it, motion by motion.
+//!
+//! ```
+//! # use nalgebra::{Point3, Vector3};
+//! # use touchoff::{Pose, Program, Unit, mesh::shapes};
+//! use touchoff::certify::{Certifier, TriangleBvh};
+//! use touchoff::verify::Verifier;
+//! # touchoff::tool! {
+//! #     tool Ball "6 mm ball" {
+//! #         units mm;
+//! #         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+//! #         niceness cutting: 1 - depth/3;
+//! #     }
+//! # }
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
+//! # let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.5), Vector3::z())?;
+//! let bvh = TriangleBvh::new(&block);
+//! let depth = Certifier::new(&bvh, &Ball)?.deepest(&pose, 1e-9).depth;
+//! assert!(depth.contains(0.5) && depth.width() < 2e-9);
+//!
+//! let program = Program::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
+//! let report = Verifier::new(&bvh, &Ball)?.with_tolerance(0.01)?.check(&program)?;
+//! assert!(!report.is_clear());
+//! # Ok(()) }
+//! ```
+//!
+//! **Sweep.** With the feature `postures`, `postures::sweep::PostureSweep` tries tools at every triangle from every
+//! direction, `postures::PostureMap` keeps the result, and `postures::path::PathRequest` plans a path over it
+//! (`examples/sweep.rs`). **Run the loop.** With the feature `haptic`, `haptic::Session` lets a hand feel the part
+//! at 1 kHz (`examples/haptic_loop.rs`).
+//!
+//! # The ten types to know
+//!
+//! | type | purpose |
+//! |---|---|
+//! | [`Tool`] | a tool that can be evaluated; `tool!` implements it |
+//! | [`Mesh`], [`Cloud`], [`Part`] | triangles, points sampled on them, and the points prepared for queries |
+//! | [`Pose`], [`Motion`] | the tool's tip and axis or full rotation, and a move between two of them |
+//! | [`Probe`] | contact, depth and force at the points of a part |
+//! | [`TriangleBvh`](certify::TriangleBvh), [`Certifier`](certify::Certifier) | triangles prepared for queries, and proved depth, clearance and motions |
+//! | [`Verifier`](verify::Verifier) | the check of a whole [`Program`] |
+//!
+//! Lengths are in the unit of the part or of the tool's file, as each function says; frames are right-handed, and a
+//! tool's axis points from the tip to the spindle.
+//!
+//! # Features
+//!
+//! None is on by default; without any, 29 packages are built besides macros.
+//!
+//! | feature | adds | packages |
+//! |---|---|--:|
+//! | `parallel` | many poses on all cores: `Probe::par_map` | 6 |
+//! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` | 23 |
+//! | `haptic` | the haptic loop | 9 |
+//! | `spacenav` | a SpaceMouse in the loop; implies `haptic` | 9 |
+//! | `postures` | posture maps, sweeps and paths; implies `parallel` | 16 |
+
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
@@ -43,10 +107,13 @@ mod atomic_file;
 mod bvh;
 pub mod certify;
 pub mod cloud;
+mod debug;
 mod escape;
 #[cfg(feature = "haptic")]
 pub mod haptic;
+mod id;
 mod input;
+mod interval;
 mod keywords;
 pub mod mesh;
 mod motion;
@@ -66,9 +133,11 @@ mod unit;
 pub mod verify;
 
 pub use atomic_file::AtomicFile;
-pub use cloud::{Cloud, CloudError, CoveringRadius, SamplingMethod};
+pub use cloud::{Cloud, CloudError, CoveringRadius, Sampling, SamplingMethod};
 pub use escape::{Escaped, EscapedLines};
 pub use fearless_simd::Level;
+pub use id::{SurfaceId, TriangleId};
+pub use interval::Interval;
 pub use keywords::ParseEnumError;
 pub use mesh::{Mesh, MeshDiagnostics, MeshError, StlError};
 pub use motion::{Motion, MotionError};

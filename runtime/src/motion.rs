@@ -21,6 +21,7 @@ pub struct Motion {
 
 /// Reasons why a motion between two poses is ambiguous.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MotionError {
     /// The axes are antiparallel.
     #[error("start and end axes are opposite, so the way between is ambiguous: add a pose between")]

@@ -1,6 +1,6 @@
 //! The workpiece, prepared for queries.
 
-use crate::cloud::{Cloud, CloudError, CoveringRadius, check_place, unit_normal};
+use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_place, unit_normal};
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
 use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
@@ -25,6 +25,7 @@ pub struct Part {
 
 /// Reasons why a part could not be built.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PartError {
     /// The file could not be read.
     #[error(transparent)]
@@ -40,25 +41,19 @@ impl Part {
     ///
     /// # Errors
     /// Fails if the file cannot be read or the cloud cannot be built.
-    pub fn read(
-        path: impl AsRef<Path>,
-        unit: Unit,
-        points: usize,
-        seed: u64,
-    ) -> Result<Part, PartError> {
+    pub fn read(path: impl AsRef<Path>, unit: Unit, sampling: Sampling) -> Result<Part, PartError> {
         Ok(match Geometry::read(path, unit)? {
-            Geometry::Mesh(mesh) => Part::from_mesh(&mesh, points, seed)?,
+            Geometry::Mesh(mesh) => Part::from_mesh(&mesh, sampling)?,
             Geometry::Points(points) => Part::from_cloud(&Cloud::from_points(points, unit)?),
         })
     }
 
-    /// Builds a part from a mesh, with `points` points spread evenly over the surface
-    /// ([`Cloud::blue_noise`]). Equal seeds give equal parts.
+    /// Builds a part from a mesh whose surface is sampled. Equal meshes and samplings give equal parts.
     ///
     /// # Errors
-    /// See [`Cloud::blue_noise`].
-    pub fn from_mesh(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        Ok(Part::new(&Cloud::blue_noise(mesh, points, seed)?, mesh.diagnostics()))
+    /// See [`Cloud::sample`].
+    pub fn from_mesh(mesh: &Mesh, sampling: Sampling) -> Result<Part, CloudError> {
+        Ok(Part::new(&Cloud::sample(mesh, sampling)?, mesh.diagnostics()))
     }
 
     /// Builds a part from a cloud on a mesh and the mesh's diagnostics.
@@ -72,9 +67,9 @@ impl Part {
     /// the finest.
     ///
     /// # Errors
-    /// See [`Cloud::blue_noise`].
-    pub fn with_lods(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        let mut cloud = Cloud::blue_noise(mesh, points, seed)?;
+    /// See [`Cloud::sample`].
+    pub fn with_lods(mesh: &Mesh, sampling: Sampling) -> Result<Part, CloudError> {
+        let mut cloud = Cloud::sample(mesh, sampling)?;
         let mut part = Part::new(&cloud, mesh.diagnostics());
         while cloud.len() >= 4 * FEWEST {
             cloud = cloud.decimated(mesh, cloud.len() / 4);

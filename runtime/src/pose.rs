@@ -24,6 +24,7 @@ pub struct Pose {
 
 /// Reasons why a pose is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PoseError {
     /// A coordinate is NaN, infinite, or beyond the largest one allowed.
     #[error("the pose has a coordinate that is not a number within {LARGEST_COORDINATE:e}")]

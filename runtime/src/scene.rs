@@ -3,6 +3,7 @@
 //! If neither member of a pair has moved since its last query, the stored answer is returned. A pair
 //! that is far apart is rejected after some thirty operations.
 
+use crate::debug::debug;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::probe::{DeepestPoint, Law, Probe, Weights, Wrench};
@@ -12,7 +13,7 @@ use crate::unit::Unit;
 /// Parts and tools in one world frame.
 ///
 /// ```
-/// use touchoff::{Part, Pose, Scene, Unit, mesh::shapes};
+/// use touchoff::{Part, Pose, Sampling, Scene, Unit, mesh::shapes};
 /// use nalgebra::{Isometry3, Point3, Vector3};
 ///
 /// touchoff::tool! {
@@ -21,7 +22,7 @@ use crate::unit::Unit;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre)?;
-/// let part = Part::from_mesh(&cube, 10_000, 1)?;
+/// let part = Part::from_mesh(&cube, Sampling::new(10_000))?;
 /// let mut scene = Scene::new(Unit::Millimetre);
 /// let work = scene.add_part(&part, Pose::default())?;
 /// let clamp = scene.add_part(&part, Isometry3::translation(40.0, 0.0, 0.0).try_into()?)?;
@@ -40,6 +41,8 @@ pub struct Scene<'a> {
     parts: Vec<(&'a Part, Pose)>,
     tools: Vec<SceneTool<'a>>,
 }
+
+debug!([] Scene<'_>, "Scene", |this| { unit: this.unit, parts: this.parts.len(), tools: this.tools.len() });
 
 /// The id of a part in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,5 +1,6 @@
 //! Times two versions of the library in one process; run by `scripts/race.sh`.
 
+use touchoff::Sampling;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -21,7 +22,7 @@ macro_rules! version {
             use $touchoff::{Cloud, Motion, Part, Pose, Probe};
 
             pub fn part(count: usize) -> &'static Part {
-                let cloud = Cloud::uniform(&tube(), count, 1).expect("points of a tube");
+                let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(count)).expect("points of a tube");
                 Box::leak(Box::new(Part::from_cloud(&cloud)))
             }
 

@@ -3,7 +3,7 @@
 use crate::oracle::draw::Rng;
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::{PointBatch, Tool};
-use touchoff::{Cloud, Part, Pose};
+use touchoff::{Cloud, Interval, Part, Pose, Sampling};
 
 /// Tools that the benches evaluate: one of straight lines and a ball, the thesis's by hand and by profile, and one
 /// of many profile segments.
@@ -21,7 +21,7 @@ pub fn tool(name: &str) -> &'static dyn Tool {
 /// cloud. If there are more than some 16,000, a processor cannot learn which branches they take.
 pub fn near(tool: &dyn Tool, count: usize) -> PointBatch {
     let info = tool.info();
-    let ([low, high], radius) = (info.reach(), info.radius());
+    let (Interval { low, high }, radius) = (info.reach(), info.radius());
     let mut draw = Rng::new(1);
     let mut points = PointBatch::default();
     while points.len() < count {
@@ -41,7 +41,8 @@ pub fn near(tool: &dyn Tool, count: usize) -> PointBatch {
 /// If `points` is 0.
 pub fn part(points: usize) -> Part {
     let mesh = tube();
-    let cloud = Cloud::uniform(&mesh, points, 1).expect("the tube has a surface");
+    let cloud =
+        Cloud::sample(&mesh, Sampling::monte_carlo(points)).expect("the tube has a surface");
     Part::new(&cloud, mesh.diagnostics())
 }
 

@@ -8,6 +8,8 @@
 //!
 //! A [`CheckedTool`] contains no errors: [`emit::emit`] and [`interpret::Interpreter`] cannot fail.
 
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
+
 pub mod bound;
 mod checked;
 mod compile;

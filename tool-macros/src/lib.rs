@@ -1,5 +1,7 @@
 //! The macros that compile tools. They pass text to `tool-dsl` and return its output to rustc.
 
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
+
 mod said;
 
 use proc_macro::TokenStream;
@@ -82,8 +84,8 @@ pub fn tool(input: TokenStream) -> TokenStream {
 }
 
 /// `tool_library!("tools")` expands to the types of all `.tool` files of a folder, in the order of their
-/// names, and `TOOLS`, a list of them all. To pick up added files, the package needs a build script that
-/// prints `cargo::rerun-if-changed=tools`.
+/// names, `TOOLS`, a list of them all, and `SOURCES`, which has the texts of each tool's files. To pick up added
+/// files, the package needs a build script that prints `cargo::rerun-if-changed=tools`.
 ///
 /// If that script also prints `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled. A
 /// package's features can thus select among its tools.
@@ -119,21 +121,35 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
         return Err(syn::Error::new(folder.span(), message));
     }
     let mut tokens = proc_macro2::TokenStream::new();
-    let mut names = Vec::new();
+    let (mut names, mut texts) = (Vec::new(), Vec::new());
     for path in &files {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let source = read(path, &format!("{}/{name}", folder.value()), folder)?;
         let compiled = compile(&source);
         tokens.extend(meaning(&compiled, folder.span()));
-        if let Some(tool) = compiled.name {
-            names.push(syn::Ident::new(&tool, folder.span()));
+        if let Some(tool) = &compiled.name {
+            names.push(syn::Ident::new(tool, folder.span()));
+            texts.push(sources(&compiled, &place));
         }
     }
     Ok(quote! {
         #tokens
         /// Every tool of the library, in the order of their files' names.
         pub static TOOLS: &[&dyn ::touchoff::Tool] = &[#(&#names),*];
+        /// The files of every tool in [`TOOLS`], in the same order: the tool's own file first, then those that it
+        /// mounts. Each has its path below the folder of the library, and its text.
+        pub static SOURCES: &[&[(&str, &str)]] = &[#(#texts),*];
     })
+}
+
+/// Returns a list of the files of a tool, by their paths below a folder, and their texts.
+fn sources(compiled: &Compiled, folder: &Path) -> proc_macro2::TokenStream {
+    let files = compiled.sources.files().map(|file| {
+        let name = file.strip_prefix(folder).unwrap_or(file).display().to_string();
+        let path = file.display().to_string();
+        quote! { (#name, ::core::include_str!(#path)) }
+    });
+    quote! { &[#(#files),*] }
 }
 
 /// Returns the selected files, given by comma-separated names without the extension.

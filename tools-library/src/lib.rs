@@ -4,6 +4,8 @@
 //! needs only a few of them disables the default features and enables the features named after their files.
 //! The other tools are then not compiled.
 
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
+
 touchoff::tool_library!("tools");
 
 use touchoff::Tool;

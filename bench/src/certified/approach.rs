@@ -6,7 +6,7 @@
 
 use super::brute::{Brute, GROUP, Point, Seen, nearest};
 use nalgebra::Point3;
-use touchoff::Pose;
+use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Rng;
 
@@ -112,7 +112,7 @@ impl Brute<'_> {
             if bound < best.depth {
                 break;
             }
-            let corners = self.mesh.triangle(id as u32).map(point);
+            let corners = self.mesh.triangle(TriangleId(id as u32)).map(point);
             let (tip, turn) = (way.pose(t).tip(), *way.pose(t).rotation());
             let mut points = corners.to_vec();
             for _ in 0..SAMPLES {
@@ -156,7 +156,7 @@ impl Brute<'_> {
 
     /// Climbs in time and position from a sample, and returns the deepest sample reached.
     fn climb_on(&self, way: &Way, from: Closest, step: f64, draw: &mut Rng) -> Closest {
-        let corners = self.mesh.triangle(from.triangle as u32).map(point);
+        let corners = self.mesh.triangle(TriangleId(from.triangle as u32)).map(point);
         let mut best = from;
         let (mut part, mut wide) =
             (step, self.balls[from.triangle].1.min(self.length * self.oracle.extent()[0]));

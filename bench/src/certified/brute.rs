@@ -5,7 +5,7 @@
 //! points of the tool. From the best samples a search climbs by decreasing random steps.
 
 use nalgebra::{Point3, Vector3};
-use touchoff::{Mesh, Pose};
+use touchoff::{Mesh, Pose, TriangleId};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 
@@ -107,7 +107,7 @@ impl<'a> Brute<'a> {
         let far = low.coords.amax().max(high.coords.amax());
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
-            let corners = mesh.triangle(id);
+            let corners = mesh.triangle(TriangleId(id));
             let middle =
                 Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
             let reach = corners.map(|corner| (corner - middle).norm());
@@ -145,7 +145,7 @@ impl<'a> Brute<'a> {
 
     /// Returns a triangle in the tool's frame and unit.
     pub fn triangle(&self, seen: &Seen, id: usize) -> [Point; 3] {
-        self.mesh.triangle(id as u32).map(|corner| self.to_tool(seen, corner))
+        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool(seen, corner))
     }
 
     /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.

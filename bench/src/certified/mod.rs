@@ -18,7 +18,7 @@ use brute::{Brute, Seen};
 use nalgebra::Point3;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh, Witness};
-use touchoff::{Mesh, Pose, Tool};
+use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool};
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::draw::Rng;
 
@@ -146,7 +146,7 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn pose(&mut self, certifier: &mut Certifier<'_>, draw: &mut Rng) {
         let found = certifier.deepest(&self.pose, self.tolerance);
-        let [low, high] = found.depth;
+        let Interval { low, high } = found.depth;
         let deep = self.brute.deepest(&self.seen, draw, &mut self.row.samples);
         let at = format!(
             "{} in {} at tip {:?} axis {:?}, tolerance {:e}: {:?}, brute force {deep:?}",
@@ -212,13 +212,13 @@ impl Judge<'_> {
 
     /// Returns the depth of a witness, and checks that it lies on its triangle.
     fn witness(&mut self, witness: &Witness, at: &str) -> f64 {
-        let triangle = self.brute.triangle(&self.seen, witness.triangle as usize);
+        let triangle = self.brute.triangle(&self.seen, witness.triangle.index());
         let point = self.brute.inside(&self.pose, witness.point);
         let off = brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
         if off > self.rounding {
             self.wrong(&format!("the witness is {off:e} from its triangle"), at);
         }
-        if witness.surface >= self.pair.tool.info().surfaces.len() {
+        if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
             self.wrong("the witness is at no surface", at);
         }
         self.brute.depth(point) * self.brute.length
@@ -227,7 +227,7 @@ impl Judge<'_> {
     /// Returns the greatest depth that a climb from a witness reaches.
     fn beside(&mut self, witness: &Witness, draw: &mut Rng) -> f64 {
         let from = self.brute.inside(&self.pose, Point3::from(witness.point.coords));
-        let triangle = witness.triangle as usize;
+        let triangle = witness.triangle.index();
         self.brute.climb(&self.seen, triangle, from, draw, &mut self.row.samples)
     }
 

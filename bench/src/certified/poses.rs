@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, MeshError, Pose, Unit, scenes};
+use touchoff::{Mesh, MeshError, Pose, TriangleId, Unit, scenes};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -93,12 +93,12 @@ fn press(draw: &mut Rng) -> f64 {
 
 fn touching(mesh: &Mesh, oracle: &Nearest, length: f64, facing: bool, draw: &mut Rng) -> Pose {
     let id = (draw.bits() as usize % mesh.triangles().len()) as u32;
-    let [a, b, c] = mesh.triangle(id);
+    let [a, b, c] = mesh.triangle(TriangleId(id));
     let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
     let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
     let place = a + v * (b - a) + w * (c - a);
     let ([d, z], [out, up]) = of_surface(oracle, draw);
-    let into = mesh.normal(id).map_or_else(|| unit(draw), |normal| -normal);
+    let into = mesh.normal(TriangleId(id)).map_or_else(|| unit(draw), |normal| -normal);
     let (axis, radial) = if facing {
         let across = beside(&into, draw);
         (up * into + out * across, out * into - up * across)

@@ -9,7 +9,7 @@ use super::{Pair, Worst, ways};
 use nalgebra::Point3;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, MotionVerdict, Witness};
-use touchoff::{Mesh, Motion};
+use touchoff::{Mesh, Motion, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Rng;
 
@@ -184,16 +184,13 @@ impl Judge<'_> {
         if depth < -self.rounding {
             self.wrong(&format!("the witness is {depth:e} deep"));
         }
-        let triangle = brute.triangle(&brute.seen(&pose), witness.triangle as usize);
+        let triangle = brute.triangle(&brute.seen(&pose), witness.triangle.index());
         let off = distance(point, nearest(point, &triangle)) * brute.length;
         if off > self.rounding {
             self.wrong(&format!("the witness is {off:e} from its triangle"));
         }
-        let surfaces = &self.pair.tool.info().surfaces;
-        let away = surfaces[witness.surface..=witness.surface]
-            .iter()
-            .map(|surface| self.pair.oracle.away(&surface.name, point));
-        let away = away.fold(f64::INFINITY, f64::min) * brute.length;
+        let surface = self.pair.tool.info().surface(witness.surface);
+        let away = self.pair.oracle.away(&surface.name, point) * brute.length;
         if away > depth.abs() + self.rounding {
             self.wrong(&format!("its surface is {away:e} away, but it is {depth:e} deep"));
         }
@@ -221,7 +218,7 @@ impl Judge<'_> {
 /// Strackee 1983) over 4π.
 fn turns(mesh: &Mesh, point: Point3<f64>) -> f64 {
     let angle = |id: u32| {
-        let [a, b, c] = mesh.triangle(id).map(|corner| corner - point);
+        let [a, b, c] = mesh.triangle(TriangleId(id)).map(|corner| corner - point);
         let (x, y, z) = (a.norm(), b.norm(), c.norm());
         let whole = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
         2.0 * a.dot(&b.cross(&c)).atan2(whole)

@@ -4,7 +4,7 @@ use super::approach::Way;
 use super::brute::Brute;
 use super::poses;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
-use touchoff::Pose;
+use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Rng;
 
@@ -65,7 +65,7 @@ fn drawn(brute: &Brute<'_>, kind: &str, draw: &mut Rng) -> Way {
     let to = match kind {
         "slide" => {
             let id = brute.at(&Way { from, to: from }, 0.0, draw).triangle;
-            let normal = brute.mesh.normal(id as u32).unwrap_or_else(|| unit(draw));
+            let normal = brute.mesh.normal(TriangleId(id as u32)).unwrap_or_else(|| unit(draw));
             let along = normal.cross(&unit(draw)).normalize() * part * size(draw, -3.0, 0.0);
             let leans = draw.bits().is_multiple_of(2);
             made(tip + along, if leans { axis + 0.1 * unit(draw) } else { axis })
@@ -102,7 +102,8 @@ fn moved(brute: &Brute<'_>, mut way: Way, draw: &mut Rng) -> Way {
     let gap = if draw.bits().is_multiple_of(10) { -gap } else { gap };
     for _ in 0..MOVES {
         let closest = brute.closest(&way, TIMES, false, draw);
-        let off = brute.mesh.normal(closest.triangle as u32).unwrap_or_else(|| unit(draw));
+        let off =
+            brute.mesh.normal(TriangleId(closest.triangle as u32)).unwrap_or_else(|| unit(draw));
         let by = off * (closest.depth + gap);
         let push = |pose: &Pose| made(pose.tip() + by, pose.axis());
         way = Way { from: push(&way.from), to: push(&way.to) };

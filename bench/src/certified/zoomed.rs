@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::{Mesh, Pose, Tool};
+use touchoff::{Interval, Mesh, Pose, Tool, TriangleId};
 use touchoff_tests::oracle::draw::Rng;
 
 /// A point of the tool's frame.
@@ -119,7 +119,7 @@ impl Zoomed<'_> {
         let mut row = Row { tool, part, poses, ..Row::default() };
         for _ in 0..poses {
             let pose = self.pose(length, &mut draw);
-            let [low, high] = certifier.deepest(&pose, tolerance).depth;
+            let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
             let (deepest, asked) = self.deepest(&pose, samples, &mut draw);
             let found = (deepest * length).max(0.0);
             row.samples += asked;
@@ -144,8 +144,9 @@ impl Zoomed<'_> {
             return poses::pose(self.mesh, nearest, length, draw);
         }
         // A random point inside the tool's extent is placed at a random point of the part.
-        let [a, b, c] =
-            self.mesh.triangle((draw.bits() as usize % self.mesh.triangles().len()) as u32);
+        let [a, b, c] = self
+            .mesh
+            .triangle(TriangleId((draw.bits() as usize % self.mesh.triangles().len()) as u32));
         let (v, w) = (draw.between(0.0, 0.5), draw.between(0.0, 0.5));
         let place = a + v * (b - a) + w * (c - a);
         let [radius, height] = self.subject.oracle().extent();
@@ -256,7 +257,7 @@ impl Zoomed<'_> {
             })
         };
         let ids = 0..self.mesh.triangles().len() as u32;
-        ids.map(|id| self.mesh.triangle(id).map(inside)).filter(near).collect()
+        ids.map(|id| self.mesh.triangle(TriangleId(id)).map(inside)).filter(near).collect()
     }
 
     /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.

@@ -4,7 +4,7 @@ use clap::Args;
 use std::error::Error;
 use touchoff::haptic::{EnergyBalance, Rendering};
 use touchoff::scenes::tube;
-use touchoff::{Law, Part};
+use touchoff::{Law, Part, Sampling};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measured, page, plots};
 use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
@@ -61,7 +61,7 @@ fn shaken(quick: bool) -> Result<Vec<Shaken>, Box<dyn Error>> {
     let [own, exact, smooth] = tools();
     let points: &[usize] = if quick { &[20_000] } else { &[1_000, 20_000, 400_000] };
     for count in points {
-        let part = Part::from_mesh(&tube(), *count, 1)?;
+        let part = Part::from_mesh(&tube(), Sampling::new(*count))?;
         let mut add = |way, tool, law, how, stiffness| {
             let case = Case { way, tool, law, how, stiffness };
             rows.push((*count, case, shaking(&part, &case)));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::time::Instant;
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::{Interpreted, Tool};
-use touchoff::{Cloud, Part, Pose, Probe};
+use touchoff::{Cloud, Part, Pose, Probe, Sampling};
 use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
@@ -14,7 +14,7 @@ const POSES: usize = 4_000;
 
 /// Returns the section about all library tools.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {
-    let cloud = Cloud::uniform(&tube(), 20_000, 1)?;
+    let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(20_000))?;
     let part = Part::from_cloud(&cloud);
     let mut body = format!(
             "Wrenches at {POSES} poses along the tube of 20,000 points, each pose asked once of both, interleaved; median ns a query.

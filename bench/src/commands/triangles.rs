@@ -9,7 +9,7 @@ use tools_library::{Fig73Exact, Flat};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, apart};
-use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff::{Interval, Mesh, Motion, Pose, Tool, Unit};
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
 use touchoff_bench::peers::parry_contact::ParryContact;
@@ -148,7 +148,7 @@ impl Contender for Certified<'_> {
     fn query(&mut self, pose: &Pose) -> Answer {
         let found = self.0.deepest(pose, TOLERANCE);
         let colliding = usize::from(found.witness.is_some());
-        Answer { colliding, depth: found.depth[1], wrench: None }
+        Answer { colliding, depth: found.depth.high, wrench: None }
     }
 }
 
@@ -222,7 +222,7 @@ fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pos
     }
     let some = poses.iter().step_by(poses.len() / 50);
     let errors = some.map(|pose| {
-        let [low, high] = certifier.deepest(pose, TOLERANCE).depth;
+        let Interval { low, high } = certifier.deepest(pose, TOLERANCE).depth;
         let depth = method.query(pose).depth;
         (depth - low).abs().max((depth - high).abs())
     });

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use touchoff::haptic::{
     LoopReport, MonotonicClock, Realtime, ScriptedDevice, Session, SessionSettings, SimulatedHand,
-    Tremor, run, state_channel,
+    Tremor, state_channel,
 };
 use touchoff::{Law, Part, Probe};
 use touchoff_tests::haptics::wall::LIMITS;
@@ -41,9 +41,9 @@ fn looped(part: &Part, (rate, cycles): (f64, u64), pressed: bool) -> LoopReport 
         let hand =
             SimulatedHand::new(LIMITS, rate, wish).and_then(|hand| hand.with_tremor(&tremor));
         let mut hand = hand.expect("a hand");
-        run((&mut session, &mut hand), (clock, cycles), &mut watch, &never)
+        session.run(&mut hand, clock, cycles, &mut watch, &never)
     } else {
         let mut far = ScriptedDevice::new(LIMITS, |_| Ok(upright(1e6)));
-        run((&mut session, &mut far), (clock, cycles), &mut watch, &never)
+        session.run(&mut far, clock, cycles, &mut watch, &never)
     }
 }

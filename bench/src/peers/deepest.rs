@@ -3,7 +3,7 @@
 use super::formula;
 use crate::race::contender::View;
 use nalgebra::{Point3, Vector3};
-use touchoff::{Mesh, Pose};
+use touchoff::{Mesh, Pose, TriangleId};
 
 /// Tolerance of the result, mm.
 pub const TOLERANCE: f64 = 1e-6;
@@ -13,7 +13,7 @@ pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
     let view = View::of(pose);
     let turn = |p: Point3<f64>| Vector3::from(view.turn(view.arm(p.coords.into())));
     let all = 0..mesh.triangles().len() as u32;
-    let mut left: Vec<_> = all.map(|id| mesh.triangle(id).map(turn)).collect();
+    let mut left: Vec<_> = all.map(|id| mesh.triangle(TriangleId(id)).map(turn)).collect();
     while let Some([a, b, c]) = left.pop() {
         let (here, most) = bound([a, b, c]);
         best = best.max(here);

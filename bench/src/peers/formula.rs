@@ -12,7 +12,7 @@ pub const TIP: f64 = 20.0;
 pub const RADIUS: f64 = 5.0;
 
 /// Magnitude, and direction as radial part and part along the thesis's `z`, not normalised.
-type Felt = (f64, [f64; 2]);
+type Value = (f64, [f64; 2]);
 
 /// Returns the magnitude and unit direction at a point of the tool's frame, or `None` outside. Three decision trees are
 /// arranged along the axis.
@@ -32,7 +32,7 @@ pub fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
 
 /// Evaluates the cutter and its ball, 15 ≤ z ≤ 20; `squared` is `d²`.
 #[inline]
-pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
+pub fn cutter(squared: f64, z: f64) -> Option<Value> {
     if squared > 1.0 || z > TIP {
         return None;
     }
@@ -49,7 +49,7 @@ pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
 
 /// Evaluates the spindle and its taper, 11 < z < 15; `squared` is `d²`.
 #[inline]
-pub fn spindle(squared: f64, z: f64) -> Option<Felt> {
+pub fn spindle(squared: f64, z: f64) -> Option<Value> {
     if squared > 9.0 {
         return None;
     }
@@ -65,7 +65,7 @@ pub fn spindle(squared: f64, z: f64) -> Option<Felt> {
 
 /// Evaluates the housing, 0 ≤ z ≤ 11; `squared` is `d²`.
 #[inline]
-pub fn housing(squared: f64, z: f64) -> Option<Felt> {
+pub fn housing(squared: f64, z: f64) -> Option<Value> {
     if squared > 25.0 || z < 0.0 {
         return None;
     }
@@ -84,7 +84,7 @@ pub fn housing(squared: f64, z: f64) -> Option<Felt> {
 /// Returns the magnitude, and the direction as a unit vector in the tool's frame. On the axis the radial direction is
 /// +x. A direction of length 0 becomes +z.
 #[inline]
-pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f64, [f64; 3]) {
+pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Value) -> (f64, [f64; 3]) {
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let d = squared.sqrt();
     let radial = if d > 0.0 { [p[0] / d, p[1] / d] } else { [1.0, 0.0] };

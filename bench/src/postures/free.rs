@@ -7,7 +7,7 @@
 use super::stand::{Posture, Stand};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
-use touchoff::Mesh;
+use touchoff::{Mesh, TriangleId};
 use touchoff_tests::oracle::draw::Rng;
 
 /// The verdict on a posture.
@@ -47,7 +47,7 @@ impl<'a> Part<'a> {
     pub fn new(mesh: &'a Mesh) -> Part<'a> {
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
-            let (middle, reach) = ball(&mesh.triangle(id).map(|corner| corner.coords));
+            let (middle, reach) = ball(&mesh.triangle(TriangleId(id)).map(|corner| corner.coords));
             (Point3::from(middle), reach)
         });
         let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
@@ -84,7 +84,8 @@ impl<'a> Part<'a> {
             {
                 continue;
             }
-            let corners = self.mesh.triangle(id as u32).map(|corner| corner - posture.tip);
+            let corners =
+                self.mesh.triangle(TriangleId(id as u32)).map(|corner| corner - posture.tip);
             open.extend(asked.piece(&posture.axis, corners));
         }
         open.sort_by(|a, b| a.bound.total_cmp(&b.bound));
@@ -143,7 +144,7 @@ impl<'a> Part<'a> {
                 continue;
             }
             // Intersection of Möller and Trumbore 1997.
-            let [a, b, c] = self.mesh.triangle(id as u32);
+            let [a, b, c] = self.mesh.triangle(TriangleId(id as u32));
             let (u, v, from) = (b - a, c - a, place - a);
             let p = way.cross(&v);
             let det = u.dot(&p);

@@ -19,7 +19,7 @@ use std::time::Instant;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::sweep::{PostureSweep, SweepStats};
 use touchoff::postures::{Directions, MapRow, Rules};
-use touchoff::{Mesh, Tool};
+use touchoff::{Mesh, Tool, TriangleId};
 use touchoff_tests::oracle::draw::Rng;
 
 /// The settings of a comparison.
@@ -130,7 +130,7 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
     let bvh = TriangleBvh::new(mesh);
     let rules = Rules { tolerance, niceness, allowed: Vec::new() };
     let start = Instant::now();
-    let sweep = PostureSweep::new((mesh, &bvh), tools, &directions, rules, NonZeroU16::MIN)?;
+    let sweep = PostureSweep::new(mesh, &bvh, tools, &directions, rules, NonZeroU16::MIN)?;
     let mut rows = vec![MapRow::default(); mesh.triangles().len()];
     let mut tally = SweepStats::default();
     let batches: Vec<usize> = (0..sweep.batches()).collect();
@@ -222,7 +222,7 @@ struct Again<'a> {
 
 impl Again<'_> {
     fn postures(&self, choice: &Choice, more: f64) -> Vec<stand::Posture> {
-        let [a, b, c] = self.mesh.triangle(choice.triangle);
+        let [a, b, c] = self.mesh.triangle(TriangleId(choice.triangle));
         let place = Point3::from((a.coords + b.coords + c.coords) / 3.0);
         let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
         let axis = Vector3::from(self.directions[choice.direction]);
@@ -314,7 +314,7 @@ fn coverage(mesh: &Mesh, rows: &[MapRow], tools: &[&str]) -> (Share, Share, Vec<
     let none = |tool: &&str| Reach { tool: (*tool).to_owned(), ..Reach::default() };
     let mut reach: Vec<Reach> = tools.iter().map(none).collect();
     for (id, row) in rows.iter().enumerate() {
-        let area = mesh.area(id as u32);
+        let area = mesh.area(TriangleId(id as u32));
         all = (all.0 + 1, all.1 + area);
         let mut reached = false;
         for access in &row.access {

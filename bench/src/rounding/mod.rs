@@ -161,7 +161,12 @@ impl Rounding {
         let mut certifier = Certifier::new(&bvh, &cutter.tool).expect("a tool with a profile");
         let found = certifier.deepest(&case.pose, case.tolerance);
         let scene = Scene::new(cutter, &case.pose, &case.triangles);
-        let judge = Judge { case: &case, scene: &scene, interval: found.depth, pinch: self.pinch };
+        let judge = Judge {
+            case: &case,
+            scene: &scene,
+            interval: [found.depth.low, found.depth.high],
+            pinch: self.pinch,
+        };
         judge.judge(found.witness, &mut draw, &mut rows[kind], number);
     }
 
@@ -270,7 +275,7 @@ impl Judge<'_> {
     fn beside(&self, witness: &Witness) -> Beside {
         let (tip, rotation) = (self.case.pose.tip(), self.case.pose.rotation());
         let inside: Point = (rotation.transpose() * (witness.point - tip)).into();
-        let place = self.scene.nearest(witness.triangle as usize, inside);
+        let place = self.scene.nearest(witness.triangle.index(), inside);
         let at = self.scene.point(&place);
         let way = (0..3).map(|k| (inside[k] - at[k]).powi(2)).sum::<f64>().sqrt();
         let reach = inside.iter().fold(0.0f64, |most, part| most.max(part.abs()));

@@ -84,7 +84,7 @@ fn evaluation(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, 
             let [depth, magnitude, niceness] =
                 [c.depth, c.magnitude, c.niceness].map(|v| (v + 0.0).to_bits());
             let region = if subject.name() == "Block" { 0 } else { c.region };
-            (c.triangle, region, depth, magnitude, niceness)
+            (c.triangle.0, region, depth, magnitude, niceness)
         })
         .collect();
     list.sort_unstable();

@@ -5,7 +5,7 @@ use super::moved::pose;
 use super::scene::{Asked, Given};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
-use touchoff::{Cloud, Mesh, Part, Pose, Probe, Unit};
+use touchoff::{Cloud, Mesh, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
 /// Rejected; the location is the message.
@@ -86,7 +86,9 @@ fn mesh(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<String, String> 
     let corners = corners.iter().map(|p| Point3::from(*p)).collect();
     let mesh = Mesh::new(corners, triangles.to_vec(), MM).map_err(|e| e.to_string())?;
     let mut said = format!("{} triangles", mesh.triangles().len());
-    for cloud in [Cloud::uniform(&mesh, 50, 1), Cloud::blue_noise(&mesh, 50, 1)] {
+    for cloud in
+        [Cloud::sample(&mesh, Sampling::monte_carlo(50)), Cloud::sample(&mesh, Sampling::new(50))]
+    {
         let cloud = cloud.map_err(|e| e.to_string())?;
         let finite = cloud.points().iter().all(|p| p.iter().all(|c| c.is_finite()))
             && cloud.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12)

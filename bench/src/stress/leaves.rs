@@ -78,7 +78,7 @@ fn reordered(given: &Given, order: &[usize]) -> Part {
 
 /// Returns all numbers of each contact as text, sorted by triangle.
 pub(super) fn told(contacts: &[Contact]) -> Vec<(u32, String)> {
-    let mut list: Vec<_> = contacts.iter().map(|c| (c.triangle, format!("{c:?}"))).collect();
+    let mut list: Vec<_> = contacts.iter().map(|c| (c.triangle.0, format!("{c:?}"))).collect();
     list.sort();
     list
 }

@@ -65,7 +65,7 @@ fn turned(subject: &Subject, own: &Given, turns: &[[f64; 4]], ledger: &mut Ledge
             .map(|c| {
                 // Adding 0 makes -0 equal to 0.
                 let [depth, magnitude] = [c.depth, c.magnitude].map(|v| (v + 0.0).to_bits());
-                (c.triangle, c.region, depth, magnitude)
+                (c.triangle.0, c.region, depth, magnitude)
             })
             .collect();
         list.sort_unstable();

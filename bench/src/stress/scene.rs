@@ -34,7 +34,7 @@ pub(super) fn apart(
     let depths = |contacts: &[Contact]| {
         let mut depths = vec![None; count];
         for contact in contacts {
-            depths[contact.triangle as usize] = Some(contact.depth);
+            depths[contact.triangle.index()] = Some(contact.depth);
         }
         depths
     };
@@ -185,7 +185,7 @@ impl Asked<'_> {
         let length = &Big::decimal(units[0].millimetres()) / &Big::decimal(units[1].millimetres());
         let mut evaluation: Vec<Option<&Contact>> = vec![None; self.given.points.len()];
         for contact in contacts {
-            evaluation[contact.triangle as usize] = Some(contact);
+            evaluation[contact.triangle.index()] = Some(contact);
         }
         for (p, contact) in self.given.points.iter().zip(evaluation) {
             let place = in_tool(p, pose, units);

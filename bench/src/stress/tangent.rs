@@ -9,7 +9,7 @@ use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, Probe};
+use touchoff::{Interval, Mesh, Pose, Probe, TriangleId};
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
@@ -141,7 +141,7 @@ fn pressed(
     let (contacts, _) = Asked { tool, truth, given, part: &part }.at(&pose, ledger);
     let Some(closed) = closed else { return };
     let error = Probe::new(&part, tool).rounding_error_bound().expect("proved of every tool");
-    let first = contacts.iter().find(|contact| contact.triangle == 0);
+    let first = contacts.iter().find(|contact| contact.triangle == TriangleId(0));
     let deep = closed.to_f64();
     match first {
         Some(first) => {
@@ -215,7 +215,7 @@ fn interval(subject: &Subject, mesh: &Mesh, tip: Point3<f64>, depth: f64, ledger
     let exact = known(subject);
     let mut certifier = if exact { certifier } else { certifier.with_budget(BUDGET) };
     let pose = Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]).expect("a unit quaternion");
-    let [low, high] = certifier.deepest(&pose, 1e-9).depth;
+    let Interval { low, high } = certifier.deepest(&pose, 1e-9).depth;
     let reach = mesh.bounds().iter().map(|p| p.coords.amax()).fold(tip.coords.amax(), f64::max);
     // The error bound depends on the circles of arcs as on the tool itself.
     let circles = subject.tool.info().outline.iter().filter_map(|piece| piece.circle);

@@ -8,7 +8,7 @@ use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
 use super::{Facts, Failure, Sink, peers, progress};
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::{Law, LodProbe, Mesh, Part, Pose, Unit};
+use touchoff::{Law, LodProbe, Mesh, Part, Pose, Sampling, Unit};
 
 /// A tool and its path along a part.
 pub(super) struct Along<'t> {
@@ -57,7 +57,7 @@ pub(super) fn measure(
         progress(&format!("{count} points"));
         let kinds = kinds(mesh, *count, plan.seed, |cloud| cloud)?;
         let detailed = match from_last {
-            0 => Some(Part::with_lods(mesh, *count, plan.seed)?),
+            0 => Some(Part::with_lods(mesh, Sampling::new(*count).with_seed(plan.seed))?),
             _ => None,
         };
         for known in &all {

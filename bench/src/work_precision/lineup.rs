@@ -7,7 +7,7 @@ use super::sampling::{Pattern, equal};
 use super::truth::{Errors, Tally, Truth, check};
 use crate::race::clock::{Times, race};
 use crate::race::contender::Contender;
-use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe};
+use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling};
 
 /// A cloud with its labels and its tree.
 pub(super) struct Kind {
@@ -56,8 +56,9 @@ pub(super) fn kinds(
     let mut kinds = Vec::new();
     for pattern in Pattern::ALL {
         let cells = match pattern {
-            Pattern::Random => Cloud::uniform(mesh, count, seed)?.with_voronoi_weights(mesh),
-            Pattern::Blue => Cloud::blue_noise(mesh, count, seed)?,
+            Pattern::Random => Cloud::sample(mesh, Sampling::monte_carlo(count).with_seed(seed))?
+                .with_voronoi_weights(mesh),
+            Pattern::Blue => Cloud::sample(mesh, Sampling::new(count).with_seed(seed))?,
         };
         let alike = equal(&cells, mesh);
         for (word, cloud) in [(EQUAL, alike), (CELLS, cells)] {

@@ -81,6 +81,6 @@ impl Contender for Proved<'_> {
     fn query(&mut self, pose: &Pose) -> Answer {
         let found = self.certifier.deepest(pose, self.tolerance);
         let colliding = usize::from(found.witness.is_some());
-        Answer { colliding, depth: found.depth[1], wrench: None }
+        Answer { colliding, depth: found.depth.high, wrench: None }
     }
 }

@@ -8,7 +8,7 @@ use super::truth::{Tally, Truth};
 use crate::race::contender::Answer;
 use rayon::prelude::*;
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::{Mesh, Pose, Tool};
+use touchoff::{Interval, Mesh, Pose, Tool};
 
 /// Tolerance of the certified depths, in the part's unit.
 const TOLERANCE: f64 = 1e-9;
@@ -39,17 +39,20 @@ pub(super) fn in_contact(
 ) -> Result<Vec<Pose>, Failure> {
     let depths = depths(bvh, tool, poses)?;
     let both = poses.iter().zip(depths);
-    Ok(both.filter(|(_, [low, _])| *low > 2.0 * TOLERANCE).map(|(pose, _)| *pose).collect())
+    Ok(both
+        .filter(|(_, Interval { low, .. })| *low > 2.0 * TOLERANCE)
+        .map(|(pose, _)| *pose)
+        .collect())
 }
 
 /// Returns the interval of the depth at each pose.
-fn depths(bvh: &TriangleBvh, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<[f64; 2]>, Failure> {
+fn depths(bvh: &TriangleBvh, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<Interval>, Failure> {
     let some = |poses: &[Pose]| {
         let mut certifier = Certifier::new(bvh, tool)?;
         let each = poses.iter().map(|pose| certifier.deepest(pose, TOLERANCE).depth);
         Ok(each.collect::<Vec<_>>())
     };
-    let all: Vec<Vec<[f64; 2]>> =
+    let all: Vec<Vec<Interval>> =
         poses.par_chunks(TOGETHER).map(some).collect::<Result<_, Failure>>()?;
     Ok(all.concat())
 }
@@ -84,7 +87,7 @@ impl Reference {
         let cutter = Cutter::THESIS;
         let depth = |pose: &Pose| {
             let low = deepest(mesh, pose, 0.0);
-            [low, low + TOLERANCE]
+            Interval::new(low, low + TOLERANCE)
         };
         let depths = |poses: &[Pose]| Ok(poses.par_iter().map(depth).collect());
         Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
@@ -94,7 +97,7 @@ impl Reference {
         refined: &Refined<'_>,
         poses: &[Pose],
         plan: &Plan,
-        depths: impl Fn(&[Pose]) -> Result<Vec<[f64; 2]>, Failure>,
+        depths: impl Fn(&[Pose]) -> Result<Vec<Interval>, Failure>,
     ) -> Result<Reference, Failure> {
         let count = plan.checks.min(poses.len());
         let places: Vec<usize> = (0..count).map(|k| k * poses.len() / count).collect();
@@ -104,7 +107,7 @@ impl Reference {
         let depths = depths(&some)?;
         let (mut typical, mut off) = (Tally::default(), Tally::default());
         let mut truths = Vec::new();
-        for ((place, sums), [low, high]) in places.into_iter().zip(sums).zip(depths) {
+        for ((place, sums), Interval { low, high }) in places.into_iter().zip(sums).zip(depths) {
             let truth =
                 Truth { force: sums.force, torque: sums.torque, depth: f64::midpoint(low, high) };
             typical.add(&Answer::default(), &truth);

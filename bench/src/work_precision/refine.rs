@@ -14,7 +14,7 @@
 use nalgebra::{Point3, Vector3, Vector6};
 use rayon::prelude::*;
 use touchoff::tool::{Evaluations, LANES, Outputs, PointBatch};
-use touchoff::{Level, Mesh, Pose, Tool};
+use touchoff::{Level, Mesh, Pose, Tool, TriangleId};
 
 /// Triangles of a part with bounding balls, and the tool that reaches some of them.
 pub(super) struct Refined<'a> {
@@ -99,7 +99,7 @@ impl<'a> Refined<'a> {
     /// known.
     pub(super) fn new(mesh: &Mesh, tool: &'a dyn Tool, near: &'a dyn Tool) -> Refined<'a> {
         let face = |id: u32| {
-            let (corners, normal) = (mesh.triangle(id), mesh.normal(id)?);
+            let (corners, normal) = (mesh.triangle(TriangleId(id)), mesh.normal(TriangleId(id))?);
             let centre = Point3::from(corners.iter().map(|c| c.coords).sum::<Vector3<f64>>() / 3.0);
             let radius =
                 corners.map(|corner| (corner - centre).norm()).into_iter().fold(0.0, f64::max);

@@ -5,9 +5,9 @@ use touchoff::{Cloud, Mesh};
 /// A sampling pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
-    /// Points that are independent of each other: [`Cloud::uniform`].
+    /// Points that are independent of each other: [`SamplingMethod::MonteCarlo`](touchoff::SamplingMethod::MonteCarlo).
     Random,
-    /// Evenly spaced points: [`Cloud::blue_noise`].
+    /// Evenly spaced points: [`SamplingMethod::BlueNoise`](touchoff::SamplingMethod::BlueNoise).
     Blue,
 }
 

@@ -94,7 +94,7 @@ fn a_plate_is_reached_from_all_above_it() {
     let directions = Directions::spread(400);
     let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
     let tool = tools_library::find("D2Ball").expect("a tool");
-    let sweep = PostureSweep::new((&plate, &bvh), vec![tool], &directions, rules, NonZeroU16::MIN)
+    let sweep = PostureSweep::new(&plate, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut solid = Vec::new();
     let _: ControlFlow<()> = sweep.run(&[0], |batch| {
@@ -132,7 +132,7 @@ fn no_stick_out_is_more_than_that_of_the_tool() {
     let directions = Directions::spread(200);
     let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
     let tool = tools_library::find("BallEr16").expect("a tool");
-    let sweep = PostureSweep::new((&mesh, &bvh), vec![tool], &directions, rules, NonZeroU16::MIN)
+    let sweep = PostureSweep::new(&mesh, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut needed = Vec::new();
     let _: ControlFlow<()> = sweep.run(&[0], |batch| {

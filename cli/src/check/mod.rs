@@ -1,71 +1,54 @@
 //! `touchoff check`: errors and warnings of files, and certificates of those without errors.
 
 mod json;
-pub(crate) mod table;
+mod summary;
+mod table;
 
-use crate::arguments::ParamArguments;
+use crate::arguments::{Check, ParamArguments};
 use crate::failure::Failure;
+use crate::loaded_tool::read_source;
 use crate::output::{Output, show};
-use json::Proved;
+use crate::progress::Progress;
+use json::CertificateRow;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::ExitCode;
-use tool_dsl::diagnostic::{self, Severity};
+use tool_dsl::diagnostic::{self, Diagnostic, Severity};
 use tool_dsl::domain::Domain;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
-use tool_dsl::{CheckedTool, compile_with};
+use tool_dsl::{CheckedTool, Compiled, compile_with};
 
 /// The exit status if there are only warnings; files with errors give 1, wrong options 2.
 const WARNED: u8 = 3;
 
 /// Shows the diagnostics of files, and the certificates of those that compile.
-pub(crate) fn check(
-    files: &[PathBuf],
-    given: &ParamArguments,
-    json: bool,
-) -> Result<ExitCode, Failure> {
+pub(crate) fn check(arguments: &Check, json: bool) -> Result<ExitCode, Failure> {
+    let Check { files, params, verbose } = arguments;
     let mut out = Output::lines();
     let (mut wrong, mut warned) = (0, false);
+    let progress = match files.len() {
+        1 => Progress::spinner("proving", json),
+        count => Progress::steps(count, "files", json),
+    };
     for file in files {
-        let source = match given.source(file) {
-            Ok(source) => source,
+        let checked = CheckedFile::read(file, params);
+        progress.advance(1);
+        progress.suspend(|| match &checked {
+            Ok(checked) => {
+                let [errors, warnings] = checked.counts();
+                wrong += usize::from(errors > 0);
+                warned |= warnings > 0;
+                checked.print(&mut out, file, (json, *verbose))
+            }
             Err(error) => {
-                say!("error: {error}");
+                message!("error: {error}");
                 wrong += 1;
-                continue;
+                Ok(())
             }
-        };
-        let compiled = compile_with(&source, &given.sources());
-        let mut diagnostics = compiled.diagnostics().to_vec();
-        let proved = compiled.tool().map(|tool| (tool, Certificate::of(tool)));
-        if let Some((tool, certificate)) = &proved {
-            // The certificate finds again some of what compilation found.
-            for diagnostic in certificate.diagnostics(tool) {
-                if !diagnostics.iter().any(|known| known.span == diagnostic.span) {
-                    diagnostics.push(diagnostic);
-                }
-            }
-        }
-        for diagnostic in &diagnostics {
-            show(diagnostic, &compiled.sources);
-        }
-        let count = |severity: Severity| {
-            diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count()
-        };
-        let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-        wrong += usize::from(errors > 0);
-        warned |= warnings > 0;
-        let Some((tool, certificate)) = &proved else { continue };
-        if json {
-            serde_json::to_writer(&mut out, &Proved::of(tool, certificate))?;
-            writeln!(out)?;
-        } else {
-            let shown = file.display().to_string();
-            writeln!(out, "{}: {}", diagnostic::escaped(&shown), described(tool, warnings))?;
-            table::write(&mut out, tool, certificate)?;
-        }
+        })?;
     }
+    drop(progress);
     out.flush()?;
     match (wrong, warned) {
         (0, false) => Ok(ExitCode::SUCCESS),
@@ -74,7 +57,67 @@ pub(crate) fn check(
     }
 }
 
-fn described(tool: &CheckedTool, warnings: usize) -> String {
+/// A compiled file, its diagnostics, and the certificate if it has no errors.
+struct CheckedFile {
+    compiled: Compiled,
+    diagnostics: Vec<Diagnostic>,
+    certificate: Option<Certificate>,
+}
+
+impl CheckedFile {
+    fn read(file: &Path, params: &ParamArguments) -> Result<CheckedFile, Failure> {
+        let compiled = compile_with(&read_source(file, params)?, &params.sources());
+        let mut diagnostics = compiled.diagnostics().to_vec();
+        let certificate = compiled.tool().map(|tool| Certificate::of(tool));
+        if let (Some(tool), Some(certificate)) = (compiled.tool(), &certificate) {
+            // The certificate finds again some of what compilation found.
+            for diagnostic in certificate.diagnostics(tool) {
+                if !diagnostics.iter().any(|known| known.span == diagnostic.span) {
+                    diagnostics.push(diagnostic);
+                }
+            }
+        }
+        Ok(CheckedFile { compiled, diagnostics, certificate })
+    }
+
+    /// Returns the numbers of errors and of warnings.
+    fn counts(&self) -> [usize; 2] {
+        [Severity::Error, Severity::Warning].map(|severity| {
+            self.diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count()
+        })
+    }
+
+    fn print(
+        &self,
+        out: &mut Output,
+        file: &Path,
+        (json, verbose): (bool, bool),
+    ) -> Result<(), Failure> {
+        for diagnostic in &self.diagnostics {
+            show(diagnostic, &self.compiled.sources);
+        }
+        let (Some(tool), Some(certificate)) = (self.compiled.tool(), &self.certificate) else {
+            return Ok(());
+        };
+        if json {
+            serde_json::to_writer(&mut *out, &CertificateRow::of(tool, certificate))?;
+            writeln!(out)?;
+            return Ok(());
+        }
+        let [_, warnings] = self.counts();
+        let name = file.display().to_string();
+        writeln!(out, "{}: {}", diagnostic::escaped(&name), describe(tool, warnings))?;
+        if verbose {
+            table::write(out, tool, certificate)?;
+        } else {
+            summary::write(out, tool, certificate)?;
+        }
+        Ok(())
+    }
+}
+
+/// Describes a tool: its name, size, cutting surfaces and number of warnings.
+fn describe(tool: &CheckedTool, warnings: usize) -> String {
     let model = &tool.model;
     let unit = model.unit.symbol();
     let cutting: Vec<&str> =

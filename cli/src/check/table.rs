@@ -8,15 +8,15 @@ use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
 
 /// Writes the certificate as a table.
-pub(crate) fn write(
+pub(super) fn write(
     out: &mut impl Write,
     tool: &CheckedTool,
     certificate: &Certificate,
 ) -> std::io::Result<()> {
     let model = &tool.model;
     writeln!(out, "\n  {}\n", verdict(tool, certificate))?;
-    let wide = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(8);
-    let names = wide(&mut model.regions.iter().map(|region| region.name.len()));
+    let column_width = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(8);
+    let names = column_width(&mut model.regions.iter().map(|region| region.name.len()));
     writeln!(
         out,
         "  {:<names$}  {:>7}  {:>13}  {:>15}  {:>13}  {:>8}  {:<11}  direction",
@@ -40,17 +40,17 @@ pub(crate) fn write(
     if borders.is_empty() {
         return writeln!(out);
     }
-    let names = wide(&mut borders.iter().map(|(_, name)| name.len()));
+    let names = column_width(&mut borders.iter().map(|(_, name)| name.len()));
     writeln!(
         out,
-        "\n  {:<names$}  {:>13}  {:>13}  {:>13}  {:>15}  {:>15}",
-        "border", "depth", "jump", "felt", "turn", "on the surface"
+        "\n  {:<names$}  {:>13}  {:>13}  {:>14}  {:>15}  {:>15}",
+        "border", "depth", "depth jump", "magnitude jump", "turn", "turn on surface"
     )?;
     for (border, name) in borders {
         let on_surface = border.turn_on_surface.map_or("-".to_owned(), degrees);
         writeln!(
             out,
-            "  {name:<names$}  {:>13}  {:>13}  {:>13}  {:>15}  {on_surface:>15}",
+            "  {name:<names$}  {:>13}  {:>13}  {:>14}  {:>15}  {on_surface:>15}",
             range(border.depth),
             none_or(border.jump),
             none_or(border.step),
@@ -61,7 +61,7 @@ pub(crate) fn write(
 }
 
 /// Returns the borders between regions, each pair once, and the jumps at the outside.
-fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
+pub(super) fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
     let mut borders: Vec<(Border, String)> = Vec::new();
     let shown = certificate
         .borders
@@ -83,22 +83,22 @@ fn none_or(jump: Interval) -> String {
 
 /// Describes the direction of a region.
 fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
-    let mut said = match facts.direction_error {
-        None => "not known anywhere".to_owned(),
-        Some(Interval { low: 0.0, high: 0.0 }) => "straight down the depth".to_owned(),
-        Some(aside) => format!("{} from straight down", degrees(aside)),
+    let mut text = match facts.direction_error {
+        None => "not known".to_owned(),
+        Some(Interval { low: 0.0, high: 0.0 }) => "steepest descent".to_owned(),
+        Some(error) => format!("{} from steepest descent", degrees(error)),
     };
     if let [first, more @ ..] = facts.singular.as_slice() {
-        said += &format!("; vanishes near {}", tool.model.shown(first.middle()));
+        text += &format!("; vanishes near {}", tool.model.shown(first.middle()));
         if !more.is_empty() {
-            said += &format!(" and at {} places more", more.len());
+            text += &format!(" and {} more points", more.len());
         }
     }
-    said
+    text
 }
 
 /// Describes how a tool's depth relates to the distance to its surface.
-fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
+pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     let proved = |bound: Option<f64>| bound.map(format_number);
     let boxes = certificate.boxes;
     let slack = match certificate.slack {
@@ -114,7 +114,7 @@ fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
         ),
         (None, Some(most)) => format!(
             "proved in {boxes} boxes: depth is at most {most} times the distance to the surface and \
-             changes by at most {most} times the way{slack}; how much less it may be is not proved"
+             changes by at most {most} per length{slack}; no lower bound is proved"
         ),
         _ if tool.model.is_exact() => format!(
             "by construction: depth is the distance to the surface; not proved in {boxes} boxes"
@@ -122,17 +122,17 @@ fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
         // Compilation may decide hand-written regions in fewer boxes.
         _ if tool.bounds().lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \
-             once more in {boxes} boxes",
+             again in {boxes} boxes",
             proved(tool.bounds().lipschitz).unwrap_or_default()
         ),
         _ => format!(
-            "not proved in {boxes} boxes: that depth goes on without jumps; depth bounds no distance"
+            "not proved in {boxes} boxes: depth may jump, and does not bound the distance to the surface"
         ),
     }
 }
 
 fn kind(facts: &RegionFacts) -> &'static str {
-    if facts.distance { "a distance" } else { "no distance" }
+    if facts.distance { "a distance" } else { "other" }
 }
 
 fn pair(tool: &CheckedTool, border: &Border) -> String {
@@ -142,7 +142,7 @@ fn pair(tool: &CheckedTool, border: &Border) -> String {
     format!("{} | {other}", regions[own].name)
 }
 
-fn range(value: Interval) -> String {
+pub(super) fn range(value: Interval) -> String {
     let [low, high] = [value.low, value.high].map(short);
     if !value.high.is_finite() {
         // No bound was found, which does not mean that such a value exists.
@@ -155,7 +155,7 @@ fn range(value: Interval) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-fn degrees(turn: Interval) -> String {
+pub(super) fn degrees(turn: Interval) -> String {
     let [low, high] = [turn.low, turn.high].map(|end| short(end.to_degrees()));
     if low == high { format!("{low}°") } else { format!("{low}° to {high}°") }
 }

@@ -1,10 +1,9 @@
 //! `touchoff map`: a summary of a posture map, and its other formats.
 
 use super::picture;
-use crate::arguments::postures::Map as Wanted;
+use crate::arguments::postures::Map;
 use crate::failure::Failure;
-use crate::files::ending;
-use crate::output::{Output, refuse_inputs, unwritable};
+use crate::output::{Output, extension, refuse_inputs, unwritable};
 use crate::part;
 use serde::Serialize;
 use std::io::Write;
@@ -19,64 +18,65 @@ struct Summary<'a> {
     tools: Vec<&'a str>,
     directions: usize,
     tolerance: f64,
-    niceness: f64,
-    covered: u32,
-    swept: u32,
+    min_niceness: f64,
+    triangles_reached: u32,
+    triangles_swept: u32,
 }
 
 /// Prints a summary of a map, and writes it in other formats.
-pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
-    let inputs = std::iter::once(&*wanted.map).chain(wanted.part.as_deref());
-    refuse_inputs(wanted.to.iter().map(|to| &**to), inputs)?;
-    let map = PostureMap::read(&wanted.map)?;
-    let mesh = match &wanted.part {
-        Some(part) => Some(belonging(&map, &wanted.map, part)?),
+pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
+    let inputs = std::iter::once(&*arguments.map).chain(arguments.part.as_deref());
+    refuse_inputs(arguments.output.iter().map(|file| &**file), inputs)?;
+    let map = PostureMap::read(&arguments.map)?;
+    let mesh = match &arguments.part {
+        Some(part) => Some(read_part(&map, &arguments.map, part)?),
         None => None,
     };
     // Wrong names are reported before anything is written.
-    let forms: Vec<Form> = wanted.to.iter().map(|file| Form::of(file)).collect::<Result<_, _>>()?;
-    for (form, file) in forms.iter().zip(&wanted.to) {
-        if mesh.is_none() && matches!(form, Form::Ply | Form::Png) {
-            return Err(Failure::WantsPart { file: file.display().to_string() });
+    let formats: Vec<MapFormat> =
+        arguments.output.iter().map(|file| MapFormat::of(file)).collect::<Result<_, _>>()?;
+    for (format, file) in formats.iter().zip(&arguments.output) {
+        if mesh.is_none() && matches!(format, MapFormat::Ply | MapFormat::Png) {
+            return Err(Failure::PartMissing { file: file.display().to_string() });
         }
     }
-    for (form, file) in forms.iter().zip(&wanted.to) {
+    for (format, file) in formats.iter().zip(&arguments.output) {
         let unwritable = |source| unwritable(file, source);
         let mut out = AtomicFile::create(file).map_err(unwritable)?;
-        match (form, &mesh) {
-            (Form::Csv, _) => map.write_csv(&mut out)?,
-            (Form::Json, _) => map.write_json(&mut out)?,
-            (Form::Ply, Some(mesh)) => {
-                let nicest = nicest(&map)?;
-                map.write_ply(&mut out, mesh, |niceness| colormap(niceness / nicest))?;
+        match (format, &mesh) {
+            (MapFormat::Csv, _) => map.write_csv(&mut out)?,
+            (MapFormat::Json, _) => map.write_json(&mut out)?,
+            (MapFormat::Ply, Some(mesh)) => {
+                let greatest = max_niceness(&map)?;
+                map.write_ply(&mut out, mesh, |niceness| colormap(niceness / greatest))?;
             }
-            (Form::Png, Some(mesh)) => {
+            (MapFormat::Png, Some(mesh)) => {
                 let directions = Directions::from(map.identity().directions.clone());
-                let picture = picture::of(&map, &directions, mesh, wanted.by)?;
+                let picture = picture::of(&map, &directions, mesh, arguments.color_by)?;
                 out.write_all(&picture).map_err(unwritable)?;
             }
-            (Form::Ply | Form::Png, None) => (),
+            (MapFormat::Ply | MapFormat::Png, None) => (),
         }
         out.commit().map_err(unwritable)?;
-        say!("{}", file.display());
+        message!("{}", file.display());
     }
-    told(&map, json)
+    print_summary(&map, json)
 }
 
 /// Returns the greatest niceness of all postures; 1 if none is above 0.
-fn nicest(map: &PostureMap) -> Result<f64, Failure> {
-    let mut nicest: f64 = 0.0;
+fn max_niceness(map: &PostureMap) -> Result<f64, Failure> {
+    let mut greatest: f64 = 0.0;
     for entry in map.rows()? {
-        nicest = entry?.1.best.first().map_or(nicest, |best| nicest.max(best.niceness));
+        greatest = entry?.1.best.first().map_or(greatest, |best| greatest.max(best.niceness));
     }
-    Ok(if nicest > 0.0 { nicest } else { 1.0 })
+    Ok(if greatest > 0.0 { greatest } else { 1.0 })
 }
 
 /// Reads the part of a map.
 ///
 /// # Errors
 /// If it cannot be read, or is not the map's.
-pub(super) fn belonging(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
+pub(super) fn read_part(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
     let mesh = part::mesh(part, map.identity().part.unit, "--part")?;
     check_part(map, file, (&mesh, part))?;
     Ok(mesh)
@@ -98,7 +98,7 @@ pub(crate) fn check_part(
     Err(Failure::OtherPart { map, part })
 }
 
-fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
+fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
     let (identity, coverage) = (map.identity(), map.coverage()?);
     let summary = Summary {
         triangles: coverage.triangles,
@@ -106,9 +106,9 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
         tools: identity.tools.iter().map(|tool| &*tool.name).collect(),
         directions: identity.directions.len(),
         tolerance: identity.rules.tolerance,
-        niceness: identity.rules.niceness,
-        covered: coverage.covered,
-        swept: coverage.swept,
+        min_niceness: identity.rules.niceness,
+        triangles_reached: coverage.covered,
+        triangles_swept: coverage.swept,
     };
     let mut out = Output::lines();
     if json {
@@ -121,8 +121,8 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
         writeln!(out, "{}; {} directions", identity.rules, summary.directions)?;
         writeln!(
             out,
-            "{} of {} triangles have a posture; a sweep came to {}",
-            summary.covered, summary.triangles, summary.swept
+            "{} of {} triangles have a posture; {} were swept",
+            summary.triangles_reached, summary.triangles, summary.triangles_swept
         )?;
     }
     out.flush()?;
@@ -130,21 +130,21 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
 }
 
 /// An output format, chosen by the file's extension.
-enum Form {
+enum MapFormat {
     Csv,
     Json,
     Ply,
     Png,
 }
 
-impl Form {
-    fn of(file: &Path) -> Result<Form, Failure> {
-        match ending(file).as_deref() {
-            Some("csv") => Ok(Form::Csv),
-            Some("json") => Ok(Form::Json),
-            Some("ply") => Ok(Form::Ply),
-            Some("png") => Ok(Form::Png),
-            _ => Err(Failure::MapForm { file: file.display().to_string() }),
+impl MapFormat {
+    fn of(file: &Path) -> Result<MapFormat, Failure> {
+        match extension(file).as_deref() {
+            Some("csv") => Ok(MapFormat::Csv),
+            Some("json") => Ok(MapFormat::Json),
+            Some("ply") => Ok(MapFormat::Ply),
+            Some("png") => Ok(MapFormat::Png),
+            _ => Err(Failure::MapFormat { file: file.display().to_string() }),
         }
     }
 }

@@ -6,7 +6,7 @@ mod picture;
 mod render;
 pub(crate) mod sweep;
 
-use touchoff::{Mesh, Unit};
+use touchoff::{Mesh, TriangleId, Unit};
 
 /// Formats a share of a whole in percent.
 fn percent(part: f64, whole: f64) -> String {
@@ -21,12 +21,12 @@ struct Share {
 }
 
 impl Share {
-    /// Counts the triangles of a mesh for which `meant` holds.
-    fn of_all(mesh: &Mesh, meant: impl Fn(u32) -> bool) -> Share {
-        let ids = (0..mesh.triangles().len() as u32).filter(|id| meant(*id));
+    /// Counts the triangles of a mesh for which `predicate` holds.
+    fn of_all(mesh: &Mesh, predicate: impl Fn(u32) -> bool) -> Share {
+        let ids = (0..mesh.triangles().len() as u32).filter(|id| predicate(*id));
         ids.fold(Share::default(), |share, id| Share {
             triangles: share.triangles + 1,
-            area: share.area + mesh.area(id),
+            area: share.area + mesh.area(TriangleId(id)),
         })
     }
 
@@ -37,6 +37,6 @@ impl Share {
 }
 
 /// Returns the default tolerance, a hundredth of a millimetre, in a unit.
-pub(crate) fn usual(unit: Unit) -> f64 {
+pub(crate) fn default_tolerance(unit: Unit) -> f64 {
     0.01 * Unit::Millimetre.factor_to(unit)
 }

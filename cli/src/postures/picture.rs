@@ -1,9 +1,9 @@
 //! Pictures of a map on its part, in a fixed set of views.
 
 use super::render::{VIEWS, render};
-use crate::arguments::postures::Shown;
+use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
-use crate::files::figure;
+use crate::lengths::format_number;
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
 use std::fmt::Write;
@@ -25,7 +25,7 @@ pub(super) fn of(
     map: &PostureMap,
     directions: &Directions,
     mesh: &Mesh,
-    by: Shown,
+    by: Quantity,
 ) -> Result<Vec<u8>, Failure> {
     let mut values = vec![None; mesh.triangles().len()];
     for entry in map.rows()? {
@@ -35,24 +35,24 @@ pub(super) fn of(
     let known = || values.iter().copied().flatten();
     let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
     // The scale begins at 0, except for stick-outs: the least of these is a property of the tool.
-    let low = if by == Shown::Stickout { low.min(high) } else { 0.0 };
+    let low = if by == Quantity::StickOut { low.min(high) } else { 0.0 };
     let share = |value: f64| if high > low { (value - low) / (high - low) } else { 1.0 };
     let colours: Vec<[u8; 3]> =
         values.iter().map(|value| value.map_or(NOTHING, |value| colormap(share(value)))).collect();
     let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
-    let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
+    let (columns, rows) = (2 * SIDE, 2 * SIDE + LEGEND);
     let mut sheet =
-        Pixmap::new(wide as u32, tall as u32).ok_or_else(|| pixels(&"it has no size"))?;
+        Pixmap::new(columns as u32, rows as u32).ok_or_else(|| pixels(&"it has no size"))?;
     let paper = sheet.pixels_mut();
     for (index, view) in VIEWS.iter().enumerate() {
         let image = render(mesh, &colours, view, SIDE);
         let (left, top) = (index % 2 * SIDE, index / 2 * SIDE);
         for (at, [r, g, b]) in image.pixels.iter().enumerate() {
-            let place = (top + at / image.side) * wide + left + at % image.side;
-            paper[place] = opaque([*r, *g, *b]);
+            let pixel = (top + at / image.side) * columns + left + at % image.side;
+            paper[pixel] = opaque([*r, *g, *b]);
         }
     }
-    paper[wide * 2 * SIDE..].fill(opaque([255; 3]));
+    paper[columns * 2 * SIDE..].fill(opaque([255; 3]));
     let legend = legend(by, [low, high], map.identity().part.unit, known().count() > 0);
     let tree = Tree::from_str(&legend, &Options::default()).map_err(|error| pixels(&error))?;
     resvg::render(&tree, Transform::identity(), &mut sheet.as_mut());
@@ -64,10 +64,10 @@ fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
 }
 
 /// Returns the value shown for a triangle, if it has one.
-fn value(row: &MapRow, directions: &Directions, by: Shown) -> Option<f64> {
+fn value(row: &MapRow, directions: &Directions, by: Quantity) -> Option<f64> {
     match by {
-        Shown::Niceness => row.best.first().map(|best| best.niceness),
-        Shown::Access => {
+        Quantity::Niceness => row.best.first().map(|best| best.niceness),
+        Quantity::Accessibility => {
             // The union of the directions of all tools.
             let mut all = vec![0u64; row.access.first()?.directions.len()];
             for access in &row.access {
@@ -76,7 +76,7 @@ fn value(row: &MapRow, directions: &Directions, by: Shown) -> Option<f64> {
             let angle = directions.solid_angle(&all);
             (angle > 0.0).then_some(angle)
         }
-        Shown::Stickout => {
+        Quantity::StickOut => {
             let stickouts = row.access.iter().filter_map(|access| access.stickout);
             stickouts.reduce(f64::min)
         }
@@ -84,10 +84,10 @@ fn value(row: &MapRow, directions: &Directions, by: Shown) -> Option<f64> {
 }
 
 /// Returns the colour scale with its labels, and the names of the views, as an SVG of the sheet's size.
-fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
-    let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
+fn legend(by: Quantity, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
+    let (columns, rows) = (2 * SIDE, 2 * SIDE + LEGEND);
     let mut svg =
-        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{tall}\">");
+        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{columns}\" height=\"{rows}\">");
     let mut text = |[x, y]: [f64; 2], text: &str| {
         // Writing to a String does not fail.
         let _ = write!(
@@ -104,13 +104,16 @@ fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
     let base = 2 * SIDE;
     let (left, right) = (SIDE as f64 * 0.4, SIDE as f64 * 1.6);
     let (words, ends) = match by {
-        Shown::Niceness => ("niceness of the best posture", [low, high].map(|v| format!("{v:.3}"))),
-        Shown::Access => {
+        Quantity::Niceness => {
+            ("niceness of the best posture", [low, high].map(|v| format!("{v:.3}")))
+        }
+        Quantity::Accessibility => {
             ("solid angle of access, steradians", [low, high].map(|v| format!("{v:.2}")))
         }
-        Shown::Stickout => {
-            ("least stick-out", [low, high].map(|value| format!("{} {unit}", figure(value, unit))))
-        }
+        Quantity::StickOut => (
+            "least stick-out",
+            [low, high].map(|value| format!("{} {unit}", format_number(value, unit))),
+        ),
     };
     let below = base as f64 + 92.0;
     if any {
@@ -131,8 +134,8 @@ fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
     let step = (right - left) / STEPS as f64;
     for k in 0..STEPS {
         // A little wider than a step, so that no gap shows.
-        let place = [left + step * k as f64, step + 0.5];
-        svg += &swatch(place, colormap((k as f64 + 0.5) / STEPS as f64));
+        let span = [left + step * k as f64, step + 0.5];
+        svg += &swatch(span, colormap((k as f64 + 0.5) / STEPS as f64));
     }
     svg + "</svg>"
 }

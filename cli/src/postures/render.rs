@@ -1,7 +1,7 @@
 //! Orthographic rendering of a mesh, with one colour per triangle.
 
 use nalgebra::Vector3;
-use touchoff::Mesh;
+use touchoff::{Mesh, TriangleId};
 
 /// A view of a part.
 #[derive(Clone, Copy)]
@@ -40,20 +40,20 @@ pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize)
     let right = Vector3::from(view.up).cross(&toward).normalize();
     let up = toward.cross(&right);
     let light = (toward + 0.5 * up - 0.4 * right).normalize();
-    let [across, along] = [right, up].map(|way| span(mesh, &way));
+    let [across, along] = [right, up].map(|axis| span(mesh, &axis));
     let fine = side * FINER;
     let scale =
         fine as f64 * (1.0 - 2.0 * MARGIN) / (across[1] - across[0]).max(along[1] - along[0]);
-    let place = |at: f64, [low, high]: [f64; 2]| {
+    let to_pixel = |at: f64, [low, high]: [f64; 2]| {
         0.5 * fine as f64 + scale * (at - f64::midpoint(low, high))
     };
     let mut depth = vec![f64::NEG_INFINITY; fine * fine];
     let mut pixels = vec![[255.0; 3]; fine * fine];
     for id in 0..mesh.triangles().len() as u32 {
-        let Some(normal) = mesh.normal(id) else { continue };
-        let corners = mesh.triangle(id).map(|corner| {
-            let [x, y, near] = [right, up, toward].map(|way| corner.coords.dot(&way));
-            [place(x, across), fine as f64 - place(y, along), near]
+        let Some(normal) = mesh.normal(TriangleId(id)) else { continue };
+        let corners = mesh.triangle(TriangleId(id)).map(|corner| {
+            let [x, y, near] = [right, up, toward].map(|axis| corner.coords.dot(&axis));
+            [to_pixel(x, across), fine as f64 - to_pixel(y, along), near]
         });
         let facing = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let bright = SHADE + (1.0 - SHADE) * facing.dot(&light).max(0.0);
@@ -78,8 +78,8 @@ pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize)
 }
 
 /// Returns the extent of a mesh along a direction.
-fn span(mesh: &Mesh, way: &Vector3<f64>) -> [f64; 2] {
-    let along = mesh.vertices().iter().map(|vertex| vertex.coords.dot(way));
+fn span(mesh: &Mesh, axis: &Vector3<f64>) -> [f64; 2] {
+    let along = mesh.vertices().iter().map(|vertex| vertex.coords.dot(axis));
     along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
 }
 

@@ -1,14 +1,15 @@
 //! `touchoff sweep`: a part and tools, every triangle in every direction.
 
-use super::{Share, percent, usual};
-use crate::arguments::ParamArguments;
-use crate::arguments::postures::Sweep as Wanted;
+use super::{Share, default_tolerance, percent};
+use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
-use crate::files::{Found, length};
+use crate::lengths::format_length;
+use crate::loaded_tool::LoadedTool;
 use crate::output::{Output, refuse_inputs};
 use crate::part;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::progress::Progress;
 use serde::Serialize;
+use std::ffi::OsString;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,58 +23,60 @@ use touchoff::{Mesh, Tool, Unit};
 #[derive(Serialize)]
 struct Summary {
     triangles: usize,
+    /// Unit of lengths.
+    unit: &'static str,
     directions: usize,
-    tools: Vec<OfTool>,
+    tools: Vec<ToolSummary>,
     /// True if the inside of the part is known; otherwise only its surface was checked.
     inside_known: bool,
     /// Number of triangles with an acceptable posture.
-    reached: usize,
-    /// Their share of the part's area.
-    area: f64,
-    /// Number of batches that an earlier sweep had done.
-    before: usize,
+    triangles_reached: usize,
+    /// Their fraction of the part's area.
+    area_fraction_reached: f64,
     batches: usize,
-    seconds: f64,
-    tally: SweepStatsRow,
+    /// Number of batches that an earlier sweep had done.
+    earlier_batches: usize,
+    time_s: f64,
+    postures: PostureCounts,
 }
 
 /// Number of postures of this run by outcome.
 #[derive(Serialize)]
-struct SweepStatsRow {
-    postures: u64,
-    facing: u64,
-    plain: u64,
-    known: u64,
-    found: u64,
+struct PostureCounts {
+    total: u64,
+    not_facing: u64,
+    below_niceness: u64,
+    cached_obstruction: u64,
+    obstructed: u64,
     undecided: u64,
     acceptable: u64,
 }
 
 #[derive(Serialize)]
-struct OfTool {
+struct ToolSummary {
     name: String,
     /// Number of triangles that the tool reaches.
-    reached: usize,
+    triangles_reached: usize,
     /// Number of triangles at which it has the best posture.
-    best: usize,
-    /// Least stick-out, in the part's unit: the smallest and the largest over the triangles.
-    stickout: Option<[f64; 2]>,
+    triangles_best: usize,
+    /// Least stick-out: the smallest and the largest over the triangles.
+    stick_out: Option<[f64; 2]>,
 }
 
 /// Counts, collected row by row.
 struct Count {
     /// Per triangle, true if it has a posture.
     reached: Vec<bool>,
-    tools: Vec<OfTool>,
+    tools: Vec<ToolSummary>,
 }
 
 impl Count {
     fn new(mesh: &Mesh, tools: &[&dyn Tool]) -> Count {
-        let none = |tool: &&dyn Tool| OfTool {
+        let none = |tool: &&dyn Tool| ToolSummary {
             name: tool.info().name.to_string(),
-            reached: 0,
-            best: 0,
-            stickout: None,
+            triangles_reached: 0,
+            triangles_best: 0,
+            stick_out: None,
         };
         Count {
             reached: vec![false; mesh.triangles().len()],
@@ -84,56 +87,55 @@ impl Count {
     fn add(&mut self, triangle: u32, row: &MapRow) {
         if let Some(best) = row.best.first() {
             self.reached[triangle as usize] = true;
-            self.tools[usize::from(best.tool)].best += 1;
+            self.tools[usize::from(best.tool)].triangles_best += 1;
         }
         for access in &row.access {
             let tool = &mut self.tools[usize::from(access.tool)];
-            tool.reached += usize::from(access.directions.iter().any(|word| *word != 0));
+            tool.triangles_reached += usize::from(access.directions.iter().any(|word| *word != 0));
             if let Some(stickout) = access.stickout {
-                let [least, most] = tool.stickout.unwrap_or([stickout; 2]);
-                tool.stickout = Some([least.min(stickout), most.max(stickout)]);
+                let [least, most] = tool.stick_out.unwrap_or([stickout; 2]);
+                tool.stick_out = Some([least.min(stickout), most.max(stickout)]);
             }
         }
     }
 }
 
 /// Sweeps a part with tools, and prints a summary.
-pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
-    let inputs = wanted.tools.iter().map(Path::new).chain([&*wanted.mesh.part]);
-    refuse_inputs(wanted.out.as_deref(), inputs)?;
-    let nothing = ParamArguments::default();
-    let found: Vec<Found> =
-        wanted.tools.iter().map(|name| Found::find(name, &nothing)).collect::<Result<_, _>>()?;
-    let tools: Vec<&dyn Tool> = found.iter().map(Found::tool).collect();
-    let unit = wanted.mesh.unit;
-    let mesh = part::mesh(&wanted.mesh.part, unit, "sweep")?;
+pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
+    let inputs = arguments.tools.iter().map(Path::new).chain([&*arguments.mesh.part]);
+    refuse_inputs(arguments.output.as_deref(), inputs)?;
+    let load = |name: &OsString| LoadedTool::load(name, &arguments.params);
+    let loaded: Vec<LoadedTool> = arguments.tools.iter().map(load).collect::<Result<_, _>>()?;
+    let tools: Vec<&dyn Tool> = loaded.iter().map(LoadedTool::tool).collect();
+    let unit = arguments.mesh.unit;
+    let mesh = part::mesh(&arguments.mesh.part, unit, "sweep")?;
     let bvh = TriangleBvh::new(&mesh);
-    part::has_inside(&bvh, &wanted.mesh.part, wanted.surface_only)?;
+    part::has_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
     let rules = Rules {
-        tolerance: wanted.tolerance.unwrap_or_else(|| usual(unit)),
-        niceness: wanted.niceness,
-        allowed: wanted.allow.clone(),
+        tolerance: arguments.tolerance.unwrap_or_else(|| default_tolerance(unit)),
+        niceness: arguments.min_niceness,
+        allowed: arguments.allow.clone(),
     };
-    let directions = Directions::spread(wanted.directions.into());
+    let directions = Directions::spread(arguments.directions.into());
     let sweep =
-        PostureSweep::new((&mesh, &bvh), tools.clone(), &directions, rules.clone(), wanted.keep)?;
-    let map = match &wanted.out {
+        PostureSweep::new(&mesh, &bvh, tools.clone(), &directions, rules.clone(), arguments.keep)?;
+    let map = match &arguments.output {
         Some(file) => {
             let identity = MapIdentity::new(&mesh, &tools, rules)?
                 .with_directions(directions.list().to_vec())
-                .with_keep(wanted.keep);
+                .with_keep(arguments.keep);
             Some(PostureMap::open(file, &identity)?)
         }
         None => None,
     };
     let mut count = Count::new(&mesh, &tools);
-    let open = left(&sweep, map.as_ref())?;
-    let bar = bar(open.len());
+    let open = open_batches(&sweep, map.as_ref())?;
+    let progress = Progress::steps(open.len(), "batches", json);
     let start = Instant::now();
-    let mut tally = SweepStats::default();
+    let mut stats = SweepStats::default();
     let stopped = sweep.run(&open, |batch: Batch| {
-        tally += batch.stats;
-        bar.inc(1);
+        stats += batch.stats;
+        progress.advance(1);
         match &map {
             Some(map) => {
                 if let Err(error) = map.record(&batch.rows) {
@@ -144,11 +146,11 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         }
         ControlFlow::Continue(())
     });
-    bar.finish_and_clear();
+    drop(progress);
     if let ControlFlow::Break(error) = stopped {
         return Err(error.into());
     }
-    let seconds = start.elapsed().as_secs_f64();
+    let time_s = start.elapsed().as_secs_f64();
     if let Some(map) = &map {
         for entry in map.rows()? {
             let (triangle, row) = entry?;
@@ -159,22 +161,23 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let reached = Share::of_all(&mesh, |triangle| count.reached[triangle as usize]);
     let summary = Summary {
         triangles: mesh.triangles().len(),
+        unit: unit.symbol(),
         directions: directions.list().len(),
         inside_known: bvh.has_inside(),
-        reached: reached.triangles,
-        area: reached.area / all.area,
+        triangles_reached: reached.triangles,
+        area_fraction_reached: reached.area / all.area,
         tools: count.tools,
-        before: sweep.batches() - open.len(),
+        earlier_batches: sweep.batches() - open.len(),
         batches: sweep.batches(),
-        seconds,
-        tally: SweepStatsRow {
-            postures: tally.postures(),
-            facing: tally.not_facing,
-            plain: tally.below_niceness,
-            known: tally.cached_obstruction,
-            found: tally.obstructed,
-            undecided: tally.undecided,
-            acceptable: tally.acceptable,
+        time_s,
+        postures: PostureCounts {
+            total: stats.postures(),
+            not_facing: stats.not_facing,
+            below_niceness: stats.below_niceness,
+            cached_obstruction: stats.cached_obstruction,
+            obstructed: stats.obstructed,
+            undecided: stats.undecided,
+            acceptable: stats.acceptable,
         },
     };
     let mut out = Output::lines();
@@ -189,56 +192,58 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
 }
 
 /// Returns the batches that are not in the map.
-fn left(sweep: &PostureSweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
+fn open_batches(sweep: &PostureSweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
     let Some(map) = map else { return Ok((0..sweep.batches()).collect()) };
     let swept = map.swept()?;
     let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept.contains(id));
     Ok((0..sweep.batches()).filter(is_open).collect())
 }
 
-fn bar(batches: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(batches as u64).with_style(style)
-}
-
 impl Summary {
     fn print(&self, out: &mut impl Write, unit: Unit, reached: &str) -> std::io::Result<()> {
-        let Summary { triangles, directions, tally, seconds, .. } = self;
-        if self.before > 0 {
-            writeln!(out, "{} of {} batches were there already", self.before, self.batches)?;
+        let Summary { triangles, directions, postures, time_s, .. } = self;
+        if self.earlier_batches > 0 {
+            writeln!(
+                out,
+                "{} of {} batches were in the map already",
+                self.earlier_batches, self.batches
+            )?;
         }
         let tools = self.tools.len();
         writeln!(
             out,
-            "{triangles} triangles, {directions} directions, {tools} tools: {} postures in {seconds:.1} s",
-            tally.postures
+            "{triangles} triangles, {directions} directions, {tools} tool{}: {} postures in {time_s:.1} s",
+            if tools == 1 { "" } else { "s" },
+            postures.total
         )?;
         let rules = [
-            (tally.facing, "nothing that cuts faces the triangle"),
-            (tally.plain, "not nice enough"),
-            (tally.known, "in the way is what was in a neighbour's"),
-            (tally.found, "searched for, and something is in the way"),
-            (tally.undecided, "rounding decides: not taken"),
-            (tally.acceptable, "proved acceptable"),
+            (postures.not_facing, "no cutting surface faces the triangle"),
+            (postures.below_niceness, "below the least niceness"),
+            (postures.cached_obstruction, "obstructed like a neighbour"),
+            (postures.obstructed, "obstructed, found by a search"),
+            (postures.undecided, "not decided because of rounding, so not accepted"),
+            (postures.acceptable, "proved acceptable"),
         ];
         for (count, words) in rules.into_iter().filter(|(count, _)| *count > 0) {
-            let part = percent(count as f64, tally.postures as f64);
+            let part = percent(count as f64, postures.total as f64);
             writeln!(out, "{count:>12} {part:>7}  {words}")?;
         }
         let known = if self.inside_known {
             ""
         } else {
-            ", by the surface alone: what is inside is unknown"
+            ", from the surface alone, as the inside is unknown"
         };
         writeln!(out, "reached: {reached}{known}")?;
         for tool in &self.tools {
-            let stickout = tool.stickout.map_or(String::new(), |[least, most]| {
-                let [least, most] = [least, most].map(|value| length(value, unit));
-                format!("; sticks out at least {least} to {most}")
+            let stickout = tool.stick_out.map_or(String::new(), |[least, most]| {
+                let [least, most] = [least, most].map(|value| format_length(value, unit));
+                format!("; least stick-out {least} to {most}")
             });
-            let OfTool { name, reached, best, .. } = tool;
-            writeln!(out, "  {name:<20} reaches {reached:>7}, best at {best:>7}{stickout}")?;
+            let ToolSummary { name, triangles_reached, triangles_best, .. } = tool;
+            writeln!(
+                out,
+                "  {name:<20} reaches {triangles_reached:>7}, best at {triangles_best:>7}{stickout}"
+            )?;
         }
         Ok(())
     }

@@ -55,7 +55,7 @@ impl Bench {
         let place = |name: &str| self.folder.path().join(name).display().to_string();
         let (part, path) = (place(part), place(path));
         let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
-        let mut all = vec!["run", "--part", &part, "--path", &path, "--tool", &tool];
+        let mut all = vec!["run", "--part", &part, "--program", &path, "--tool", &tool];
         if !more.contains(&"--unit") {
             all.extend(["--unit", "mm"]);
         }

@@ -6,23 +6,24 @@ use std::process::Output;
 fn haptic(bench: &Bench, more: &[&str]) -> Output {
     let part = bench.folder.path().join("block.stl").display().to_string();
     let mut all = vec!["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
-    all.extend(["--points", "5000", "--seconds", "0.5"]);
+    all.extend(["--points", "5000", "--duration", "0.5"]);
     all.extend(more);
     touchoff(&all)
 }
 
 #[test]
-fn a_path_is_played_and_recorded() {
+fn a_program_is_played_and_recorded() {
     let bench = Bench::new();
     let path = bench.folder.path().join("path.csv").display().to_string();
     let table = bench.folder.path().join("record.csv").display().to_string();
-    let output = haptic(&bench, &["--device", "path", &path, "--record", &table, "--json"]);
+    let output =
+        haptic(&bench, &["--device", "playback", "--program", &path, "--record", &table, "--json"]);
     let said = &rows(&output)[0];
     let count = |key: &str| said[key].as_u64().unwrap_or_else(|| panic!("{key} in {said}"));
-    assert!(count("cycles") + count("left_out") == 500 && count("cycles") > 100, "{said}");
-    assert_eq!((count("lost"), count("stalls")), (0, 0));
+    assert!(count("cycles") + count("skipped_cycles") == 500 && count("cycles") > 100, "{said}");
+    assert_eq!((count("dropped_states"), count("stalls")), (0, 0));
     assert!(said["peak_force"].as_f64().is_some_and(|force| force > 0.01), "{said}");
-    assert!(count("cycles") >= 1 && said["took_ns"]["p50"].as_u64().is_some_and(|ns| ns > 0));
+    assert!(count("cycles") >= 1 && said["cycle_time_ns"]["p50"].as_u64().is_some_and(|ns| ns > 0));
 
     let record = std::fs::read_to_string(&table).expect("a record");
     let mut lines = record.lines();
@@ -38,11 +39,11 @@ fn a_path_is_played_and_recorded() {
 }
 
 #[test]
-fn a_hand_is_told_of_in_words() {
+fn a_session_of_the_hand_is_summarised() {
     let bench = Bench::new();
     let output = haptic(&bench, &["--rate", "500"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    for word in ["cycles at 500 Hz", "took, µs", "energy", "law gradient"] {
+    for word in ["cycles at 500 Hz", "cycle time, µs", "energy", "law gradient"] {
         assert!(stdout(&output).contains(word), "{}", stdout(&output));
     }
 }
@@ -50,7 +51,7 @@ fn a_hand_is_told_of_in_words() {
 /// A limit on the size of files stands for a full disk.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_disk_that_is_full_is_told_when_it_is() {
+fn a_full_disk_is_reported_at_once() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
@@ -60,14 +61,14 @@ fn a_disk_that_is_full_is_told_when_it_is() {
     let mut child = Command::new("sh")
         .args(["-c", script, "sh", env!("CARGO_BIN_EXE_touchoff")])
         .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
-        .args(["--points", "2000", "--seconds", "3", "--record", &table])
+        .args(["--points", "2000", "--duration", "3", "--record", &table])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("a shell");
     let lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
     let lines: Vec<String> = lines.map_while(Result::ok).collect();
-    let told = lines.iter().position(|line| line.contains("nothing is recorded from here on"));
+    let told = lines.iter().position(|line| line.contains("the recording of states stops here"));
     let told = told.unwrap_or_else(|| panic!("{lines:?}"));
     assert!(lines[told].contains("record.csv") && lines[told].contains("File too large"));
     // The loop goes on, and still shows its state.
@@ -75,14 +76,14 @@ fn a_disk_that_is_full_is_told_when_it_is() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{lines:?}");
     assert!(stdout(&output).contains("cycles at 1000 Hz"), "{}", stdout(&output));
-    assert!(lines.last().is_some_and(|line| line.contains("not all of the session was kept")));
+    assert!(lines.last().is_some_and(|line| line.contains("the recording is incomplete")));
     assert_eq!(std::fs::read_to_string(&table).expect("a file"), "old");
     let names = std::fs::read_dir(bench.folder.path()).expect("a folder").count();
     assert_eq!(names, 3, "something is left behind");
 }
 
 #[test]
-fn cores_that_there_are_not_are_refused_with_those_that_there_are() {
+fn missing_cores_are_refused_with_a_list_of_others() {
     let bench = Bench::new();
     for core in ["1024", "18446744073709551615"] {
         let output = haptic(&bench, &["--core", core]);
@@ -93,27 +94,29 @@ fn cores_that_there_are_not_are_refused_with_those_that_there_are() {
 }
 
 #[test]
-fn what_is_no_device_is_refused_with_a_remedy() {
+fn invalid_devices_are_refused() {
     let bench = Bench::new();
     let nowhere = bench.folder.path().join("no/record.csv").display().to_string();
     for (more, status, words) in [
-        (&["--device", "glove"][..], 1, "write `hand`, `path FILE` or `spacenav`"),
-        (&["--device", "path"], 1, "write `--device path FILE`"),
-        (&["--device", "path", "nowhere.csv"], 2, "nowhere.csv"),
+        (&["--device", "glove"][..], 2, "[possible values: hand, playback, spacenav]"),
+        (&["--device", "playback"], 2, "--program <FILE>"),
+        (&["--program", "path.csv"], 2, "`--device playback`"),
+        (&["--device", "playback", "--program", "nowhere.csv"], 2, "nowhere.csv"),
         (&["--record", &nowhere], 1, "record.csv"),
     ] {
         let output = haptic(&bench, more);
         assert_eq!(output.status.code(), Some(status), "{more:?}");
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     }
-    for wrong in [["--rate", "0"], ["--rate", "1e9"], ["--stiffness", "-1"], ["--seconds", "NaN"]] {
+    for wrong in [["--rate", "0"], ["--rate", "1e9"], ["--stiffness", "-1"], ["--duration", "NaN"]]
+    {
         assert_eq!(haptic(&bench, &wrong).status.code(), Some(2), "{wrong:?}");
     }
 }
 
 #[cfg(unix)]
 #[test]
-fn a_session_that_is_interrupted_keeps_its_record() {
+fn an_interrupted_session_keeps_its_recording() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let bench = Bench::new();
@@ -122,7 +125,7 @@ fn a_session_that_is_interrupted_keeps_its_record() {
     for signal in ["INT", "TERM"] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_touchoff"))
             .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
-            .args(["--points", "2000", "--seconds", "600", "--record", &table])
+            .args(["--points", "2000", "--duration", "600", "--record", &table])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

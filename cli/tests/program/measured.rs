@@ -16,22 +16,25 @@ fn clouds_are_judged_by_certified_depth() {
         rows.iter().partition(|row| row["method"] == "cloud");
     assert_eq!([clouds.len(), certified.len()], [3, 3]);
     for row in clouds.iter().chain(&certified) {
-        assert!(number(row, "p50_ns") > 0.0 && number(row, "p50_ns") <= number(row, "p99_ns"));
-        assert!(number(row, "worst_depth") <= number(row, "bound_depth") + 1e-9, "{row}");
+        assert!(
+            number(&row["query_time_ns"], "p50") > 0.0
+                && number(&row["query_time_ns"], "p50") <= number(&row["query_time_ns"], "p99")
+        );
+        assert!(number(row, "depth_error") <= number(row, "depth_error_bound") + 1e-9, "{row}");
     }
     let [few, many] = [clouds[0], clouds[2]];
-    for error in ["err_force", "err_torque", "worst_depth"] {
+    for error in ["force_error", "torque_error", "depth_error"] {
         assert!(
             0.0 < number(many, error) && number(many, error) < 0.5 * number(few, error),
             "{error}"
         );
     }
-    assert!(certified.iter().all(|row| row["points"].is_null() && row["err_force"].is_null()));
+    assert!(certified.iter().all(|row| row["points"].is_null() && row["force_error"].is_null()));
 }
 
 /// A block of 6 by 6 by 2, and a ball of diameter 2 that goes 0.25 deep into its top: all answers are known.
 #[test]
-fn a_part_of_ones_own_is_measured() {
+fn a_users_part_is_measured() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     let [low, high] = [[-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]].map(nalgebra::Point3::from);
@@ -43,10 +46,20 @@ fn a_part_of_ones_own_is_measured() {
         (0..20).map(|k| format!("{},0,-0.25,0,0,1\n", 0.05 * f64::from(k))).collect();
     std::fs::write(file("path.csv"), path).expect("a writable folder");
     let (part, path) = (file("block.stl"), file("path.csv"));
-    let own =
-        ["bench", "--quick", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &path];
+    let own = [
+        "bench",
+        "--quick",
+        "--part",
+        &part,
+        "--unit",
+        "mm",
+        "--tool",
+        "D2Ball",
+        "--program",
+        &path,
+    ];
     let rows = rows(&touchoff(&[&own[..], &["--json"]].concat()));
-    let worst = rows[2]["worst_depth"].as_f64().expect("a number");
+    let worst = rows[2]["depth_error"].as_f64().expect("a number");
     // 10,000 points on 120 mm² are some 0.1 mm apart: the deepest is 0.05²/2 less deep.
     assert!((1e-6..5e-3).contains(&worst), "{worst}");
     let output = touchoff(&own);
@@ -56,10 +69,10 @@ fn a_part_of_ones_own_is_measured() {
 }
 
 #[test]
-fn what_is_asked_in_part_is_refused() {
+fn incomplete_options_are_refused() {
     for (arguments, words) in [
         (&["bench", "--seed", "-1"][..], "--seed"),
-        (&["bench", "--part", "part.stl"][..], "--path"),
+        (&["bench", "--part", "part.stl"][..], "--program"),
         (&["bench", "--tool", "D2Ball"][..], "--part"),
     ] {
         let output = touchoff(arguments);

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, rows, stderr, touchoff};
 use serde_json::Value;
-use touchoff::{Cloud, Mesh, Unit};
+use touchoff::{Cloud, Mesh, Sampling, Unit};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -13,36 +13,39 @@ fn run(bench: &Bench, part: &str, more: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn a_tolerance_picks_as_many_points_as_it_takes() {
+fn a_sampling_error_determines_the_number_of_points() {
     let bench = Bench::new();
-    let output = run(&bench, "block.stl", &["--tolerance", "0.05"]);
+    let output = run(&bench, "block.stl", &["--sampling-error", "0.05"]);
     let said = stderr(&output);
-    assert!(said.contains("a tolerance of 0.05") && said.contains(" points"), "{said}");
-    assert!(said.contains("(proved): the surface is no more than 0.0"), "{said}");
+    assert!(said.contains("a sampling error of 0.05") && said.contains(" points"), "{said}");
+    assert!(
+        said.contains("(proved): the true depth exceeds the reported one by at most 0.0"),
+        "{said}"
+    );
     // The ball is 0.5 deep in the block at the second pose.
     let found = rows(&output);
     let (depth, bound) = (number(&found[1]["depth"]), number(&found[1]["depth_bound"]));
     assert!(depth <= 0.5 + 1e-9 && bound >= 0.5 && bound - depth <= 0.05, "{depth} {bound}");
     assert!(number(&found[0]["depth_bound"]) <= 0.05);
     for wrong in ["0", "-1", "fine"] {
-        let output = run(&bench, "block.stl", &["--tolerance", wrong]);
+        let output = run(&bench, "block.stl", &["--sampling-error", wrong]);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     }
-    let both = run(&bench, "block.stl", &["--tolerance", "0.1", "--points", "10"]);
+    let both = run(&bench, "block.stl", &["--sampling-error", "0.1", "--points", "10"]);
     assert_eq!(both.status.code(), Some(2));
 }
 
 /// A tolerance that needs too many points is proved in a run; for points that are only saved it is refused.
 #[test]
-fn a_fine_tolerance_is_proved() {
+fn a_small_sampling_error_is_certified() {
     let bench = Bench::new();
-    let output = run(&bench, "block.stl", &["--tolerance", "1e-6"]);
+    let output = run(&bench, "block.stl", &["--sampling-error", "1e-6"]);
     let said = stderr(&output);
-    assert!(said.contains("depth is proved of the triangles instead"), "{said}");
+    assert!(said.contains("depth is proved for the triangles instead"), "{said}");
     let found = rows(&output);
     let bound = number(&found[1]["depth_bound"]);
     assert!((0.5..=0.5 + 2e-6).contains(&bound), "{bound}");
-    assert!(number(&found[1]["deepest"][1]) <= bound + 1e-12);
+    assert!(number(&found[1]["certified_depth"][1]) <= bound + 1e-12);
     let block = bench.folder.path().join("block.stl");
     let output = touchoff(&[
         "sample",
@@ -50,7 +53,7 @@ fn a_fine_tolerance_is_proved() {
         block.to_str().expect("a path"),
         "--unit",
         "mm",
-        "--tolerance",
+        "--sampling-error",
         "1e-6",
         "-o",
         "fine.touchoff",
@@ -61,11 +64,11 @@ fn a_fine_tolerance_is_proved() {
 }
 
 #[test]
-fn points_are_spread_as_is_asked_for() {
+fn the_sampling_method_is_used() {
     let bench = Bench::new();
     let number_of = |sampling: &str| {
         let said = stderr(&run(&bench, "block.stl", &["--sampling", sampling, "--points", "2000"]));
-        let at = said.find("farther than ").expect("the cover") + "farther than ".len();
+        let at = said.find("is within ").expect("the covering radius") + "is within ".len();
         said[at..].split(' ').next().and_then(|word| word.parse::<f64>().ok()).expect("a length")
     };
     assert!(1.5 * number_of("blue") < number_of("random"));
@@ -73,10 +76,10 @@ fn points_are_spread_as_is_asked_for() {
 }
 
 #[test]
-fn points_without_triangles_are_felt_and_their_error_is_called_an_estimate() {
+fn points_without_triangles_have_an_estimated_error() {
     let bench = Bench::new();
     let mesh = Mesh::read_stl(bench.folder.path().join("block.stl"), Unit::Millimetre);
-    let cloud = Cloud::blue_noise(&mesh.expect("the block"), 3_000, 1).expect("a cloud");
+    let cloud = Cloud::sample(&mesh.expect("the block"), Sampling::new(3_000)).expect("a cloud");
     let mut ply = String::from("ply\nformat ascii 1.0\nelement vertex 3000\n");
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         ply += &format!("property double {name}\n");
@@ -88,15 +91,18 @@ fn points_without_triangles_are_felt_and_their_error_is_called_an_estimate() {
     bench.write("block.ply", &ply);
     let output = run(&bench, "block.ply", &[]);
     let said = stderr(&output);
-    assert!(said.contains("areas and cover estimated") && said.contains("(estimated)"), "{said}");
+    assert!(
+        said.contains("areas and covering radius are estimated") && said.contains("(estimated)"),
+        "{said}"
+    );
     let [found, of_mesh] =
         [output, run(&bench, "block.stl", &["--points", "3000"])].map(|output| rows(&output));
-    let [found, of_mesh] = [&found, &of_mesh].map(|rows| number(&rows[1]["integral"]));
+    let [found, of_mesh] = [&found, &of_mesh].map(|rows| number(&rows[1]["magnitude_integral"]));
     assert!((found / of_mesh - 1.0).abs() < 0.03, "{found} {of_mesh}");
 }
 
 #[test]
-fn saved_parts_are_felt_as_they_were() {
+fn saved_parts_have_the_same_contacts() {
     let bench = Bench::new();
     let file = |name: &str| bench.folder.path().join(name).display().to_string();
     let sample = |out: &str, more: &[&str]| {
@@ -110,7 +116,7 @@ fn saved_parts_are_felt_as_they_were() {
     let evaluation = |part: &str| {
         let mut found = rows(&run(&bench, part, &["--points", "5000"]));
         for row in &mut found {
-            row["ns"] = Value::Null;
+            row["query_time_ns"] = Value::Null;
         }
         found
     };
@@ -129,7 +135,7 @@ fn saved_parts_are_felt_as_they_were() {
     bench.write("foreign.touchoff", stl);
     bench.refused("foreign.touchoff", "path.csv", "D2Ball", &["foreign.touchoff"]);
     let certified = run(&bench, "block.touchoff", &["--certify", "1e-6"]);
-    assert!(stderr(&certified).contains("`--certify` is for meshes"), "{}", stderr(&certified));
+    assert!(stderr(&certified).contains("`--certify` needs triangles"), "{}", stderr(&certified));
 }
 
 #[cfg(unix)]

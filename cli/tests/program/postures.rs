@@ -32,8 +32,8 @@ impl Tube {
 
     fn sweep(&self, tools: &str, more: &[&str]) -> Output {
         let all =
-            ["sweep", "--part", &self.part, "--unit", "mm", "--tools", tools, "--directions", "40"];
-        touchoff(&[&all[..], &["--tolerance", "0.05", "--out", &self.map], more].concat())
+            ["sweep", "--part", &self.part, "--unit", "mm", "--tool", tools, "--directions", "40"];
+        touchoff(&[&all[..], &["--tolerance", "0.05", "--output", &self.map], more].concat())
     }
 }
 
@@ -55,23 +55,40 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
     let tube = Tube::new();
     let told = object(&tube.sweep("D2Ball,BallEr16", &["--json"]));
     assert_eq!((&told["triangles"], &told["directions"]), (&384.into(), &80.into()), "{told}");
-    assert_eq!(told["tally"]["postures"], 384 * 80 * 2);
-    assert_eq!(told["reached"], 384, "a ball of 1 mm comes everywhere in a tube of 12: {told}");
+    assert_eq!(told["postures"]["total"], 384 * 80 * 2);
+    assert_eq!(
+        told["triangles_reached"], 384,
+        "a ball of 1 mm comes everywhere in a tube of 12: {told}"
+    );
     let [slim, stout] = [0, 1].map(|k: usize| &told["tools"][k]);
-    assert_eq!((&slim["reached"], &slim["stickout"]), (&384.into(), &Value::Null), "{told}");
+    assert_eq!(
+        (&slim["triangles_reached"], &slim["stick_out"]),
+        (&384.into(), &Value::Null),
+        "{told}"
+    );
     // The stout tool sticks 30 mm out of its nut, of which 18 mm cut.
-    assert_eq!((&stout["reached"], &stout["stickout"][0]), (&384.into(), &18.0.into()), "{told}");
+    assert_eq!(
+        (&stout["triangles_reached"], &stout["stick_out"][0]),
+        (&384.into(), &18.0.into()),
+        "{told}"
+    );
 
     // Nothing is done twice, and the summary is the same.
     let again = object(&tube.sweep("D2Ball,BallEr16", &["--json"]));
-    assert_eq!((&again["before"], &again["tally"]["postures"]), (&again["batches"], &0.into()));
-    assert_eq!((&again["tools"], &again["area"]), (&told["tools"], &told["area"]));
+    assert_eq!(
+        (&again["earlier_batches"], &again["postures"]["total"]),
+        (&again["batches"], &0.into())
+    );
+    assert_eq!(
+        (&again["tools"], &again["area_fraction_reached"]),
+        (&told["tools"], &told["area_fraction_reached"])
+    );
 
     let to: Vec<String> =
         ["m.csv", "m.json", "m.ply", "m.png"].iter().map(|name| tube.place(name)).collect();
     let shown = touchoff(&[
-        "map", &tube.map, "--part", &tube.part, "--to", &to[0], "--to", &to[1], "--to", &to[2],
-        "--to", &to[3],
+        "map", &tube.map, "--part", &tube.part, "-o", &to[0], "-o", &to[1], "-o", &to[2], "-o",
+        &to[3],
     ]);
     assert!(stdout(&shown).contains("384 of 384 triangles have a posture"), "{}", stderr(&shown));
     let csv = std::fs::read_to_string(&to[0]).expect("a table");
@@ -91,16 +108,16 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
             &tube.part,
             "--tool",
             "D2Ball",
-            "--planes",
+            "--plane-normal",
             "0,0,1",
             "--stepover",
             "3",
-            "--to",
+            "-o",
             &program,
             "--json",
         ]);
         let led = object(&led);
-        assert!(led["places"].as_u64() > Some(40), "{led}");
+        assert!(led["contact_points"].as_u64() > Some(40), "{led}");
         let checked = touchoff(&[
             "verify",
             "--part",
@@ -119,13 +136,13 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
 }
 
 #[test]
-fn a_sweep_without_a_map_tells_the_same() {
+fn a_sweep_without_a_map_has_the_same_summary() {
     let tube = Tube::new();
     let kept = object(&tube.sweep("D2Ball", &["--json"]));
-    let all = ["sweep", "--part", &tube.part, "--unit", "mm", "--tools", "D2Ball", "--json"];
+    let all = ["sweep", "--part", &tube.part, "--unit", "mm", "--tool", "D2Ball", "--json"];
     let told =
         object(&touchoff(&[&all[..], &["--directions", "40", "--tolerance", "0.05"]].concat()));
-    for key in ["reached", "area", "tools", "tally"] {
+    for key in ["triangles_reached", "area_fraction_reached", "tools", "postures"] {
         assert_eq!(kept[key], told[key], "{key}");
     }
     let words = touchoff(&[&all[..7], &["--directions", "10"]].concat());
@@ -133,7 +150,7 @@ fn a_sweep_without_a_map_tells_the_same() {
 }
 
 #[test]
-fn what_a_map_is_not_of_is_refused() {
+fn a_map_of_something_else_is_refused() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
     let rows = || {
@@ -143,16 +160,16 @@ fn what_a_map_is_not_of_is_refused() {
     };
     let before = rows();
     refused(&tube.sweep("BallEr16", &[]), &["tools", "D2Ball", "BallEr16"]);
-    refused(&tube.sweep("D2Ball", &["--niceness", "0.5"]), &["rules"]);
+    refused(&tube.sweep("D2Ball", &["--min-niceness", "0.5"]), &["rules"]);
     let block = tube.bench.folder.path().join("block.stl").display().to_string();
     let other =
-        ["sweep", "--part", &block, "--unit", "mm", "--tools", "D2Ball", "--directions", "40"];
-    let more = ["--tolerance", "0.05", "--out", &tube.map];
+        ["sweep", "--part", &block, "--unit", "mm", "--tool", "D2Ball", "--directions", "40"];
+    let more = ["--tolerance", "0.05", "--output", &tube.map];
     refused(&touchoff(&[&other[..], &more].concat()), &["another part"]);
     let picture = tube.place("m.png");
-    refused(&touchoff(&["map", &tube.map, "--to", &picture]), &["--part"]);
-    refused(&touchoff(&["map", &tube.map, "--part", &block, "--to", &picture]), &["another part"]);
-    refused(&touchoff(&["map", &tube.map, "--to", &tube.place("m.pdf")]), &[".csv", "m.pdf"]);
+    refused(&touchoff(&["map", &tube.map, "-o", &picture]), &["--part"]);
+    refused(&touchoff(&["map", &tube.map, "--part", &block, "-o", &picture]), &["another part"]);
+    refused(&touchoff(&["map", &tube.map, "-o", &tube.place("m.pdf")]), &[".csv", "m.pdf"]);
     let program = tube.place("p.apt");
     let path = |tool: &str, to: &str| {
         touchoff(&[
@@ -164,11 +181,11 @@ fn what_a_map_is_not_of_is_refused() {
             tool,
             "--stepover",
             "3",
-            "--to",
+            "-o",
             to,
         ])
     };
-    refused(&path("BallEr16", &program), &["no `BallEr16`"]);
+    refused(&path("BallEr16", &program), &["not swept with this `BallEr16`"]);
     refused(&path("D2Ball", &tube.place("p.nc")), &[".apt", "p.nc"]);
     assert!(rows() == before, "a refusal changes nothing");
 }
@@ -191,7 +208,7 @@ fn a_map_that_is_damaged_or_in_use_is_refused() {
 }
 
 #[test]
-fn what_means_nothing_is_refused() {
+fn invalid_options_are_refused() {
     let tube = Tube::new();
     refused(&tube.sweep("D2Bal", &[]), &["did you mean `D2Ball`"]);
     refused(&tube.sweep("D2Ball", &["--allow", "nut=0.1"]), &["`nut`", "`shank`"]);
@@ -204,12 +221,12 @@ fn what_means_nothing_is_refused() {
 #[test]
 fn a_program_that_cannot_be_written_leaves_the_file_as_it_was() {
     let tube = Tube::new();
-    let all = ["sweep", "--part", &tube.part, "--unit", "m", "--tools", "D2Ball"];
-    let more = ["--directions", "5", "--tolerance", "0.001", "--out", &tube.map];
+    let all = ["sweep", "--part", &tube.part, "--unit", "m", "--tool", "D2Ball"];
+    let more = ["--directions", "5", "--tolerance", "0.001", "--output", &tube.map];
     assert!(touchoff(&[&all[..], &more].concat()).status.success());
     let program = tube.place("kept.apt");
     std::fs::write(&program, "GOTO/1,2,3\n").expect("a writable folder");
     let path = ["path", &tube.map, "--part", &tube.part, "--tool", "D2Ball", "--stepover", "1"];
-    refused(&touchoff(&[&path[..], &["--to", &program]].concat()), &["no word for m", "table"]);
+    refused(&touchoff(&[&path[..], &["-o", &program]].concat()), &["no word for m", "table"]);
     assert_eq!(std::fs::read_to_string(&program).expect("a file"), "GOTO/1,2,3\n");
 }

@@ -26,7 +26,7 @@ fn library() -> Vec<PathBuf> {
 /// difference.
 #[test]
 fn certificates_of_the_library() {
-    let output = touchoff(&["check"], &library());
+    let output = touchoff(&["check", "--verbose"], &library());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let shown = String::from_utf8(output.stdout).expect("text");
     let folder = format!("{}/", workspace().join("tools-library/tools").display());
@@ -81,4 +81,16 @@ fn the_exit_status_is_as_severe_as_what_is_wrong() {
     let said = touchoff(&["check"], &[jumping]);
     let said = String::from_utf8_lossy(&said.stderr);
     assert!(said.contains("depth jumps from 2.5 to 2 at ("), "{said}");
+}
+
+/// Five lines per tool suffice its author; `--verbose` changes nothing in JSON.
+#[test]
+fn the_summary_of_a_tool_is_short() {
+    let output = touchoff(&["check"], &library()[..4]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(text.lines().count(), 4 * 5, "{text}");
+    assert!(text.contains("borders: no jumps"), "{text}");
+    let json =
+        |more: &[&str]| touchoff(&[&["check", "--json"], more].concat(), &library()[..4]).stdout;
+    assert_eq!(json(&[]), json(&["--verbose"]));
 }

@@ -33,7 +33,7 @@ fn findings_are_lines_as_compilers_print_them() {
     let lines: Vec<String> = stdout(&output).lines().map(str::to_owned).collect();
     let [line] = &lines[..] else { panic!("{lines:?}") };
     assert!(line.starts_with(&format!("{file}:5: ball is 0.5000 mm deep in triangle ")), "{line}");
-    assert!(line.contains(" of the way from line 4"), "{line}");
+    assert!(line.contains(" of the motion from line 4"), "{line}");
     let said = stderr(&output);
     assert!(said.contains("1 finding in 3 motions: ball 1 (deepest 0.5000 mm, line 5)"), "{said}");
     let clean = verify(&bench, "block.apt", "D2Ball", &["--tolerance", "0.5"]);
@@ -55,13 +55,16 @@ fn a_finding_is_an_object_for_programs() {
     let found = rows(&["--tolerance", "0.01"]);
     let [row] = &found[..] else { panic!("{found:?}") };
     let number = |value: &Value| value.as_f64().expect("a number");
-    assert_eq!((&row["line"], &row["from"], &row["stop"]), (&5.into(), &4.into(), &2.into()));
+    assert_eq!(
+        (&row["line"], &row["from_line"], &row["location"]),
+        (&5.into(), &4.into(), &2.into())
+    );
     assert_eq!((&row["kind"], &row["surface"]), (&"deep".into(), &"ball".into()));
     assert_eq!((&row["cutting"], &row["rapid"]), (&true.into(), &false.into()));
-    assert!((0.3..0.7).contains(&number(&row["part"])) && row["triangle"].is_u64(), "{row}");
-    assert!(number(&row["allowed"]) == 0.01 && row["file"].is_string(), "{row}");
+    assert!((0.3..0.7).contains(&number(&row["fraction"])) && row["triangle"].is_u64(), "{row}");
+    assert!(number(&row["allowed_depth"]) == 0.01 && row["file"].is_string(), "{row}");
     let (low, high) = (number(&row["depth"][0]), number(&row["depth"][1]));
-    assert!(low <= 0.5 && 0.5 <= high && number(&row["most"]) >= high, "{row}");
+    assert!(low <= 0.5 && 0.5 <= high && number(&row["depth_bound"]) >= high, "{row}");
     for key in ["tip", "axis", "point"] {
         assert_eq!(row[key].as_array().map(Vec::len), Some(3), "{key} of {row}");
     }
@@ -70,7 +73,7 @@ fn a_finding_is_an_object_for_programs() {
     let [row] = &found[..] else { panic!("{found:?}") };
     assert_eq!((&row["kind"], &row["surface"]), (&"near".into(), &"shank".into()));
     let (low, high) = (number(&row["distance"][0]), number(&row["distance"][1]));
-    assert!(low <= 4.5 && 4.5 <= high && number(&row["least"]) <= low, "{row}");
+    assert!(low <= 4.5 && 4.5 <= high && number(&row["distance_bound"]) <= low, "{row}");
     assert!(number(&row["margin"]) == 4.6 && row.get("depth").is_none(), "{row}");
 }
 
@@ -93,7 +96,7 @@ fn a_tool_file_takes_its_values() {
 }
 
 #[test]
-fn what_cannot_be_checked_has_a_status_of_its_own() {
+fn unchecked_programs_have_their_own_status() {
     let bench = Bench::new();
     bench.write("block.apt", PROGRAM);
     bench.write("cut.apt", &PROGRAM[..PROGRAM.len() - 6]);
@@ -109,9 +112,9 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("none.apt", "D2Ball", &[], "cannot be read");
     refused("block.apt", "D3Ball", &[], "did you mean `D2Ball`?");
     refused("block.apt", "D2Ball", &["--allow", "fluet=1"], "it has `ball`, `flute`, `shank`");
-    refused("block.apt", "D2Ball", &["--allow", "flute"], "SURFACE=DEPTH");
-    refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "is no length");
-    refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
+    refused("block.apt", "D2Ball", &["--allow", "flute"], "SURFACE=LENGTH");
+    refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "SURFACE=LENGTH");
+    refused("block.apt", "D2Ball", &["--tolerance=-1"], "finite length of 0 or more");
     refused("block.apt", "Block", &[], "an axis does not place `Block`");
 }
 
@@ -137,7 +140,7 @@ fn motions_of_a_solid_are_proved_with_their_spin() {
     assert_eq!(deep["quaternion"].as_array().map(Vec::len), Some(4), "{deep}");
     // Half a turn is ambiguous: either way is as short.
     bench.write("half.csv", "0,0,9,0,0,0,1\n0,0,9,0,0,1,0\n");
-    let half = verify(&bench, "half.csv", "Block", &["--anyway"]);
+    let half = verify(&bench, "half.csv", "Block", &["--allow-distant"]);
     assert!(
         stdout(&half).contains("half a turn, so the way between is ambiguous"),
         "{}",
@@ -147,7 +150,7 @@ fn motions_of_a_solid_are_proved_with_their_spin() {
 
 /// A statement that could be a motion is refused with its line, by every command that reads programs.
 #[test]
-fn words_that_could_move_the_tool_are_refused() {
+fn unknown_statements_are_refused() {
     let bench = Bench::new();
     let part = bench.folder.path().join("block.stl").display().to_string();
     let words = "GOTOX/1,2,3|GO TO/1,2,3|LINEAR/1,2,3|ARC/1,2,3|DRILL/1|ORIGIN/0,0,35|CUTCOM/LEFT|MODE/INCR|\
@@ -162,8 +165,17 @@ fn words_that_could_move_the_tool_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{word}: {said}");
         assert!(said.contains("word.apt:8: "), "{word}: {said}");
         let run = touchoff(&[
-            "run", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &file,
-            "--points", "100",
+            "run",
+            "--part",
+            &part,
+            "--unit",
+            "mm",
+            "--tool",
+            "D2Ball",
+            "--program",
+            &file,
+            "--points",
+            "100",
         ]);
         assert_eq!(run.status.code(), Some(2), "{word}: {}", stderr(&run));
     }
@@ -202,7 +214,7 @@ fn a_program_that_never_comes_near_is_not_verified() {
     ] {
         assert!(said.contains(words), "`{words}` is missing in:\n{said}");
     }
-    let output = verify(&bench, "far.apt", "D2Ball", &["--anyway"]);
+    let output = verify(&bench, "far.apt", "D2Ball", &["--allow-distant"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     // Both ends are far away, but the motion between them is not.
     bench.write("across.csv", "-900,0,0.5,0,0,1\n900,0,0.5,0,0,1\n");
@@ -214,7 +226,7 @@ fn a_program_that_never_comes_near_is_not_verified() {
         let output = verify(&bench, "across.csv", "D2Ball", more);
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains("no surface of the tool can be deeper than it may be"), "{said}");
+        assert!(said.contains("allow every surface its greatest possible"), "{said}");
     }
     bench.write("one.csv", "0,0,0.5,0,0,1\n");
     let output = verify(&bench, "one.csv", "D2Ball", &[]);
@@ -253,7 +265,7 @@ fn a_part_without_an_inside_is_not_verified() {
             &part,
             "--unit",
             "mm",
-            "--tools",
+            "--tool",
             "D2Ball",
             "--directions",
             "8",
@@ -263,7 +275,7 @@ fn a_part_without_an_inside_is_not_verified() {
 }
 
 #[test]
-fn a_buried_tool_is_said_to_be_inside() {
+fn a_buried_tool_is_reported_inside() {
     let bench = Bench::new();
     bench.write("deep.csv", "0,0,-80,0,0,1\n0.5,0,-80,0,0,1\n");
     bench.part("large.stl", &cuboid([-100.0; 3], [100.0; 3]));
@@ -281,11 +293,22 @@ fn a_buried_tool_is_said_to_be_inside() {
         whole.iter().all(|row| row["kind"] == "inside" && row["surface"].is_null()),
         "{whole:?}"
     );
-    let run = [
-        &["run", "--part", &part, "--path", &program, "--certify", "1e-6", "--points", "100"][..],
-        &tool,
-    ]
-    .concat();
+    let run =
+        [
+            &[
+                "run",
+                "--part",
+                &part,
+                "--program",
+                &program,
+                "--certify",
+                "1e-6",
+                "--points",
+                "100",
+            ][..],
+            &tool,
+        ]
+        .concat();
     let output = touchoff(&run);
     let said = stderr(&output);
     assert!(said.contains("wholly inside the material at 2 of 2 poses, first at line 1"), "{said}");
@@ -303,7 +326,7 @@ fn found(part: &str, program: &str) -> Vec<f64> {
 }
 
 #[test]
-fn a_flank_pass_that_gouges_is_found_to() {
+fn gouges_of_a_flank_pass_are_found() {
     let deepest = |depths: &[f64]| depths.iter().copied().fold(0.0, f64::max);
     let bench = Bench::new();
     let made = bench.gouging();

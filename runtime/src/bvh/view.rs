@@ -1,6 +1,7 @@
 //! The transform from a part to a tool's frame: the setup that all poses share, and the transform at one pose.
 
 use super::Frame;
+use crate::interval::Interval;
 use crate::pose::Pose;
 use crate::tool::{Symmetry, ToolInfo};
 
@@ -53,7 +54,7 @@ impl QuerySetup {
     pub(crate) fn new(frame: &Frame, info: &ToolInfo, length: f64) -> QuerySetup {
         let unit = frame.scale / length;
         let part = unit * 3f64.sqrt() * f64::from(frame.size);
-        let (size, [low, high]) = (info.size(), info.reach());
+        let (size, Interval { low, high }) = (info.size(), info.reach());
         let margin = 16.0 * ROUNDOFF * (size + 4.0 * part);
         let reach = ReachBounds::new(info, margin);
         let fits =

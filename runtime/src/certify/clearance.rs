@@ -6,13 +6,15 @@ use super::rounding;
 use super::search::{QuerySetting, SearchState};
 use super::tool_model::ToolModel;
 use super::triangle::line_search::Goal;
-use super::verdict::Clearance;
+use super::verdict::{Clearance, NoSuchSurface};
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::pose::Pose;
 
 /// The queries for the distance of some surfaces: the depth of points inside the tool, and the distance of those
 /// outside.
 pub(super) struct ClearanceQuery {
-    surfaces: Vec<usize>,
+    surfaces: Vec<SurfaceId>,
     inside: DepthQuery,
     outside: DepthQuery,
 }
@@ -26,34 +28,43 @@ impl Certifier<'_> {
         distance(setting, [whole, whole], work, pose, (tolerance, *budget))
     }
 
-    /// Computes the distance of the part's triangles from some surfaces of the tool, given by their indices in the
-    /// tool's list. The interval is that of [`Certifier::clearance`]. It is 0 if a point inside the tool is the
+    /// Computes the distance of the part's triangles from some surfaces of the tool. The interval is that of [`Certifier::clearance`]. It is 0 if a point inside the tool is the
     /// nearest to one of these surfaces. For a point in a region of the tool that other surfaces own, it is the
     /// distance from the nearest of these surfaces. Without any surfaces it is infinite. For a tool without a profile
     /// the nearest surface is unknown (see [`Certifier::with_allowance`]): the lower bound is that of the whole tool,
     /// the upper bound infinite.
     ///
-    /// # Panics
+    /// # Errors
     /// If there is no such surface.
-    pub fn clearance_of(&mut self, surfaces: &[usize], pose: &Pose, tolerance: f64) -> Clearance {
-        assert!(surfaces.iter().all(|surface| *surface < self.info.surfaces.len()));
+    pub fn clearance_of(
+        &mut self,
+        surfaces: &[SurfaceId],
+        pose: &Pose,
+        tolerance: f64,
+    ) -> Result<Clearance, NoSuchSurface> {
+        for surface in surfaces {
+            self.checked(*surface)?;
+        }
         if surfaces.is_empty() {
-            return Clearance { distance: [f64::INFINITY; 2], witness: None };
+            let distance = Interval::new(f64::INFINITY, f64::INFINITY);
+            return Ok(Clearance { distance, witness: None });
         }
         let ToolModel::Profile(section) = &self.setting.body else {
-            let [low, _] = self.clearance(pose, tolerance).distance;
-            return Clearance { distance: [low, f64::INFINITY], witness: None };
+            let Interval { low, .. } = self.clearance(pose, tolerance).distance;
+            return Ok(Clearance { distance: Interval::new(low, f64::INFINITY), witness: None });
         };
         if self.apart.as_ref().is_none_or(|apart| apart.surfaces != surfaces) {
             let margin = self.setting.setup.margin;
-            let of = |limit| DepthQuery::new(section, margin, limit, |k| surfaces.contains(&k));
+            let of = |limit| {
+                DepthQuery::new(section, margin, limit, |k| surfaces.contains(&SurfaceId(k)))
+            };
             // Any limit below 0 makes a query for the distance from the surfaces themselves.
             let (inside, outside) = (of(0.0), of(-1.0));
             self.apart = Some(ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside });
         }
         let Certifier { setting, apart, work, budget, .. } = self;
         let ClearanceQuery { inside, outside, .. } = apart.as_ref().expect("it was just made");
-        distance(setting, [inside, outside], work, pose, (tolerance, *budget))
+        Ok(distance(setting, [inside, outside], work, pose, (tolerance, *budget)))
     }
 }
 
@@ -71,7 +82,7 @@ fn distance(
     if let Some(best) = &work.best {
         let witness = setting.witness(best, pose);
         let high = if work.search.best > touch { 0.0 } else { 2.0 * touch + work.skew };
-        let distance = [0.0, high * setting.length];
+        let distance = Interval::new(0.0, high * setting.length);
         return Clearance { distance, witness: Some(witness) };
     }
     let unsure = work.search.open();
@@ -87,7 +98,7 @@ fn distance(
     // For a point outside, a depth field gives only a lower bound of the distance.
     let high = if setting.exact { -work.search.best + more } else { f64::INFINITY };
     Clearance {
-        distance: [low, high].map(|distance| distance * setting.length),
+        distance: Interval::new(low, high).scaled_by(setting.length),
         witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
     }
 }

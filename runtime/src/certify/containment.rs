@@ -6,6 +6,7 @@ use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::{ToolModel, interior};
+use crate::id::SurfaceId;
 use crate::pose::Pose;
 use crate::tool::ToolInfo;
 use nalgebra::Vector3;
@@ -17,7 +18,7 @@ pub(crate) enum Containment {
     Outside,
     /// A connected piece is inside. Holds the surface that is the nearest to a point of that piece, as an index in
     /// the tool's list.
-    Inside(usize),
+    Inside(SurfaceId),
     /// The part has no inside: its mesh is not closed and consistently oriented.
     Unknown,
     /// A point lies on the part's surface in `f64`, or no point was found within the budget.
@@ -36,7 +37,7 @@ pub(crate) struct CorePoints {
 #[derive(Clone, Copy)]
 struct Core {
     point: Point,
-    surface: usize,
+    surface: SurfaceId,
 }
 
 impl CorePoints {
@@ -67,7 +68,7 @@ impl CorePoints {
     fn find(&self, body: &ToolModel<'_>, info: &ToolInfo, tolerance: f64) -> Option<Vec<Core>> {
         match body {
             ToolModel::Profile(section) => {
-                let limit = |feature: usize| self.limits[body.surface(feature)];
+                let limit = |feature: usize| self.limits[body.surface(feature).0];
                 let limits: Vec<f64> = (0..section.features.len()).map(limit).collect();
                 let witnesses = interior::witnesses(section, &limits, tolerance).into_iter();
                 let core = |witness: interior::CorePoint| {
@@ -82,7 +83,7 @@ impl CorePoints {
                 let one = self.limits.iter().all(|limit| *limit == 0.0);
                 let mut cores = Vec::new();
                 for (index, region) in info.regions.iter().enumerate() {
-                    let limit = self.limits[region.surface];
+                    let limit = self.limits[region.surface.0];
                     if limit.is_infinite() || (one && index > 0) {
                         continue;
                     }

@@ -37,11 +37,14 @@ pub(crate) use containment::Containment;
 pub(crate) use part::Location;
 pub use part::TriangleBvh;
 pub use verdict::{
-    AllowanceError, Clearance, MotionDepth, MotionVerdict, NotCertifiable, Penetration,
-    PoseVerdict, Witness,
+    AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
+    Penetration, PoseVerdict, Witness,
 };
 
 use crate::bvh::QuerySetup;
+use crate::debug::debug;
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::pose::Pose;
 use crate::tool::{Tool, ToolInfo};
 use clearance::ClearanceQuery;
@@ -69,7 +72,7 @@ use triangle::line_search::Goal;
 /// ```
 /// use nalgebra::{Point3, Vector3};
 /// use touchoff::certify::{Certifier, TriangleBvh};
-/// use touchoff::{Pose, Unit, mesh::shapes};
+/// use touchoff::{Interval, Pose, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
 ///     tool Ball "a ball of 3 mm radius" {
@@ -88,7 +91,7 @@ use triangle::line_search::Goal;
 /// let bvh = TriangleBvh::new(&block);
 /// let mut certifier = Certifier::new(&bvh, &Ball)?;
 /// let pose = Pose::from_axis(Point3::new(0.3, 0.1, -0.5), Vector3::z())?;
-/// let [low, high] = certifier.deepest(&pose, 1e-9).depth;
+/// let Interval { low, high } = certifier.deepest(&pose, 1e-9).depth;
 /// assert!(low <= 0.5 && 0.5 <= high && high - low < 2e-9);
 /// # Ok(()) }
 /// ```
@@ -114,6 +117,10 @@ pub struct Certifier<'a> {
     work: SearchState,
     sweeper: Sweeper,
 }
+
+debug!([] Certifier<'_>, "Certifier", |this| {
+    tool: this.info.name, allowed: this.allowed, budget: this.budget,
+});
 
 impl<'a> Certifier<'a> {
     /// Creates a certifier for a tool at a part.
@@ -222,17 +229,23 @@ impl<'a> Certifier<'a> {
         penetration(setting, whole, work, pose, (tolerance, *budget))
     }
 
-    /// Computes the deepest penetration where one surface, given by its index in the tool's list, is the nearest.
+    /// Computes the deepest penetration where one surface is the nearest.
     /// Points as near to two surfaces count for both. For a tool without a profile, the nearest surface of a point is
     /// that of the region that contains it. The interval is that of [`Certifier::deepest`].
     ///
-    /// # Panics
+    /// # Errors
     /// If there is no such surface.
-    pub fn deepest_on(&mut self, surface: usize, pose: &Pose, tolerance: f64) -> Penetration {
+    pub fn deepest_on(
+        &mut self,
+        surface: SurfaceId,
+        pose: &Pose,
+        tolerance: f64,
+    ) -> Result<Penetration, NoSuchSurface> {
+        let surface = self.checked(surface)?;
         let Certifier { setting, each, work, budget, .. } = self;
         let question =
             each[surface].get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        penetration(setting, question, work, pose, (tolerance, *budget))
+        Ok(penetration(setting, question, work, pose, (tolerance, *budget)))
     }
 
     /// Checks whether the tool is clear of the part, or at most as deep in it as is
@@ -274,25 +287,37 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// Returns an upper bound on the depth that a surface, given by its index in the tool's list, can have, in the
+    /// Returns an upper bound on the depth that a surface can have, in the
     /// part's unit. The depth occurs where the part's surface passes through the deepest point of the tool to which
     /// that surface is the nearest. The bound is at most 1 % above it unless a fixed budget is spent first; `None` if
     /// the budget is spent before any such point is found.
     ///
-    /// # Panics
+    /// # Errors
     /// If there is no such surface.
-    pub fn max_possible_depth(&self, surface: usize) -> Option<f64> {
-        assert!(surface < self.info.surfaces.len());
+    pub fn max_possible_depth(&self, surface: SurfaceId) -> Result<Option<f64>, NoSuchSurface> {
+        let surface = self.checked(surface)?;
         let depth = match &self.setting.body {
             ToolModel::Profile(section) => {
                 Owners::of(section, |other| other == surface).greatest_depth(section)
             }
             ToolModel::Field(field) => {
-                let owners = Owners::of_regions(self.info, |_, of| of.surface == surface);
-                field.deepest(&owners, 0.0, 1.01)?.map_or(0.0, |(.., bound)| bound)
+                let owners = Owners::of_regions(self.info, |_, of| of.surface.0 == surface);
+                match field.deepest(&owners, 0.0, 1.01) {
+                    Some(found) => found.map_or(0.0, |(.., bound)| bound),
+                    None => return Ok(None),
+                }
             }
         };
-        Some(depth * self.setting.length)
+        Ok(Some(depth * self.setting.length))
+    }
+
+    /// Returns a surface's position in the tool's list, if the tool has it.
+    fn checked(&self, surface: SurfaceId) -> Result<usize, NoSuchSurface> {
+        let count = self.info.surfaces.len();
+        if surface.0 < count {
+            return Ok(surface.0);
+        }
+        Err(NoSuchSurface { tool: self.info.name.to_string(), count, surface })
     }
 
     /// Returns whether the restricted interior is one connected piece: the points deeper than their limit by more
@@ -396,7 +421,7 @@ fn penetration(
     };
     let high = if work.descent.looked() { high.max(work.search.most) + more } else { 0.0 };
     Penetration {
-        depth: [low.max(0.0), high].map(|depth| depth * setting.length),
+        depth: Interval::new(low.max(0.0), high).scaled_by(setting.length),
         witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
     }
 }

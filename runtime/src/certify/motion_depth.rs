@@ -15,7 +15,9 @@ use super::sweep::{SweepEnd, SweepTask, Sweeper};
 use super::tool_model::ToolModel;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
-use super::{Certifier, ContactVerdict, penetration};
+use super::{Certifier, ContactVerdict, NoSuchSurface, penetration};
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::motion::Motion;
 use crate::tool::{Symmetry, ToolInfo};
 use std::slice;
@@ -137,8 +139,7 @@ impl Certifier<'_> {
         MotionVerdict::Undecided(from)
     }
 
-    /// Computes the greatest depth of a surface, given by its index in the tool's list, along a motion, at points to
-    /// which it is the nearest surface. If it exceeds `allowed` by more than a tolerance, the result has the deepest
+    /// Computes the greatest depth of a surface along a motion, at points to which it is the nearest surface. If it exceeds `allowed` by more than a tolerance, the result has the deepest
     /// point found and an upper bound. Both lengths are in the part's unit; a tolerance below the rounding error
     /// bound is replaced by that bound. A negative `allowed` is a margin: the distance that the surface has to keep
     /// from all of the part.
@@ -150,7 +151,7 @@ impl Certifier<'_> {
     /// ```
     /// # use nalgebra::{Point3, Vector3};
     /// # use touchoff::certify::{Certifier, MotionDepth, TriangleBvh};
-    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// # use touchoff::{Interval, Motion, SurfaceId, Pose, Unit, mesh::shapes};
     /// # touchoff::tool! {
     /// #     tool Ball "6 mm" {
     /// #         units mm;
@@ -164,24 +165,25 @@ impl Certifier<'_> {
     /// let pose = |x: f64| Pose::from_axis(Point3::new(x, 0.0, -0.5), Vector3::z());
     /// // Both ends are clear of the block; between them the ball is 0.5 deep.
     /// let motion = Motion::new(&pose(-20.0)?, &pose(20.0)?)?;
-    /// let found = Certifier::new(&block, &Ball)?.motion_depth(0, &motion, 0.0, 1e-6);
-    /// let MotionDepth::Deeper { depth: [low, high], most, .. } = found else { panic!("{found:?}") };
+    /// let found = Certifier::new(&block, &Ball)?.motion_depth(SurfaceId(0), &motion, 0.0, 1e-6)?;
+    /// let MotionDepth::Deeper { depth: Interval { low, high }, most, .. } = found else { panic!("{found:?}") };
     /// assert!(low <= 0.5 && 0.5 <= high && high - low < 1.1e-6 && most < 0.57);
     /// # Ok(()) }
     /// ```
     ///
-    /// # Panics
+    /// # Errors
     /// If there is no such surface.
     pub fn motion_depth(
         &mut self,
-        surface: usize,
+        surface: SurfaceId,
         motion: &Motion,
         allowed: f64,
         tolerance: f64,
-    ) -> MotionDepth {
+    ) -> Result<MotionDepth, NoSuchSurface> {
+        let surface = self.checked(surface)?;
         let Certifier { setting, info, each, each_cores, work, budget, sweeper, .. } = self;
         if !determines_pose(info, motion) {
-            return MotionDepth::Undecided(0.0);
+            return Ok(MotionDepth::Undecided(0.0));
         }
         let question = |limit| setting.depth_query(limit, |other| other == surface);
         let error = error(setting, motion);
@@ -212,17 +214,17 @@ impl Certifier<'_> {
         };
         let found = search.deepest(depth);
         if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
-            return found;
+            return Ok(found);
         }
         if let ToolModel::Field(_) = &setting.body {
-            return MotionDepth::Undecided(0.0);
+            return Ok(MotionDepth::Undecided(0.0));
         }
         let near = question(allowed);
         search.question = &near;
-        match search.deepest(allowed) {
+        Ok(match search.deepest(allowed) {
             MotionDepth::Within => found,
             nearer => nearer,
-        }
+        })
     }
 }
 
@@ -243,7 +245,7 @@ struct MotionSearch<'a, 's> {
 /// The depth at one time of a motion.
 #[derive(Clone, Copy)]
 struct DepthPeak {
-    depth: [f64; 2],
+    depth: Interval,
     at: f64,
     witness: Witness,
 }
@@ -252,7 +254,7 @@ impl MotionSearch<'_, '_> {
     fn deepest(&mut self, allowed: f64) -> MotionDepth {
         let times = (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES));
         let seen = times.filter_map(|at| self.at(at)).collect::<Vec<DepthPeak>>();
-        let seen = seen.into_iter().filter(|peak| peak.depth[0] > allowed).reduce(deeper);
+        let seen = seen.into_iter().filter(|peak| peak.depth.low > allowed).reduce(deeper);
         let first = match seen {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
@@ -260,7 +262,7 @@ impl MotionSearch<'_, '_> {
                 Some(SweepEnd::Spent { at }) => return MotionDepth::Undecided(at),
                 Some(SweepEnd::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
-                    let depth = [allowed, allowed + self.tolerance];
+                    let depth = Interval::new(allowed, allowed + self.tolerance);
                     let seen = DepthPeak { depth, at, witness };
                     self.at(at).map_or(seen, |here| deeper(seen, here))
                 }
@@ -269,7 +271,7 @@ impl MotionSearch<'_, '_> {
         let top = self.climb(first);
         let (best, most) = self.bounded(top, allowed);
         let length = self.setting.length;
-        let depth = best.depth.map(|depth| depth * length);
+        let depth = best.depth.scaled_by(length);
         MotionDepth::Deeper { at: best.at, depth, most: most * length, witness: best.witness }
     }
 
@@ -279,7 +281,7 @@ impl MotionSearch<'_, '_> {
         let any = if self.question.limit < 0.0 { 0.0 } else { self.info.radius() };
         let mut close = CLOSE;
         for _ in 0..ROUNDS {
-            let [low, high] = best.depth;
+            let Interval { low, high } = best.depth;
             let gap = self.tolerance.max(close * (high - allowed));
             // One half is for the tolerance of the sweep, the other for the gain of each round.
             let limit = (low + 0.5 * gap).max(allowed);
@@ -287,12 +289,12 @@ impl MotionSearch<'_, '_> {
                 None => return (best, high.max(any.min(limit + 0.5 * gap))),
                 Some(SweepEnd::Spent { .. }) => close *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.at(at) {
-                    Some(here) if here.depth[0] > low => best = self.climb(here),
+                    Some(here) if here.depth.low > low => best = self.climb(here),
                     _ => close *= 4.0,
                 },
             }
         }
-        (best, any.max(best.depth[1]))
+        (best, any.max(best.depth.high))
     }
 
     /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.
@@ -327,7 +329,7 @@ impl MotionSearch<'_, '_> {
             let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
             let found = sides.map(|at| self.at(at)).into_iter().flatten();
             let found = found.fold(best, deeper);
-            if found.depth[0] > best.depth[0] {
+            if found.depth.low > best.depth.low {
                 best = found;
             } else {
                 step *= 0.5;
@@ -349,7 +351,8 @@ impl MotionSearch<'_, '_> {
         if question.limit >= 0.0 {
             let asked = (tolerance * setting.length, budget);
             let found = penetration(setting, question, work, &pose, asked);
-            let depth = found.depth.map(|depth| depth / setting.length);
+            let Interval { low, high } = found.depth;
+            let depth = Interval::new(low / setting.length, high / setting.length);
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
         setting.set_pose(work, &pose);
@@ -358,10 +361,14 @@ impl MotionSearch<'_, '_> {
         let best = work.best?;
         let (found, more) = (work.search.best, error(setting, self.motion) + work.skew);
         let high = (found + tolerance).max(work.search.most) + more;
-        Some(DepthPeak { depth: [found - more, high], at, witness: setting.witness(&best, &pose) })
+        Some(DepthPeak {
+            depth: Interval::new(found - more, high),
+            at,
+            witness: setting.witness(&best, &pose),
+        })
     }
 }
 
 fn deeper(one: DepthPeak, other: DepthPeak) -> DepthPeak {
-    if other.depth[0] > one.depth[0] { other } else { one }
+    if other.depth.low > one.depth.low { other } else { one }
 }

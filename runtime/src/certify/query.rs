@@ -56,7 +56,7 @@ impl DepthQuery {
     ) -> DepthQuery {
         let info = field.info();
         DepthQuery {
-            owners: Owners::of_regions(info, |_, region| surfaces(region.surface)),
+            owners: Owners::of_regions(info, |_, region| surfaces(region.surface.0)),
             hull: Hull::about(info, field.steep, errors[0]),
             exact: Hull::about(info, field.steep, errors[1]),
             shell: Shell::about(info),

@@ -1,5 +1,7 @@
 //! The results of a certifier.
 
+use crate::id::{SurfaceId, TriangleId};
+use crate::interval::Interval;
 use nalgebra::Point3;
 
 /// The error for a tool that cannot be certified. Without a profile its distance is unknown, and no bound is
@@ -14,8 +16,21 @@ pub struct NotCertifiable {
     pub tool: String,
 }
 
+/// The error for a surface that the tool does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{tool} has {count} surfaces: there is none of number {}", .surface.0)]
+pub struct NoSuchSurface {
+    /// The name of the tool.
+    pub tool: String,
+    /// The number of its surfaces.
+    pub count: usize,
+    /// The surface that was asked for.
+    pub surface: SurfaceId,
+}
+
 /// The error for an invalid allowance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AllowanceError {
     /// The tool has no surface of that name.
     #[error("{tool} has no surface `{surface}`; it has {known}")]
@@ -52,7 +67,7 @@ pub enum AllowanceError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
     /// The lower and upper bound of the depth, in the part's unit; 0 if nothing is inside.
-    pub depth: [f64; 2],
+    pub depth: Interval,
     /// A point whose depth is at least the lower bound; `None` if none was found inside.
     pub witness: Option<Witness>,
 }
@@ -62,10 +77,10 @@ pub struct Penetration {
 pub struct Witness {
     /// The point on the part, in world coordinates.
     pub point: Point3<f64>,
-    /// The id of the triangle in the mesh.
-    pub triangle: u32,
-    /// The surface of the tool that is the nearest, as an index in the tool's list.
-    pub surface: usize,
+    /// The triangle of the mesh.
+    pub triangle: TriangleId,
+    /// The surface of the tool that is the nearest.
+    pub surface: SurfaceId,
 }
 
 /// The verdict on a tool at a pose.
@@ -82,11 +97,19 @@ pub enum PoseVerdict {
     Touching(Witness),
     /// A connected piece of the restricted interior is inside the material, where no triangle shows it. The
     /// restricted interior is the whole tool, or the points that are deeper than the allowance of their nearest
-    /// surface. Holds a surface of that piece, as an index in the tool's list.
-    Inside(usize),
+    /// surface. Holds a surface of that piece.
+    Inside(SurfaceId),
     /// Rounding decides, or the budget is spent: no point of the part exceeds its allowance by more than this, in the
     /// part's unit. It is 0 if the only open question is whether the tool is inside the material.
     Undecided(f64),
+}
+
+impl PoseVerdict {
+    /// Returns whether it is proved that the tool is clear: no allowance is exceeded, and the tool is outside the
+    /// part. It is not if only the part's surface could be checked ([`PoseVerdict::SurfaceOnly`]).
+    pub fn is_clear(&self) -> bool {
+        matches!(self, PoseVerdict::Clear)
+    }
 }
 
 /// The verdict on a tool along a motion.
@@ -101,11 +124,18 @@ pub enum MotionVerdict {
     /// At this fraction of the motion, from 0 to 1, a point exceeds its allowance. It may not be the first.
     Touching(f64, Witness),
     /// A connected piece of the restricted interior is inside the material when the motion begins, where no triangle
-    /// shows it. Holds a surface of that piece, as an index in the tool's list.
-    Inside(usize),
+    /// shows it. Holds a surface of that piece.
+    Inside(SurfaceId),
     /// The budget is spent, or rounding decides. The motion is clear up to this fraction of it, from 0 to 1; the rest
     /// is unknown.
     Undecided(f64),
+}
+
+impl MotionVerdict {
+    /// Returns whether it is proved that the tool is clear during the whole motion, as in [`PoseVerdict::is_clear`].
+    pub fn is_clear(&self) -> bool {
+        matches!(self, MotionVerdict::Clear)
+    }
 }
 
 /// The depth of a surface of a tool in a part along a motion.
@@ -121,8 +151,8 @@ pub enum MotionDepth {
         at: f64,
         /// The lower and upper bound of the depth at that time, in the part's unit. If negative, the magnitude is the
         /// distance from the part.
-        depth: [f64; 2],
-        /// Upper bound on depth over the motion, in the part's unit. It usually exceeds `depth[0]` by at most the
+        depth: Interval,
+        /// Upper bound on depth over the motion, in the part's unit. It usually exceeds `depth.low` by at most the
         /// tolerance or an eighth of the excess over the allowance, whichever is larger.
         most: f64,
         /// The point with that depth at that time.
@@ -136,11 +166,18 @@ pub enum MotionDepth {
     Undecided(f64),
 }
 
+impl MotionDepth {
+    /// Returns whether it is proved that the surface stays within its allowance during the whole motion.
+    pub fn is_clear(&self) -> bool {
+        matches!(self, MotionDepth::Within)
+    }
+}
+
 /// The distance of a tool from a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
     /// The lower and upper bound of the distance, in the part's unit; 0 in contact.
-    pub distance: [f64; 2],
+    pub distance: Interval,
     /// The nearest point found on the part.
     pub witness: Option<Witness>,
 }

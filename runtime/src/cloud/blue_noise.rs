@@ -6,6 +6,7 @@ use super::pieces::Surface;
 use super::sampling::AreaSampler;
 use super::voronoi::VoronoiSites;
 use super::{Cloud, decimate};
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use nalgebra::Point3;
 use std::collections::HashMap;
@@ -52,7 +53,7 @@ pub(super) fn blue(
         let mut taken = InsertedPoints::new(far);
         for hole in holes {
             if cloud.len() < count && taken.put(&hole) {
-                let normal = mesh.normal(hole.triangle).unwrap_or_default();
+                let normal = mesh.normal(TriangleId(hole.triangle)).unwrap_or_default();
                 cloud.push(hole.place, normal, hole.triangle, 0.0);
             }
         }

@@ -5,6 +5,7 @@ use crate::mesh::LARGEST_COORDINATE;
 
 /// Reasons why lists do not form a cloud, or why a requested cloud cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CloudError {
     /// The cloud would have no points.
     #[error("the cloud has no point: ask for one at least")]

@@ -8,6 +8,7 @@ mod duplicates;
 mod error;
 mod estimate;
 mod lists;
+mod method;
 #[cfg(test)]
 mod odd;
 mod pieces;
@@ -16,8 +17,8 @@ mod sampling;
 mod voronoi;
 
 pub use error::CloudError;
+pub use method::{Sampling, SamplingMethod};
 
-use crate::keywords::words;
 use crate::mesh::{Mesh, OrientedPoints, area_and_normal, is_valid_coordinate};
 use crate::unit::Unit;
 use cells::Cells;
@@ -51,18 +52,6 @@ pub struct Cloud {
     cover: Option<CoveringRadius>,
 }
 
-/// Methods of distributing points over a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum SamplingMethod {
-    /// Evenly: [`Cloud::blue_noise`].
-    #[default]
-    BlueNoise,
-    /// Independently: [`Cloud::uniform`], with the areas of the points' cells as weights.
-    Uniform,
-}
-
-words!(SamplingMethod, "blue, random", BlueNoise "blue", Uniform "random");
-
 /// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during
 /// sampling.
 pub const MAX_BLUE_NOISE_POINTS: usize = 20_000_000;
@@ -78,86 +67,52 @@ pub struct CoveringRadius {
 }
 
 impl Cloud {
-    /// Draws `count` points independently and uniformly by area, each with the weight `area / count`. A
-    /// sum over the cloud differs from the integral by a standard deviation of order `count^-1/2`,
-    /// whatever the integrand's smoothness: four times the points halve the error.
-    /// [`Cloud::with_voronoi_weights`] computes better weights.
-    ///
-    /// The same mesh, count and seed give the same cloud on every machine, and the first points of a
-    /// longer cloud are those of a shorter one. Each point takes three draws of PCG64: its triangle and
-    /// two barycentric coordinates, folded back into the triangle.
-    ///
-    /// # Errors
-    /// Fails for a count of 0 or beyond 32 bits.
-    pub fn uniform(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
-        let facets = AreaSampler::of(mesh);
-        check_count(count)?;
-        Ok(facets.random(mesh, count, seed))
-    }
-
-    /// Distributes `count` points evenly: no two are close together, and no part of the surface is far
-    /// from all. Each has the area of its cell as weight, and the cloud has a covering radius
-    /// ([`Cloud::covering_radius`]).
-    ///
-    /// The most crowded of four times as many random points are removed until 96 % of `count` are left.
-    /// The remaining points are inserted one by one where the surface is farthest from all others, so
-    /// edges and corners of the part get points where they help. The same mesh, count and seed give the
-    /// same cloud for any number of cores.
-    ///
-    /// # Errors
-    /// Fails for a count of 0 or more than [`MAX_BLUE_NOISE_POINTS`].
-    pub fn blue_noise(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
-        check_count(count)?;
-        if count > MAX_BLUE_NOISE_POINTS {
-            return Err(CloudError::TooManyBlueNoise { count });
-        }
-        let facets = AreaSampler::of(mesh);
-        let surface = Surface::new(mesh, &facets, count);
-        Ok(blue_noise::blue(mesh, &facets, &surface, count, seed).weighted_on(&surface))
-    }
-
-    /// Samples `count` points with the given method, with the areas of their cells as weights and a
-    /// known covering radius.
+    /// Samples points of a mesh. Points that are not drawn by [`SamplingMethod::MonteCarlo`] have the areas of their
+    /// cells as weights and a proved [covering radius](Cloud::covering_radius).
     ///
     /// # Errors
     /// Fails for a count of 0 or beyond 32 bits, and for more than [`MAX_BLUE_NOISE_POINTS`] with
     /// [`SamplingMethod::BlueNoise`].
-    pub fn sample(
-        mesh: &Mesh,
-        sampling: SamplingMethod,
-        count: usize,
-        seed: u64,
-    ) -> Result<Cloud, CloudError> {
-        match sampling {
-            SamplingMethod::BlueNoise => Cloud::blue_noise(mesh, count, seed),
-            SamplingMethod::Uniform => {
-                Ok(Cloud::uniform(mesh, count, seed)?.with_voronoi_weights(mesh))
+    pub fn sample(mesh: &Mesh, sampling: Sampling) -> Result<Cloud, CloudError> {
+        let Sampling { count, method, seed } = sampling;
+        check_count(count)?;
+        let sampler = AreaSampler::of(mesh);
+        match method {
+            SamplingMethod::BlueNoise if count > MAX_BLUE_NOISE_POINTS => {
+                Err(CloudError::TooManyBlueNoise { count })
             }
+            SamplingMethod::BlueNoise => {
+                let surface = Surface::new(mesh, &sampler, count);
+                let cloud = blue_noise::blue(mesh, &sampler, &surface, count, seed);
+                Ok(cloud.weighted_on(&surface))
+            }
+            SamplingMethod::Uniform => {
+                Ok(sampler.random(mesh, count, seed).with_voronoi_weights(mesh))
+            }
+            SamplingMethod::MonteCarlo => Ok(sampler.random(mesh, count, seed)),
         }
     }
 
-    /// Samples as many points as it takes for a covering radius of at most `radius`, but no more than
-    /// `most`. With [`SamplingMethod::BlueNoise`] these are about `0.8 · area / radius²` points.
+    /// Samples as many points as it takes for a covering radius of at most `radius`, in the mesh's unit, but no more
+    /// than `sampling.count`. With [`SamplingMethod::BlueNoise`] these are about `0.8 · area / radius²` points.
     ///
     /// # Errors
-    /// Fails if `radius` is not positive and finite, or needs more than `most` points or
+    /// Fails if `radius` is not positive and finite, or needs more than `sampling.count` points or
     /// [`MAX_BLUE_NOISE_POINTS`].
     pub fn with_covering_radius(
         mesh: &Mesh,
         radius: f64,
-        sampling: SamplingMethod,
-        most: usize,
-        seed: u64,
+        sampling: Sampling,
     ) -> Result<Cloud, CloudError> {
-        let most = most.min(MAX_BLUE_NOISE_POINTS);
+        let most = sampling.count.min(MAX_BLUE_NOISE_POINTS);
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(CloudError::Radius { radius });
         }
         let area = AreaSampler::of(mesh).spread;
         // Typical covering radius, divided by the square root of the area per point.
-        let mut usual = match sampling {
+        let mut usual = match sampling.method {
             SamplingMethod::BlueNoise => 0.91,
-            SamplingMethod::Uniform => 2.1,
+            SamplingMethod::Uniform | SamplingMethod::MonteCarlo => 2.1,
         };
         loop {
             let needed = area * (usual / radius).powi(2);
@@ -166,7 +121,10 @@ impl Cloud {
                 return Err(CloudError::TooFine { radius, needed, most, instead });
             }
             let count = (needed.ceil() as usize).max(1);
-            let cloud = Cloud::sample(mesh, sampling, count, seed)?;
+            let mut cloud = Cloud::sample(mesh, Sampling { count, ..sampling })?;
+            if cloud.cover.is_none() {
+                cloud.cover = cloud.clone().with_voronoi_weights(mesh).cover;
+            }
             match cloud.cover {
                 Some(cover) if cover.radius > radius => {
                     let here = cover.radius * (count as f64 / area).sqrt();

@@ -3,6 +3,7 @@
 use super::pieces::Surface;
 use super::sampling::AreaSampler;
 use super::*;
+use crate::cloud::Sampling;
 use crate::mesh::shapes;
 
 const UNIT: Unit = Unit::Millimetre;
@@ -45,7 +46,7 @@ fn long_triangles_have_pieces_in_proportion_to_points() {
         assert!(pieces <= 2 * triangles + count, "{pieces} of {triangles} for {count}");
     }
     for (mesh, count) in [(&long, 5), (&slivers, 500)] {
-        let cloud = Cloud::blue_noise(mesh, count, 1).expect("a cloud");
+        let cloud = Cloud::sample(mesh, Sampling::new(count)).expect("a cloud");
         let cover = cloud.covering_radius().expect("it is known");
         assert!(cover.proved && cover.radius >= farthest(mesh, &cloud), "{cover:?}");
         let sum: f64 = cloud.weights().iter().sum();
@@ -61,7 +62,7 @@ fn coincident_triangles_are_divided_once() {
     let copies = Mesh::new(tube.vertices().to_vec(), copies.collect(), UNIT).expect("a mesh");
     assert_eq!(pieces(&copies, 2_000), pieces(&tube, 2_000));
     let [one, all] =
-        [&tube, &copies].map(|mesh| Cloud::blue_noise(mesh, 2_000, 1).expect("a cloud"));
+        [&tube, &copies].map(|mesh| Cloud::sample(mesh, Sampling::new(2_000)).expect("a cloud"));
     let sum = |cloud: &Cloud| cloud.weights().iter().sum::<f64>();
     assert!((sum(&all) / sum(&one) - 30.0).abs() < 1e-6);
     let [one, all] = [one, all].map(|cloud| cloud.covering_radius().expect("it is known").radius);
@@ -76,7 +77,7 @@ fn nearly_coincident_triangles_keep_a_proved_cover() {
         [[0.0, 0.0, z], [10.0, 0.0, z], [0.0, 10.0, z]]
     };
     let layers = mesh(&(0..200).map(layer).collect::<Vec<_>>());
-    let cloud = Cloud::blue_noise(&layers, 1_000, 1).expect("a cloud");
+    let cloud = Cloud::sample(&layers, Sampling::new(1_000)).expect("a cloud");
     let cover = cloud.covering_radius().expect("it is known");
     assert!(cover.proved && cover.radius >= farthest(&layers, &cloud), "{cover:?}");
     assert!(cover.radius < 2.0, "{cover:?}");
@@ -117,7 +118,7 @@ fn coincident_points_share_a_cell() {
 #[test]
 fn coincident_points_are_thinned() {
     let tube = shapes::tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
-    let cloud = Cloud::uniform(&tube, 100, 1).expect("a cloud");
+    let cloud = Cloud::sample(&tube, Sampling::monte_carlo(100)).expect("a cloud");
     let repeated = |count: usize| {
         let all = (0..count).map(|k| k % 100);
         let points = all.clone().map(|k| cloud.points()[k]).collect();

@@ -2,6 +2,7 @@
 
 use super::Cloud;
 use super::duplicates::Copies;
+use crate::id::TriangleId;
 use crate::mesh::{CompensatedSum, Mesh, area_and_normal};
 use crate::parallel;
 use nalgebra::{Point3, Vector3};
@@ -56,7 +57,7 @@ impl AreaSampler {
         self.areas_up_to.last().copied().unwrap_or_default()
     }
 
-    /// Samples independently and uniformly; see [`Cloud::uniform`].
+    /// Samples independently and uniformly; see [`SamplingMethod::MonteCarlo`](super::SamplingMethod::MonteCarlo).
     pub(super) fn random(&self, mesh: &Mesh, count: usize, seed: u64) -> Cloud {
         let mut random = Pcg64::seed_from_u64(seed);
         let mut cloud = Cloud::with_capacity(count, mesh.unit());
@@ -101,7 +102,7 @@ impl AreaSampler {
 
     /// Draws a point of a triangle, uniformly by area.
     fn point(&self, mesh: &Mesh, facet: usize, random: &mut Pcg64) -> Point3<f64> {
-        let [a, b, c] = mesh.triangle(self.ids[facet]);
+        let [a, b, c] = mesh.triangle(TriangleId(self.ids[facet]));
         let (u, v) = (fraction(random), fraction(random));
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         a + u * (b - a) + v * (c - a)

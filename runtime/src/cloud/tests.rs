@@ -1,5 +1,7 @@
 use super::sampling::fraction;
 use super::*;
+use crate::cloud::Sampling;
+use crate::id::TriangleId;
 use crate::mesh::shapes;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64;
@@ -21,14 +23,14 @@ fn chi_square(counts: &[f64], shares: &[f64]) -> f64 {
 #[test]
 fn random_points_lie_on_the_surface_and_share_its_area() {
     let mesh = shapes::tube(3.0, 5.0, 13.116, 96, 23, UNIT).expect("a tube");
-    let cloud = Cloud::uniform(&mesh, 20_000, 7).expect("a cloud");
+    let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(20_000).with_seed(7)).expect("a cloud");
     assert_eq!((cloud.len(), cloud.unit()), (20_000, UNIT));
     let sum: f64 = cloud.weights().iter().sum();
     assert!((sum / mesh.diagnostics().area - 1.0).abs() < 1e-11, "{sum}");
     for i in 0..cloud.len() {
         let id = cloud.triangles()[i];
-        assert_eq!(Some(cloud.normals()[i]), mesh.normal(id));
-        let off = (cloud.points()[i] - mesh.triangle(id)[0]).dot(&cloud.normals()[i]);
+        assert_eq!(Some(cloud.normals()[i]), mesh.normal(TriangleId(id)));
+        let off = (cloud.points()[i] - mesh.triangle(TriangleId(id))[0]).dot(&cloud.normals()[i]);
         assert!(off.abs() < 1e-14, "{off}");
     }
 }
@@ -36,8 +38,8 @@ fn random_points_lie_on_the_surface_and_share_its_area() {
 #[test]
 fn random_points_are_uniform() {
     let mesh = cuboid();
-    let cloud = Cloud::uniform(&mesh, 60_000, 3).expect("a cloud");
-    let areas: Vec<f64> = (0..12).map(|id| mesh.area(id)).collect();
+    let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(60_000).with_seed(3)).expect("a cloud");
+    let areas: Vec<f64> = (0..12).map(|id| mesh.area(TriangleId(id))).collect();
     let mut counts = vec![0.0; 12];
     // Also count grid cells of equal share on the side z = 0, which is 1 by 2.
     let mut cells = vec![0.0; 32];
@@ -55,8 +57,9 @@ fn random_points_are_uniform() {
 #[test]
 fn a_seed_is_a_cloud() {
     let mesh = cuboid();
-    let [a, b, c] = [(100, 1), (200, 1), (100, 2)]
-        .map(|(count, seed)| Cloud::uniform(&mesh, count, seed).expect("a cloud"));
+    let [a, b, c] = [(100, 1), (200, 1), (100, 2)].map(|(count, seed)| {
+        Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(seed)).expect("a cloud")
+    });
     assert_eq!(a.points(), &b.points()[..100]);
     assert_ne!(a.points(), c.points());
     // The stream must stay the same: clouds in published measurements are identified by their seed.
@@ -69,12 +72,15 @@ fn degenerate_triangles_are_never_touched() {
     let vertices = cuboid().vertices().to_vec();
     let triangles = vec![[0, 0, 1], [0, 1, 2], [3, 3, 3], [4, 5, 6], [7, 6, 7]];
     let mesh = Mesh::new(vertices, triangles, UNIT).expect("a mesh");
-    let cloud = Cloud::uniform(&mesh, 1000, 0).expect("a cloud");
+    let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(1000).with_seed(0)).expect("a cloud");
     assert!(cloud.triangles().iter().all(|id| [1, 3].contains(id)));
     assert_eq!(Cloud::centroids(&mesh).triangles(), [1, 3]);
-    assert_eq!(Cloud::uniform(&mesh, 0, 0), Err(CloudError::Empty));
+    assert_eq!(Cloud::sample(&mesh, Sampling::monte_carlo(0).with_seed(0)), Err(CloudError::Empty));
     if let Some(count) = (u32::MAX as usize).checked_add(1) {
-        assert_eq!(Cloud::uniform(&mesh, count, 0), Err(CloudError::TooMany { count }));
+        assert_eq!(
+            Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(0)),
+            Err(CloudError::TooMany { count })
+        );
     }
 }
 
@@ -114,7 +120,7 @@ fn clouds_from_elsewhere_are_checked() {
 }
 
 fn random(mesh: &Mesh, count: usize) -> Cloud {
-    Cloud::uniform(mesh, count, 5).expect("a cloud")
+    Cloud::sample(mesh, Sampling::monte_carlo(count).with_seed(5)).expect("a cloud")
 }
 
 /// Reference implementation of sample elimination: one point at a time, with all distances.
@@ -198,7 +204,7 @@ fn nothing_is_farther_than_the_covering_radius() {
     let doubled = Mesh::new(cuboid().vertices().to_vec(), doubled, UNIT).expect("a mesh");
     for mesh in [cuboid(), ball, sheets(), slivers(), doubled] {
         for count in [1, 2, 3, 10, 300] {
-            let blue = Cloud::blue_noise(&mesh, count, 1).expect("a cloud");
+            let blue = Cloud::sample(&mesh, Sampling::new(count)).expect("a cloud");
             let random = random(&mesh, count).with_voronoi_weights(&mesh);
             for cloud in [blue, random] {
                 let cover = cloud.covering_radius().expect("a cover");
@@ -239,7 +245,7 @@ fn weights_are_the_areas_of_cells() {
 #[test]
 fn the_sides_of_a_sheet_are_weighed_apart() {
     let mesh = sheets();
-    let cloud = Cloud::blue_noise(&mesh, 400, 1).expect("a cloud");
+    let cloud = Cloud::sample(&mesh, Sampling::new(400)).expect("a cloud");
     let side = |up: f64| {
         let of = cloud.normals().iter().zip(cloud.weights()).filter(|(n, _)| n.z * up > 0.5);
         of.map(|(_, weight)| *weight).sum::<f64>()
@@ -257,7 +263,7 @@ fn a_blue_cloud_is_the_same_on_any_number_of_cores() {
     let tube = shapes::tube(3.0, 5.0, 13.0, 96, 4, UNIT).expect("a tube");
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| Cloud::blue_noise(&tube, 20_000, 3).expect("a cloud"))
+        pool.install(|| Cloud::sample(&tube, Sampling::new(20_000).with_seed(3)).expect("a cloud"))
     };
     let one = on(1);
     assert!(one.covering_radius().is_some_and(|cover| {
@@ -270,35 +276,23 @@ fn a_blue_cloud_is_the_same_on_any_number_of_cores() {
 #[test]
 fn a_radius_says_how_many_points() {
     let mesh = cuboid();
-    for sampling in [SamplingMethod::BlueNoise, SamplingMethod::Uniform] {
+    let most = Sampling::new(MAX_BLUE_NOISE_POINTS);
+    let methods = [SamplingMethod::BlueNoise, SamplingMethod::Uniform, SamplingMethod::MonteCarlo];
+    for method in methods {
         for radius in [10.0, 0.5, 0.05] {
-            let cloud =
-                Cloud::with_covering_radius(&mesh, radius, sampling, MAX_BLUE_NOISE_POINTS, 1)
-                    .expect("a cloud");
+            let cloud = Cloud::with_covering_radius(&mesh, radius, most.with_method(method));
+            let cloud = cloud.expect("a cloud");
             let found = cloud.covering_radius().expect("a cover").radius;
             assert!(found <= radius, "{found} of {radius}");
-            let spare = if sampling == SamplingMethod::BlueNoise { 0.85 } else { 0.7 };
+            let spare = if method == SamplingMethod::BlueNoise { 0.85 } else { 0.7 };
             assert!(cloud.len() < 5 || found > spare * radius, "{found} of {radius}");
         }
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = Cloud::with_covering_radius(
-            &mesh,
-            radius,
-            SamplingMethod::BlueNoise,
-            MAX_BLUE_NOISE_POINTS,
-            1,
-        );
+        let refused = Cloud::with_covering_radius(&mesh, radius, most);
         assert!(matches!(refused, Err(CloudError::Radius { .. })), "{refused:?}");
     }
-    let refused = Cloud::with_covering_radius(
-        &mesh,
-        1e-5,
-        SamplingMethod::BlueNoise,
-        MAX_BLUE_NOISE_POINTS,
-        1,
-    )
-    .expect_err("too many points");
+    let refused = Cloud::with_covering_radius(&mesh, 1e-5, most).expect_err("too many points");
     let text = refused.to_string();
     assert!(text.contains("wants about 2.3e11 points") && text.contains("certify"), "{text}");
 }
@@ -311,8 +305,8 @@ fn of_points_alone_cells_are_estimated() {
         Cloud::from_points(OrientedPoints { places: points, normals, faces: None, areas }, UNIT)
     };
     for (cloud, close, near) in [
-        (Cloud::blue_noise(&mesh, 5_000, 1), 0.05, 0.25),
-        (Cloud::uniform(&mesh, 5_000, 1), 0.15, 0.5),
+        (Cloud::sample(&mesh, Sampling::new(5_000)), 0.05, 0.25),
+        (Cloud::sample(&mesh, Sampling::monte_carlo(5_000)), 0.15, 0.5),
     ] {
         let cloud = cloud.expect("a cloud").with_voronoi_weights(&mesh);
         let guessed = points(cloud.clone(), None).expect("points");
@@ -380,7 +374,9 @@ fn what_has_no_area_is_covered_too() {
     let mut triangles = cuboid().triangles().to_vec();
     triangles.push([0, 8, 9]);
     let mesh = Mesh::new(vertices, triangles, UNIT).expect("a mesh");
-    for cloud in [Cloud::blue_noise(&mesh, 50, 1), Cloud::uniform(&mesh, 50, 1)] {
+    for cloud in
+        [Cloud::sample(&mesh, Sampling::new(50)), Cloud::sample(&mesh, Sampling::monte_carlo(50))]
+    {
         let cloud = cloud.expect("a cloud").with_voronoi_weights(&mesh);
         let far = places(&mesh, 50).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
         let radius = cloud.covering_radius().expect("a cover").radius;
@@ -393,7 +389,7 @@ fn what_has_no_area_is_covered_too() {
 #[test]
 fn points_that_repeat_share_their_cells() {
     let mesh = shapes::plane(1.0, 4, UNIT).expect("a plane");
-    let cloud = Cloud::blue_noise(&mesh, 500, 1).expect("a cloud");
+    let cloud = Cloud::sample(&mesh, Sampling::new(500)).expect("a cloud");
     let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
     let points = |places: Vec<Point3<f64>>, areas| {
         let normals = vec![Vector3::z(); places.len()];

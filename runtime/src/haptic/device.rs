@@ -1,5 +1,6 @@
 //! Haptic devices: the trait, force and torque limits, and devices that play back poses.
 
+use crate::debug::debug;
 use crate::motion::{Motion, MotionError};
 use crate::pose::{Pose, PoseError};
 use nalgebra::Vector3;
@@ -66,6 +67,7 @@ impl Default for DeviceLimits {
 
 /// Reasons why a device could not report its pose or apply a wrench.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DeviceError {
     /// The reported data is not a valid pose.
     #[error("the device says that it is nowhere: {0}")]
@@ -105,6 +107,8 @@ pub struct ScriptedDevice<F> {
     cycle: u64,
 }
 
+debug!([F] ScriptedDevice<F>, "ScriptedDevice", |this| { cycle: this.cycle, limits: this.limits });
+
 impl<F: FnMut(u64) -> Result<Pose, DeviceError>> ScriptedDevice<F> {
     /// Creates a device whose pose in each cycle, counted from 0, is computed by `script`.
     pub fn new(limits: DeviceLimits, script: F) -> ScriptedDevice<F> {
@@ -129,6 +133,7 @@ impl<F: FnMut(u64) -> Result<Pose, DeviceError>> Device for ScriptedDevice<F> {
 }
 
 /// A device that plays a recorded or programmed path once, from its first pose to its last.
+#[derive(Clone, Debug)]
 pub struct PlaybackDevice {
     poses: Vec<Pose>,
     motions: Vec<Motion>,

@@ -4,6 +4,7 @@
 use super::frame::{Frame, halves, join};
 use super::setting::{self, SettingError};
 use super::{Device, DeviceError, DeviceLimits, DeviceWrench};
+use crate::debug::debug;
 use crate::pose::{Pose, PoseError};
 use crate::unit::Unit;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
@@ -69,6 +70,8 @@ pub struct SimulatedHand<F> {
     /// Encoder resolutions, mm and rad; 0 for exact values.
     steps: [f64; 2],
 }
+
+debug!([F] SimulatedHand<F>, "SimulatedHand", |this| { cycle: this.cycle, limits: this.limits });
 
 /// The pose of the handle, its initial pose, and its velocity in mm/s and rad/s.
 #[derive(Clone, Copy)]

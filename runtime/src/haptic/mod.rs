@@ -8,17 +8,17 @@
 //!                               └──▶ all of them, as far as there is room: record
 //! ```
 //!
-//! A [`Session`] computes one cycle and needs no clock; [`run`] executes it at a fixed rate.
+//! A [`Session`] computes one cycle and needs no clock; [`Session::run`] executes it at a fixed rate.
 //!
 //! ```
 //! use nalgebra::{Point3, Vector3};
 //! use touchoff::haptic::{Device, SimulatedHand, DeviceLimits, Session, SessionSettings};
-//! use touchoff::{Law, Part, Pose, Probe, Unit, mesh::shapes};
+//! use touchoff::{Law, Part, Pose, Probe, Sampling, Unit, mesh::shapes};
 //! # touchoff::tool! { tool Ball { units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; } } }
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!
 //! let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
-//! let part = Part::from_mesh(&block, 20_000, 1)?;
+//! let part = Part::from_mesh(&block, Sampling::new(20_000))?;
 //! let probe = Probe::new(&part, &Ball).with_law(Law::Gradient);
 //! let over = Pose::from_axis(Point3::new(0.0, 0.0, 0.5), Vector3::z())?;
 //! let into = Pose::from_axis(Point3::new(0.0, 0.0, -1.0), Vector3::z())?;
@@ -57,7 +57,7 @@ pub use passivity::EnergyBalance;
 pub use realtime::{Realtime, RealtimeError, check_core};
 pub use run::{
     Clock, LatencyHistogram, LatestState, LoopReport, MonotonicClock, SimulatedClock,
-    StatePublisher, StateStream, run, state_channel,
+    StatePublisher, StateStream, state_channel,
 };
 pub use session::{Rendering, Session, SessionSettings, SessionState};
 pub use setting::SettingError;

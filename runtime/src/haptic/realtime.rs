@@ -22,6 +22,7 @@ pub struct Realtime {
 
 /// A request that the system refused. The loop runs without it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RealtimeError {
     /// The priority was refused.
     #[error("no real-time priority ({0}): start as root, or allow it with `ulimit -r`")]

@@ -115,12 +115,14 @@ impl LoopReport {
 }
 
 /// The loop's end of the state channel: publishes the latest state and a stream of all states.
+#[derive(Debug)]
 pub struct StatePublisher {
     latest: triple_buffer::Input<Option<SessionState>>,
     record: rtrb::Producer<SessionState>,
 }
 
 /// The latest state, for one reader. Reading is wait-free for both sides.
+#[derive(Debug)]
 pub struct LatestState(triple_buffer::Output<Option<SessionState>>);
 
 impl LatestState {
@@ -131,6 +133,7 @@ impl LatestState {
 }
 
 /// All states in order, as long as the reader takes them before the buffer is full.
+#[derive(Debug)]
 pub struct StateStream(rtrb::Consumer<SessionState>);
 
 impl Iterator for StateStream {
@@ -159,49 +162,53 @@ pub fn state_channel(room: usize) -> (StatePublisher, LatestState, StateStream) 
 /// Delay of a cycle that counts as a stall.
 const STALL: Duration = Duration::from_secs(1);
 
-/// Runs cycles at their scheduled times, independent of the duration of earlier cycles. The run ends
-/// after `cycles` cycles, when the device has ended, or when `stop` is set. Cycles whose time has passed
-/// are skipped and count toward `cycles`.
-pub fn run<T: BatchEvaluator + ?Sized>(
-    (session, device): (&mut Session<'_, T>, &mut impl Device),
-    (clock, cycles): (&mut impl Clock, u64),
-    watch: &mut StatePublisher,
-    stop: &AtomicBool,
-) -> LoopReport {
-    let mut report = LoopReport::new();
-    let period = session.period();
-    let mut due = clock.now();
-    while report.cycles + report.skipped < cycles && !stop.load(Ordering::Relaxed) {
-        clock.wait_until(due);
-        let began = clock.now();
-        let late = began.saturating_sub(due);
-        if late > STALL || due.saturating_sub(began) > period {
-            report.stalls += 1;
-            due = began;
+impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
+    /// Runs cycles at their scheduled times, independent of the duration of earlier cycles. The run ends after
+    /// `cycles` cycles, when the device has ended, or when `stop` is set. Cycles whose time has passed are skipped and
+    /// count toward `cycles`.
+    pub fn run(
+        &mut self,
+        device: &mut impl Device,
+        clock: &mut impl Clock,
+        cycles: u64,
+        publisher: &mut StatePublisher,
+        stop: &AtomicBool,
+    ) -> LoopReport {
+        let mut report = LoopReport::new();
+        let period = self.period();
+        let mut due = clock.now();
+        while report.cycles + report.skipped < cycles && !stop.load(Ordering::Relaxed) {
+            clock.wait_until(due);
+            let began = clock.now();
+            let late = began.saturating_sub(due);
+            if late > STALL || due.saturating_sub(began) > period {
+                report.stalls += 1;
+                due = began;
+            }
+            let state = self.cycle(device);
+            if self.faults().ended {
+                break;
+            }
+            report.cycles += 1;
+            if let Some(state) = state {
+                report.note(&state);
+                publisher.latest.write(Some(state));
+                report.dropped_states += u64::from(publisher.record.push(state).is_err());
+            }
+            report.start_delays.saturating_record(nanoseconds(late));
+            let ended = clock.now();
+            report.durations.saturating_record(nanoseconds(ended.saturating_sub(began)));
+            due += period;
+            // The number of whole periods that have passed.
+            let behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
+            let behind = u32::try_from(behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
+            report.missed += u64::from(ended > due);
+            report.skipped += u64::from(behind);
+            due += period * behind;
         }
-        let state = session.cycle(device);
-        if session.faults().ended {
-            break;
-        }
-        report.cycles += 1;
-        if let Some(state) = state {
-            report.note(&state);
-            watch.latest.write(Some(state));
-            report.dropped_states += u64::from(watch.record.push(state).is_err());
-        }
-        report.start_delays.saturating_record(nanoseconds(late));
-        let ended = clock.now();
-        report.durations.saturating_record(nanoseconds(ended.saturating_sub(began)));
-        due += period;
-        // The number of whole periods that have passed.
-        let behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
-        let behind = u32::try_from(behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
-        report.missed += u64::from(ended > due);
-        report.skipped += u64::from(behind);
-        due += period * behind;
+        report.faults = self.faults();
+        report
     }
-    report.faults = session.faults();
-    report
 }
 
 fn nanoseconds(time: Duration) -> u64 {

@@ -6,6 +6,7 @@ use super::input_filter::{DeviceFaults, FilteredInput, InputFilter, SpeedLimit};
 use super::passivity::{EnergyBalance, Passivity};
 use super::setting::{self, SettingError};
 use super::{Device, DeviceAxes, DeviceLimits, DeviceWrench};
+use crate::debug::debug;
 use crate::pose::Pose;
 use crate::probe::{Law, Probe, Stiffness, Wrench};
 use crate::tool::BatchEvaluator;
@@ -102,6 +103,8 @@ pub struct Session<'a, T: ?Sized = dyn Tool + 'a> {
     engaged: f64,
     cycle: u64,
 }
+
+debug!([T: ?Sized] Session<'_, T>, "Session", |this| { period: this.period, limits: this.limits });
 
 #[derive(Clone, Copy)]
 struct CoupledPoses {

@@ -10,6 +10,7 @@
 use super::frame::{Frame, join};
 use super::setting;
 use super::{Device, DeviceAxes, DeviceError, DeviceLimits, DeviceWrench};
+use crate::debug::debug;
 use crate::pose::Pose;
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
@@ -54,27 +55,33 @@ pub struct Spacenav {
     pose: Pose,
     frame: Frame,
     period: f64,
-    flight: SpeedGains,
+    gains: SpeedGains,
     reader: Option<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
 }
 
+debug!([] Spacenav, "Spacenav", |this| { pose: this.pose, period: this.period, gains: this.gains });
+
 impl Spacenav {
     /// Creates a device of `rate` cycles per second, with the tool initially at the pose `start`, in the
-    /// part's unit.
+    /// part's unit `unit`.
     ///
     /// # Errors
     /// Fails if nothing listens at the socket. Fails with [`InvalidInput`](io::ErrorKind::InvalidInput),
     /// with a [`SettingError`](super::SettingError) inside, if the rate or a speed is out of its range.
     pub fn open(
         socket: &Path,
-        (start, unit): (Pose, Unit),
-        (rate, flight): (f64, SpeedGains),
+        start: Pose,
+        unit: Unit,
+        rate: f64,
+        gains: SpeedGains,
     ) -> io::Result<Spacenav> {
         let wrong = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
         let period = setting::period(rate).map_err(wrong)?;
-        setting::above_zero("speed of flight in mm/s", flight.linear).map_err(wrong)?;
-        setting::above_zero("turning speed of flight in rad/s", flight.angular).map_err(wrong)?;
+        setting::above_zero("linear speed at full displacement, in mm/s", gains.linear)
+            .map_err(wrong)?;
+        setting::above_zero("angular speed at full displacement, in rad/s", gains.angular)
+            .map_err(wrong)?;
         let stream = connected(socket)?;
         let (news, cap) = triple_buffer::triple_buffer(&Cap::Pushed([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
@@ -85,7 +92,7 @@ impl Spacenav {
         let axes = if start.has_spin() { DeviceAxes::Six } else { DeviceAxes::Five };
         let unit = unit.factor_to(Unit::Millimetre);
         let frame = Frame { centre: Point3::origin(), unit, axes };
-        Ok(Spacenav { cap, pose: start, frame, period, flight, reader: Some(reader), stop })
+        Ok(Spacenav { cap, pose: start, frame, period, gains, reader: Some(reader), stop })
     }
 }
 
@@ -155,8 +162,8 @@ impl Device for Spacenav {
         };
         // World z is up and y points away from the user. Right, up and away form a left-handed frame,
         // but the daemon and all its clients use the opposite sign for turns about the cap's z.
-        let way = Vector3::new(x, z, y) * (self.flight.linear * self.period);
-        let turn = Vector3::new(about_x, about_z, about_y) * (self.flight.angular * self.period);
+        let way = Vector3::new(x, z, y) * (self.gains.linear * self.period);
+        let turn = Vector3::new(about_x, about_z, about_y) * (self.gains.angular * self.period);
         self.pose = self.frame.moved(&self.pose, &join(&way, &turn))?;
         Ok(self.pose)
     }

@@ -22,6 +22,7 @@ use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
 
+use crate::id::TriangleId;
 use crate::input;
 use crate::unit::Unit;
 
@@ -62,6 +63,7 @@ pub struct Mesh {
 
 /// Reasons why vertices and triangles do not form a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There are no triangles.
     #[error("the mesh has no triangle: export the part again, with its surfaces meshed")]
@@ -195,6 +197,11 @@ impl Mesh {
         &self.triangles
     }
 
+    /// Returns the ids of all triangles, in their order.
+    pub fn ids(&self) -> impl DoubleEndedIterator<Item = TriangleId> + use<> {
+        (0..self.triangles.len() as u32).map(TriangleId)
+    }
+
     /// Returns the unit of length of the coordinates.
     pub fn unit(&self) -> Unit {
         self.unit
@@ -204,8 +211,8 @@ impl Mesh {
     ///
     /// # Panics
     /// Panics if there is no triangle `id`.
-    pub fn triangle(&self, id: u32) -> [Point3<f64>; 3] {
-        self.triangles[id as usize].map(|vertex| self.vertices[vertex as usize])
+    pub fn triangle(&self, id: TriangleId) -> [Point3<f64>; 3] {
+        self.triangles[id.index()].map(|vertex| self.vertices[vertex as usize])
     }
 
     /// Returns a triangle's unit normal by its winding: `(b - a) × (c - a)` normalised. Returns `None`
@@ -214,7 +221,7 @@ impl Mesh {
     ///
     /// # Panics
     /// Panics if there is no triangle `id`.
-    pub fn normal(&self, id: u32) -> Option<Vector3<f64>> {
+    pub fn normal(&self, id: TriangleId) -> Option<Vector3<f64>> {
         area_and_normal(&self.triangle(id)).map(|(_, normal)| normal)
     }
 
@@ -222,7 +229,7 @@ impl Mesh {
     ///
     /// # Panics
     /// Panics if there is no triangle `id`.
-    pub fn area(&self, id: u32) -> f64 {
+    pub fn area(&self, id: TriangleId) -> f64 {
         area_and_normal(&self.triangle(id)).map_or(0.0, |(area, _)| area)
     }
 

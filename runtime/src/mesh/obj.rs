@@ -11,6 +11,7 @@ use crate::unit::Unit;
 
 /// Reasons why an OBJ file could not be read. Lines count from 1.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ObjError {
     /// A line does not match the grammar.
     #[error(
@@ -261,6 +262,7 @@ impl<'a> Lines<'a, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::id::TriangleId;
     use crate::mesh::shapes;
     use crate::mesh::tests::mangled;
     use rand_core::SeedableRng;
@@ -324,7 +326,7 @@ mod tests {
         }
         let latin = [b"# caf\xE9\n", TRIANGLE.as_bytes()].concat();
         let mesh = Mesh::from_obj(&latin, "", UNIT).expect("Latin-1 in a comment");
-        assert_eq!(mesh.triangle(0)[2], Point3::new(0.0, 2.0, 0.1));
+        assert_eq!(mesh.triangle(TriangleId(0))[2], Point3::new(0.0, 2.0, 0.1));
     }
 
     #[test]
@@ -333,7 +335,10 @@ mod tests {
             format!("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 .5 0\nv 0 2 0\nf {face}\nf 1 2 5\n")
         };
         let mesh = Mesh::from_obj(with("4 5 1 2 3").as_bytes(), "", UNIT).expect("a fan");
-        assert_eq!((mesh.triangles().len(), mesh.area(0) + mesh.area(1)), (4, 1.5));
+        assert_eq!(
+            (mesh.triangles().len(), mesh.area(TriangleId(0)) + mesh.area(TriangleId(1))),
+            (4, 1.5)
+        );
         let folded = refusal(with("2 3 4 5 1"));
         assert!(folded.contains("part.obj, line 6: the polygon is too hollow"), "{folded}");
     }

@@ -18,6 +18,7 @@ pub enum Geometry {
 
 /// Reasons why a file could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GeometryError {
     /// The file system refused to read the file.
     #[error("cannot read {file}: {source}: check the path and its permissions")]

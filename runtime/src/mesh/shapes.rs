@@ -239,6 +239,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::id::TriangleId;
     use std::f64::consts::PI;
 
     const UNIT: Unit = Unit::Millimetre;
@@ -273,7 +274,7 @@ mod tests {
         let sheet = plane(2.0, 4, UNIT).expect("a plane");
         let survey = sheet.diagnostics();
         assert_eq!((survey.area, survey.open_edges, survey.triangles), (16.0, 16, 32));
-        assert!(survey.is_oriented() && sheet.normal(31) == Some(Vector3::z()));
+        assert!(survey.is_oriented() && sheet.normal(TriangleId(31)) == Some(Vector3::z()));
 
         for subdivisions in 0..6u32 {
             let survey = sphere(3.0, subdivisions, UNIT).expect("a sphere").diagnostics();

@@ -16,6 +16,7 @@ pub(super) const RECORD: usize = 50;
 
 /// Reasons why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum StlError {
     /// The file system refused to read the file.
     #[error("cannot read {file}: {source}: check the path and its permissions")]

@@ -1,6 +1,7 @@
 //! Tests of reading, welding and refusing meshes.
 
 use super::*;
+use crate::id::TriangleId;
 use rand_core::{Rng, SeedableRng};
 use std::path::PathBuf;
 
@@ -50,10 +51,14 @@ fn areas_hold_at_any_scale_and_offset() {
         let sliver = corner(0.5, 0.0);
         let mesh =
             Mesh::new(vec![a, b, c, sliver], vec![[0, 1, 3], [0, 1, 2]], UNIT).expect("a mesh");
-        assert_eq!((mesh.normal(0), mesh.area(0)), (None, 0.0), "scale {scale}");
+        assert_eq!(
+            (mesh.normal(TriangleId(0)), mesh.area(TriangleId(0))),
+            (None, 0.0),
+            "scale {scale}"
+        );
         let expected = 0.5 * (b.x - a.x) * (c.y - a.y);
-        assert!((mesh.area(1) / expected - 1.0).abs() < 1e-15, "scale {scale}");
-        assert_eq!(mesh.normal(1), Some(Vector3::z()), "scale {scale}");
+        assert!((mesh.area(TriangleId(1)) / expected - 1.0).abs() < 1e-15, "scale {scale}");
+        assert_eq!(mesh.normal(TriangleId(1)), Some(Vector3::z()), "scale {scale}");
     }
 }
 
@@ -61,7 +66,7 @@ fn areas_hold_at_any_scale_and_offset() {
 fn reads_ascii_in_every_dress() {
     let plain = format!("solid a part\n{FACET}endsolid a part\n");
     let expected = Mesh::from_stl(plain.as_bytes(), "", UNIT).expect("plain");
-    assert_eq!(expected.triangle(0)[1], Point3::new(1.5e-3, 0.0, 0.0));
+    assert_eq!(expected.triangle(TriangleId(0))[1], Point3::new(1.5e-3, 0.0, 0.0));
     for text in [
         format!("solid\n{FACET}endsolid"),
         plain.to_uppercase(),

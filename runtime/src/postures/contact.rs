@@ -41,7 +41,7 @@ const SAME: f64 = 1e-9;
 impl ContactSites {
     /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
     pub(crate) fn new(info: &ToolInfo, length: f64) -> ContactSites {
-        let cuts = |surface: usize| info.surfaces[surface].cutting;
+        let cuts = |surface| info.surface(surface).cutting;
         let mut sites = Vec::new();
         // The profile continues beyond the axis as its mirror image.
         let mut before = info.outline.first().map(|first| {

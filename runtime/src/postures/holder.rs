@@ -34,7 +34,7 @@ impl Holder {
     /// unit of length to the part's.
     pub(crate) fn new(info: &ToolInfo, length: f64) -> Option<Holder> {
         let mount = |piece: &ProfileSegment| {
-            info.surfaces[piece.surface].name.split_once('.').map(|(mount, _)| mount)
+            info.surface(piece.surface).name.split_once('.').map(|(mount, _)| mount)
         };
         let first = mount(info.outline.first()?)?;
         let pieces = info.outline.iter().filter(|piece| mount(piece) != Some(first));
@@ -67,7 +67,7 @@ impl Holder {
             }
         }
         steps.reverse();
-        let cuts = info.outline.iter().filter(|piece| info.surfaces[piece.surface].cutting);
+        let cuts = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
         let cutting = cuts.flat_map(|piece| [piece.from[1], piece.to[1]]).fold(0.0, f64::max);
         let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
         Some(Holder { steps, cutting: cutting * length, own: nose, fine: FINE * widest })

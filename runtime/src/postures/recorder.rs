@@ -2,6 +2,7 @@
 
 use super::{MapError, PostureMap, PostureRecord, ToolFingerprint, Validator, ValidatorError};
 use crate::certify::TriangleBvh;
+use crate::debug::debug;
 use crate::escape::Escaped;
 use crate::haptic::{SessionState, StateStream};
 use crate::part::Part;
@@ -34,6 +35,8 @@ pub struct Recorder<'a> {
     seen: RecorderStats,
 }
 
+debug!([] Recorder<'_>, "Recorder", |this| { tool: this.tool, stats: this.seen });
+
 /// Counters of a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RecorderStats {
@@ -51,6 +54,7 @@ pub struct RecorderStats {
 
 /// A reason for which a recorder cannot be created.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecorderError {
     /// The tool is not one of the map's.
     #[error(
@@ -93,7 +97,8 @@ impl<'a> Recorder<'a> {
     /// cannot be read.
     pub fn new(
         map: &'a PostureMap,
-        (part, bvh): (&'a Part, &'a TriangleBvh),
+        part: &'a Part,
+        bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
     ) -> Result<Recorder<'a>, RecorderError> {
         let (info, identity) = (tool.info(), map.identity());
@@ -166,7 +171,7 @@ impl<'a> Recorder<'a> {
         let contacts = self.probe.contacts(&pose);
         let niceness =
             contacts.iter().map(|contact| contact.niceness).fold(f64::INFINITY, f64::min);
-        let mut touched: Vec<u32> = contacts.iter().map(|contact| contact.triangle).collect();
+        let mut touched: Vec<u32> = contacts.iter().map(|contact| contact.triangle.0).collect();
         touched.sort_unstable();
         touched.dedup();
         let wanted = &self.wanted;

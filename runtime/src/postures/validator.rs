@@ -2,7 +2,9 @@
 
 use super::PostureRecord;
 use crate::certify::{AllowanceError, Certifier, NotCertifiable, PoseVerdict, TriangleBvh};
+use crate::debug::debug;
 use crate::escape::Escaped;
+use crate::id::SurfaceId;
 use crate::pose::Pose;
 use crate::tool::Symmetry;
 use crate::tool::Tool;
@@ -26,6 +28,7 @@ pub struct Rules {
 
 /// An error in [`Rules`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RulesError {
     /// The tolerance is not a finite length above 0.
     #[error(
@@ -95,6 +98,7 @@ impl fmt::Display for Rules {
 
 /// A reason for which postures of a tool cannot be validated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ValidatorError {
     /// The tool cannot be certified.
     #[error(transparent)]
@@ -117,12 +121,14 @@ pub enum ValidatorError {
 pub struct Validator<'a> {
     pub(super) certifier: Certifier<'a>,
     /// Indices of the surfaces that do not cut, in the tool's list.
-    body: Vec<usize>,
+    body: Vec<SurfaceId>,
     /// Bound on niceness: a posture is accepted only above it.
     least: f64,
     /// Tolerance of recorded depths and clearances, in the part's unit.
     fine: f64,
 }
+
+debug!([] Validator<'_>, "Validator", |this| { certifier: this.certifier });
 
 /// Tolerance of recorded depths and clearances, as a fraction of the rules' tolerance.
 const FINE: f64 = 1.0 / 64.0;
@@ -154,7 +160,8 @@ impl<'a> Validator<'a> {
         for (surface, depth) in &allowed {
             certifier = certifier.with_allowance(surface, *depth)?;
         }
-        let body = (0..surfaces.len()).filter(|index| !surfaces[*index].cutting).collect();
+        let ids = (0..surfaces.len()).filter(|index| !surfaces[*index].cutting);
+        let body = ids.map(SurfaceId).collect();
         let (least, fine) = (rules.niceness, rules.tolerance * FINE);
         Ok(Validator { certifier, body, least, fine })
     }
@@ -188,7 +195,8 @@ impl<'a> Validator<'a> {
     /// Sets the proved bounds of a record: the depth from above, and the clearance of the surfaces that do not
     /// cut from below.
     pub(super) fn measure(&mut self, record: &mut PostureRecord, pose: &Pose) {
-        record.depth = self.certifier.deepest(pose, self.fine).depth[1];
-        record.clearance = self.certifier.clearance_of(&self.body, pose, self.fine).distance[0];
+        record.depth = self.certifier.deepest(pose, self.fine).depth.high;
+        let clearance = self.certifier.clearance_of(&self.body, pose, self.fine);
+        record.clearance = clearance.expect("surfaces of the tool").distance.low;
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Weights;
 use super::state::QueryState;
+use crate::id::{SurfaceId, TriangleId};
 use crate::pose::Pose;
 use crate::tool::ToolInfo;
 use nalgebra::{Point3, Vector3};
@@ -13,12 +14,12 @@ pub struct Contact {
     pub point: Point3<f64>,
     /// The part's outward normal at the point.
     pub normal: Vector3<f64>,
-    /// Id of the part's triangle on which the point lies.
-    pub triangle: u32,
+    /// The part's triangle on which the point lies.
+    pub triangle: TriangleId,
     /// Index of the tool's region in the tool's list.
     pub region: usize,
-    /// Index of the region's surface in the tool's list.
-    pub surface: usize,
+    /// The region's surface.
+    pub surface: SurfaceId,
     /// Penetration depth, at least 0, in the part's unit.
     pub depth: f64,
     /// Magnitude.
@@ -49,7 +50,7 @@ pub(super) fn list(
         contacts.push(Contact {
             point: pose.tip() + tree.relative_to_tip(&state.view, index),
             normal: tree.normal(index).into(),
-            triangle: tree.triangle(index),
+            triangle: TriangleId(tree.triangle(index)),
             region,
             surface: info.regions[region].surface,
             depth: evaluations.depth[at] * state.length,

@@ -1,6 +1,7 @@
 //! Queries at the finest level of detail that a budget allows.
 
 use super::{Law, Probe, Wrench};
+use crate::debug::debug;
 use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, Tool};
@@ -23,6 +24,8 @@ pub struct LodProbe<'a, T: ?Sized = dyn Tool + 'a> {
     budget: usize,
     last: Option<LastContact>,
 }
+
+debug!([T: ?Sized] LodProbe<'_, T>, "LodProbe", |this| { levels: this.probes.len(), budget: this.budget });
 
 /// The result of the last query, if it was in contact.
 struct LastContact {

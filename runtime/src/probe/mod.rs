@@ -22,6 +22,7 @@ pub use stiffness::Stiffness;
 pub use wrench::{Wrench, WrenchRounding};
 
 use crate::bvh::WIDTH;
+use crate::debug::debug;
 use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
 use crate::tool::{BatchEvaluator, OutputSelection, Outputs, Tool, reserve};
@@ -45,6 +46,22 @@ use state::QueryState;
 pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
     tool: &'a T,
     state: QueryState<'a>,
+}
+
+debug!([T: ?Sized] Probe<'_, T>, "Probe", |this| {
+    points: this.state.tree.len(), law: this.state.law, weights: this.state.weights,
+});
+
+/// The clone has the same settings, and memory of its own: queries of both may run at the same time.
+impl<T: BatchEvaluator + ?Sized> Clone for Probe<'_, T> {
+    fn clone(&self) -> Self {
+        let QueryState { tree, unit, law, weights, centre, level, .. } = self.state;
+        Probe::of(tree, unit, self.tool)
+            .with_law(law)
+            .with_weights(weights)
+            .with_centre(centre)
+            .with_level(level)
+    }
 }
 
 /// Output selections, one per kind of query.
@@ -111,7 +128,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
 
     /// Reserves memory for a contact of all points of the part, so that no query of this probe allocates, however much
     /// larger its contact is than earlier ones: 280 bytes per point, 28 MB for 100,000 points. Memory that no contact
-    /// needs is never touched. Probes that are made from this one reserve nothing.
+    /// needs is never touched. Clones reserve nothing.
     #[must_use]
     pub fn with_reserved_memory(mut self) -> Probe<'a, T> {
         self.reserve();
@@ -127,17 +144,6 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         evaluations.reserve_for(tree.leaves.len() * WIDTH, Everything::OUTPUTS);
         self.tool.reserve(evaluations);
         self.tool.reserve(room);
-    }
-
-    /// Returns another probe with the same settings, for another thread.
-    #[must_use]
-    pub fn another(&self) -> Probe<'a, T> {
-        let QueryState { tree, unit, law, weights, centre, level, .. } = self.state;
-        Probe::of(tree, unit, self.tool)
-            .with_law(law)
-            .with_weights(weights)
-            .with_centre(centre)
-            .with_level(level)
     }
 
     /// Returns the compliance centre in the tool's frame, and the length of the part's unit in mm.
@@ -287,12 +293,12 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
-        // Enough poses that making another probe costs nothing in comparison.
+        // Enough poses that cloning the probe costs nothing in comparison.
         const TOGETHER: usize = 256;
         poses
             .par_chunks(TOGETHER)
             .map_init(
-                || self.another(),
+                || self.clone(),
                 |probe, poses| poses.iter().map(|pose| ask(probe, pose)).collect::<Vec<R>>(),
             )
             .flatten_iter()

@@ -1,6 +1,7 @@
 //! The deepest point of a contact, and the quantities that a posture is judged by (Ho 1999, chapter 6).
 
 use super::state::QueryState;
+use crate::id::TriangleId;
 use crate::pose::Pose;
 use crate::tool::ToolInfo;
 use nalgebra::Point3;
@@ -12,8 +13,8 @@ pub struct DeepestPoint {
     pub depth: f64,
     /// The position, in the world's frame.
     pub point: Point3<f64>,
-    /// Id of the triangle on which the point lies.
-    pub triangle: u32,
+    /// The triangle on which the point lies.
+    pub triangle: TriangleId,
 }
 
 /// The quantities that a posture is judged by.
@@ -52,7 +53,7 @@ pub(super) fn at(
     let place = state.candidates.indices()[candidate] as usize;
     let tree = state.tree;
     let point = pose.tip() + tree.relative_to_tip(&state.view, place);
-    DeepestPoint { depth: depth * state.length, point, triangle: tree.triangle(place) }
+    DeepestPoint { depth: depth * state.length, point, triangle: TriangleId(tree.triangle(place)) }
 }
 
 /// Returns the posture of the last evaluation.

@@ -7,6 +7,7 @@ use crate::unit::Unit;
 
 /// A reason for which a program is refused. The message names the file, the line, the reason and the remedy.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProgramError {
     /// The file could not be read at all.
     #[error("{file}: cannot be read ({source}): check the path and its permissions")]

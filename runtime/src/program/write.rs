@@ -14,6 +14,7 @@ use std::io::{self, Write};
 
 /// A reason for which a program cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// APT-CL has no word for the unit.
     #[error("APT-CL has no word for {unit}: write the program in mm or inch, or as a table")]
@@ -57,7 +58,7 @@ impl Cutter {
     /// this order. Above the first surface that does not cut it may have any shape. A tool without a profile
     /// has no cutter.
     pub fn of(info: &ToolInfo, unit: Unit) -> Option<Cutter> {
-        let cutting = |piece: &&ProfileSegment| info.surfaces[piece.surface].cutting;
+        let cutting = |piece: &&ProfileSegment| info.surface(piece.surface).cutting;
         let mut pieces = info.outline.iter().take_while(cutting).peekable();
         let (mut at, mut corner) = ([0.0; 2], 0.0);
         pieces.peek().filter(|piece| piece.from == at)?;

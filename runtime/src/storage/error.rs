@@ -5,6 +5,7 @@ use std::io;
 /// Reasons why a saved part could not be opened, or why a part could not be saved. Byte offsets count
 /// from 0.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SavedError {
     /// The file system refused to read the file.
     #[error("cannot read {file}: {source}: check the path and its permissions")]

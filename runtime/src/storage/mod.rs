@@ -55,13 +55,13 @@ impl Part {
     /// damaged, or has a newer version. Fails with [`SavedError::BigEndian`] on a big-endian machine.
     ///
     /// ```
-    /// # use touchoff::{Part, Unit, mesh::shapes};
+    /// # use touchoff::{Part, Sampling, Unit, mesh::shapes};
     /// # use nalgebra::Point3;
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// # let folder = tempfile::tempdir()?;
     /// # let path = folder.path().join("block.part");
     /// let block = shapes::cuboid(Point3::origin(), Point3::new(40., 40., 10.), Unit::Millimetre)?;
-    /// Part::from_mesh(&block, 1_000, 1)?.save(&path)?;
+    /// Part::from_mesh(&block, Sampling::new(1_000))?.save(&path)?;
     /// let part = Part::open(&path)?;
     /// assert_eq!(part.tree().len(), 1_000);
     /// # Ok(()) }

@@ -50,8 +50,8 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
 
 /// The evaluation at points side by side. Lanes that are not inside, and outputs that were not requested, are
 /// meaningless.
-#[derive(Clone, Copy)]
-#[expect(missing_docs, reason = "as in Felt")]
+#[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "as in Evaluations")]
 pub struct LaneEvaluation<L: Lane> {
     pub inside: L::Mask,
     pub depth: L,

@@ -1,5 +1,7 @@
 //! The description of a tool, or of a solid: to the runtime a solid is a tool without an axis.
 
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::unit::Unit;
 use std::borrow::Cow;
 
@@ -92,13 +94,27 @@ impl ToolInfo {
     ///
     /// If there is no such region.
     pub fn surface_of(&self, region: usize) -> &Surface {
-        &self.surfaces[self.regions[region].surface]
+        self.surface(self.regions[region].surface)
+    }
+
+    /// Returns a surface.
+    ///
+    /// # Panics
+    /// If the tool has no such surface.
+    pub fn surface(&self, id: SurfaceId) -> &Surface {
+        &self.surfaces[id.0]
+    }
+
+    /// Returns the surface of a name, if the tool has one.
+    pub fn surface_named(&self, name: &str) -> Option<SurfaceId> {
+        self.surfaces.iter().position(|surface| surface.name == name).map(SurfaceId)
     }
 
     /// Returns the lowest and highest z that the tool may reach.
-    pub fn reach(&self) -> [f64; 2] {
-        self.envelope.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], slab| {
-            [low.min(slab.low), high.max(slab.high)]
+    pub fn reach(&self) -> Interval {
+        let none = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
+        self.envelope.iter().fold(none, |Interval { low, high }, slab| {
+            Interval::new(low.min(slab.low), high.max(slab.high))
         })
     }
 
@@ -136,14 +152,14 @@ impl Surface {
 pub struct Region {
     /// The name.
     pub name: Cow<'static, str>,
-    /// Index of the region's surface in the tool's list.
-    pub surface: usize,
+    /// The surface that the region belongs to.
+    pub surface: SurfaceId,
 }
 
 impl Region {
     /// Returns a region made of constants.
     pub const fn new(name: &'static str, surface: usize) -> Region {
-        Region { name: Cow::Borrowed(name), surface }
+        Region { name: Cow::Borrowed(name), surface: SurfaceId(surface) }
     }
 }
 
@@ -156,8 +172,8 @@ pub struct ProfileSegment {
     pub to: [f64; 2],
     /// The circle of an arc; `None` for a line.
     pub circle: Option<Circle>,
-    /// Index of the segment's surface in the tool's list.
-    pub surface: usize,
+    /// The surface that the segment belongs to.
+    pub surface: SurfaceId,
 }
 
 /// The circle of an arc.
@@ -174,12 +190,17 @@ pub struct Circle {
 impl ProfileSegment {
     /// Returns a line segment.
     pub const fn line(from: [f64; 2], to: [f64; 2], surface: usize) -> ProfileSegment {
-        ProfileSegment { from, to, circle: None, surface }
+        ProfileSegment { from, to, circle: None, surface: SurfaceId(surface) }
     }
 
     /// Returns an arc.
     pub const fn arc(ends: [[f64; 2]; 2], circle: Circle, surface: usize) -> ProfileSegment {
-        ProfileSegment { from: ends[0], to: ends[1], circle: Some(circle), surface }
+        ProfileSegment {
+            from: ends[0],
+            to: ends[1],
+            circle: Some(circle),
+            surface: SurfaceId(surface),
+        }
     }
 }
 

@@ -5,6 +5,8 @@ use super::{
     EvaluationEnclosure, Evaluations, LANES, Lane, OutputSelection, Outputs, PointBatch,
     ProfileSegment, Region, Surface, Symmetry, Ternary, Tool, ToolInfo,
 };
+use crate::debug::debug;
+use crate::id::SurfaceId;
 use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
@@ -25,11 +27,14 @@ pub struct Interpreted {
     warnings: String,
 }
 
+debug!([] Interpreted, "Interpreted", |this| { name: this.info.name });
+
 /// A `.tool` file that could not be loaded. The message is meant for people, and has the position and the remedy.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ToolError {
     /// The file could not be read.
-    #[error("{file}: {source}")]
+    #[error("cannot read {file}: {source}{}", remedy(source))]
     Unreadable {
         /// The file.
         file: String,
@@ -100,6 +105,14 @@ impl Interpreted {
     }
 }
 
+/// Returns the remedy for a file that cannot be read, unless the error has one.
+fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        std::io::ErrorKind::InvalidData => "",
+        _ => ": check the path and its permissions",
+    }
+}
+
 fn info(tool: &CheckedTool) -> ToolInfo {
     let model = &tool.model;
     ToolInfo {
@@ -118,7 +131,7 @@ fn info(tool: &CheckedTool) -> ToolInfo {
         regions: model
             .regions
             .iter()
-            .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
+            .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: SurfaceId(r.surface) })
             .collect(),
         envelope: tool
             .envelope()
@@ -141,7 +154,7 @@ fn info(tool: &CheckedTool) -> ToolInfo {
 fn piece(of: model::ProfileSegment) -> ProfileSegment {
     let model::ProfileSegment { ends: [from, to], circle, surface } = of;
     let circle = circle.map(|(centre, radius, convex)| Circle { centre, radius, convex });
-    ProfileSegment { from, to, circle, surface }
+    ProfileSegment { from, to, circle, surface: SurfaceId(surface) }
 }
 
 impl Tool for Interpreted {

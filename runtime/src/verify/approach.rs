@@ -3,6 +3,7 @@
 
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use crate::certify::Certifier;
+use crate::interval::Interval;
 use crate::mesh;
 use crate::motion::Motion;
 use crate::pose::Pose;
@@ -52,7 +53,7 @@ impl Verifier<'_> {
     ) -> Result<Approach, VerifyError> {
         let info = self.tool.info();
         let length = info.unit.factor_to(self.bvh.unit());
-        let cutting = info.outline.iter().filter(|piece| info.surfaces[piece.surface].cutting);
+        let cutting = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
         let widest = |piece: &ProfileSegment| {
             let bulge = piece.circle.filter(|circle| circle.convex);
             let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
@@ -96,7 +97,7 @@ impl Verifier<'_> {
 
 /// Returns an upper bound on the distance of the tool's points from its tip, in the tool's unit.
 fn max_distance_from_tip(info: &ToolInfo) -> f64 {
-    let [low, high] = info.reach();
+    let Interval { low, high } = info.reach();
     low.abs().max(high.abs()).hypot(info.radius())
 }
 
@@ -124,12 +125,13 @@ impl ApproachSearch<'_> {
 
     /// Queries the distance at a pose, and returns a lower bound on it.
     fn query(&mut self, pose: &Pose, line: usize) -> f64 {
-        let [mut low, mut high] = self.certifier.clearance(pose, self.fine).distance;
+        let Interval { mut low, mut high } = self.certifier.clearance(pose, self.fine).distance;
         if high == f64::INFINITY {
             // A tool without a profile (a field) gives no upper bound on the distance. A lower bound of 0 is
             // refined.
             if low == 0.0 {
-                [low, _] = self.certifier.clearance(pose, FINE * FINE * self.fine).distance;
+                Interval { low, .. } =
+                    self.certifier.clearance(pose, FINE * FINE * self.fine).distance;
             }
             high = low;
         }

@@ -2,12 +2,15 @@
 
 use super::Approach;
 use crate::certify::{AllowanceError, NotCertifiable, Witness};
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::motion::MotionError;
 use crate::pose::Pose;
 use crate::program::ProgramError;
 
 /// A reason for which a program cannot be checked.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum VerifyError {
     /// The tool cannot be certified.
     #[error(transparent)]
@@ -43,6 +46,14 @@ pub struct VerifyReport {
     pub unrestricted: bool,
 }
 
+impl VerifyReport {
+    /// Returns whether it is proved that the program does what is allowed: there are no findings, something could have
+    /// been found, and the part has an inside.
+    pub fn is_clear(&self) -> bool {
+        self.findings.is_empty() && self.inside_known && !self.unrestricted
+    }
+}
+
 /// A violation in one motion, or at the first cutter location of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finding {
@@ -63,17 +74,17 @@ pub struct Finding {
     pub kind: FindingKind,
 }
 
-/// The kind of a finding. Surfaces are indices in the tool's list, lengths are in the part's unit.
+/// The kind of a finding. Lengths are in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FindingKind {
     /// A surface is deeper in the part than allowed.
     Deep {
         /// The tool's surface.
-        surface: usize,
+        surface: SurfaceId,
         /// The allowed depth.
         allowed: f64,
         /// Interval that contains the depth at the finding's pose, the deepest that was found.
-        depth: [f64; 2],
+        depth: Interval,
         /// Upper bound on the depth over the whole motion.
         most: f64,
         /// Set if the part's surface passes the middle of the tool there. No point of the tool is deeper, so
@@ -85,11 +96,11 @@ pub enum FindingKind {
     /// A surface comes nearer to the part than its margin.
     Near {
         /// The tool's surface.
-        surface: usize,
+        surface: SurfaceId,
         /// The distance to keep.
         margin: f64,
         /// Interval that contains the distance at the finding's pose, the nearest that was found.
-        distance: [f64; 2],
+        distance: Interval,
         /// Lower bound on the distance over the whole motion.
         least: f64,
         /// The point of the part at that distance.
@@ -99,13 +110,13 @@ pub enum FindingKind {
     /// shows it.
     Inside {
         /// The surface that owns the piece; `None` if the whole tool is inside.
-        surface: Option<usize>,
+        surface: Option<SurfaceId>,
     },
     /// Rounding decides, or the budget was spent. Until the finding's time the surface is no deeper than
     /// allowed; the result after it is unknown.
     Undecided {
         /// The tool's surface.
-        surface: usize,
+        surface: SurfaceId,
     },
     /// The axes are antiparallel, or a solid turns by half a turn, so that the rotation is ambiguous: only the
     /// cutter location itself was checked.
@@ -114,7 +125,7 @@ pub enum FindingKind {
 
 impl FindingKind {
     /// Returns the surface of the finding, if it is about one.
-    pub fn surface(&self) -> Option<usize> {
+    pub fn surface(&self) -> Option<SurfaceId> {
         match self {
             FindingKind::Deep { surface, .. }
             | FindingKind::Near { surface, .. }

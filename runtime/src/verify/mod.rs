@@ -24,6 +24,9 @@ pub use approach::Approach;
 pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
 
 use crate::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
+use crate::debug::debug;
+use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::motion::{Motion, MotionError};
 use crate::parallel;
 use crate::pose::Pose;
@@ -39,7 +42,7 @@ use crate::tool::{Symmetry, Tool, ToolInfo};
 /// use nalgebra::Point3;
 /// use touchoff::certify::TriangleBvh;
 /// use touchoff::verify::{FindingKind, Verifier};
-/// use touchoff::{Program, Unit, mesh::shapes};
+/// use touchoff::{Interval, Program, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
 ///     tool Ball "6 mm" {
@@ -57,7 +60,7 @@ use crate::tool::{Symmetry, Tool, ToolInfo};
 /// let report = Verifier::new(&block, &Ball)?.with_tolerance(0.01)?.check(&program)?;
 /// let [finding] = &report.findings[..] else { panic!("{report:?}") };
 /// assert_eq!((finding.from, finding.line), (Some(1), 2));
-/// assert!(matches!(finding.kind, FindingKind::Deep { depth: [low, _], .. } if low > 0.499));
+/// assert!(matches!(finding.kind, FindingKind::Deep { depth: Interval { low, .. }, .. } if low > 0.499));
 /// # Ok(()) }
 /// ```
 pub struct Verifier<'a> {
@@ -69,6 +72,10 @@ pub struct Verifier<'a> {
     allowed: Vec<Option<f64>>,
     budget: u32,
 }
+
+debug!([] Verifier<'_>, "Verifier", |this| {
+    tool: this.tool.info().name, tolerance: this.tolerance, allowed: this.allowed,
+});
 
 /// The default resolution in mm, a micrometre: meshes seldom represent their geometry as closely.
 const RESOLUTION: f64 = 1e-3;
@@ -158,17 +165,36 @@ impl<'a> Verifier<'a> {
     /// If the program states another unit than the part's, or another cutter than the tool, or if its poses
     /// have no spin and the tool is a solid without an axis.
     pub fn check(&self, program: &Program) -> Result<VerifyReport, VerifyError> {
+        self.check_with_progress(program, &|_| ())
+    }
+
+    /// Checks a program like [`Verifier::check`]. Calls `progress` with the number of cutter locations checked since
+    /// the last call, from any thread and in any order; the numbers add up to all cutter locations.
+    ///
+    /// # Errors
+    /// As for [`Verifier::check`].
+    pub fn check_with_progress(
+        &self,
+        program: &Program,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<VerifyReport, VerifyError> {
         program.check_unit(self.bvh.unit())?;
         program.check_poses(self.tool.info())?;
         program.check_cutter(self.tool.info(), self.bvh.unit())?;
         let stops = &program.locations;
         let certifier = Certifier::new(self.bvh, self.tool)?;
         let surfaces = 0..self.allowed.len();
-        let greatest = |surface| certifier.max_possible_depth(surface).unwrap_or(f64::INFINITY);
-        let greatest: Vec<f64> = surfaces.map(greatest).collect();
+        let greatest = |surface| {
+            let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
+            depth.unwrap_or(f64::INFINITY)
+        };
+        let greatest: Vec<f64> = surfaces.map(SurfaceId).map(greatest).collect();
         let found = parallel::ranges(stops.len(), TOGETHER, |range| {
             let mut checker = Checker::new(self, &greatest)?;
-            Ok(range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>())
+            let count = range.len();
+            let findings = range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>();
+            progress(count);
+            Ok(findings)
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
         let findings: Vec<Finding> = found.into_iter().flatten().collect();
@@ -283,18 +309,23 @@ impl Mode<'_> {
             if allowed == f64::INFINITY {
                 continue;
             }
-            match self.certifier.motion_depth(surface, motion, allowed, resolution) {
+            let index = surface;
+            let surface = SurfaceId(surface);
+            let depth = self.certifier.motion_depth(surface, motion, allowed, resolution);
+            match depth.expect("a surface of the tool") {
                 MotionDepth::Within => (),
-                MotionDepth::Deeper { at, depth: [low, high], most, witness } if low < 0.0 => {
+                MotionDepth::Deeper { at, depth: Interval { low, high }, most, witness }
+                    if low < 0.0 =>
+                {
                     let [from, to, least] = [-high, -low, -most].map(|distance| distance.max(0.0));
-                    let (margin, distance) = (-allowed, [from, to]);
+                    let (margin, distance) = (-allowed, Interval::new(from, to));
                     found.push((
                         at,
                         FindingKind::Near { surface, margin, distance, least, witness },
                     ));
                 }
                 MotionDepth::Deeper { at, depth, most, witness } => {
-                    let through = depth[1] >= THROUGH * self.greatest[surface];
+                    let through = depth.high >= THROUGH * self.greatest[index];
                     found.push((
                         at,
                         FindingKind::Deep { surface, allowed, depth, most, through, witness },

@@ -5,7 +5,7 @@ use crate::{parts, places, surface};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Pose, Unit};
+use touchoff::{Interval, Pose, SurfaceId, Unit};
 
 #[test]
 fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
@@ -24,9 +24,9 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
                     let own = lines.iter().filter(|(name, _)| names.contains(name));
                     own.map(|(_, line)| away(line, place)).fold(f64::INFINITY, f64::min)
                 };
-                let all: Vec<usize> = names.iter().map(|name| surface(&Mill, name)).collect();
+                let all: Vec<SurfaceId> = names.iter().map(|name| surface(&Mill, name)).collect();
                 let found = certifier.clearance_of(&all, &pose, 1e-6);
-                let [low, high] = found.distance;
+                let Interval { low, high } = found.expect("a surface of the tool").distance;
                 let nearest =
                     places.iter().map(|place| distance(*place)).fold(f64::INFINITY, f64::min);
                 let text = format!("{names:?} at {pose:?}: {nearest} by places, {low} to {high}");
@@ -71,13 +71,19 @@ fn a_holder_above_a_plate_is_as_far_as_it_is_high() {
         for (surfaces, expected) in
             [(vec![neck], near), (vec![holder], far), (vec![neck, holder], near)]
         {
-            let [low, high] = certifier.clearance_of(&surfaces, &pose, 1e-9).distance;
+            let Interval { low, high } = certifier
+                .clearance_of(&surfaces, &pose, 1e-9)
+                .expect("a surface of the tool")
+                .distance;
             let text = format!("{surfaces:?} at {tip}: {low} to {high}, not {expected}");
             assert!(low <= expected && expected <= high + 1e-9 && high - low < 1e-8, "{text}");
         }
-        let [low, high] = certifier.clearance_of(&[0, 1, neck, holder], &pose, 1e-9).distance;
+        let Interval { low, high } = certifier
+            .clearance_of(&[SurfaceId(0), SurfaceId(1), neck, holder], &pose, 1e-9)
+            .expect("a surface of the tool")
+            .distance;
         let whole = certifier.clearance(&pose, 1e-9).distance;
-        assert!(low <= whole[1] && whole[0] <= high, "{low} to {high}, {whole:?}");
+        assert!(low <= whole.high && whole.low <= high, "{low} to {high}, {whole:?}");
     }
 }
 
@@ -86,8 +92,12 @@ fn from_nothing_it_is_infinitely_far_and_without_a_profile_no_less_than_the_tool
     let bvh = TriangleBvh::new(&parts()[0]);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, 5.0), Vector3::z()).expect("a pose");
     let mut certifier = Certifier::new(&bvh, &Ball).expect("a profile");
-    assert_eq!(certifier.clearance_of(&[], &pose, 0.0).distance, [f64::INFINITY; 2]);
+    let none = certifier.clearance_of(&[], &pose, 0.0).expect("no surface");
+    assert_eq!(none.distance.low, f64::INFINITY);
     let mut certifier = Certifier::new(&bvh, &Plain).expect("a depth that is known");
-    let [low, high] = certifier.clearance_of(&[0], &pose, 1e-6).distance;
+    let Interval { low, high } = certifier
+        .clearance_of(&[SurfaceId(0)], &pose, 1e-6)
+        .expect("a surface of the tool")
+        .distance;
     assert!(low > 4.9 && low <= 5.0 && high == f64::INFINITY, "{low} to {high}");
 }

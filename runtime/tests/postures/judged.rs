@@ -23,8 +23,8 @@ fn no_place_of_a_part_is_deeper_than_it_may_be_where_a_posture_is_accepted() {
             for _ in 0..60 {
                 // About to touch, or slightly deeper.
                 let start = any_pose(&mut draw, 20.0);
-                let depth = certifier.deepest(&start, 1e-6).depth[1];
-                let gap = certifier.clearance(&start, 1e-6).distance[0];
+                let depth = certifier.deepest(&start, 1e-6).depth.high;
+                let gap = certifier.clearance(&start, 1e-6).distance.low;
                 let way = start.axis() * (depth - gap - draw(0.0, tolerance.max(0.2)));
                 let Ok(pose) = start.translated(way) else { continue };
                 let Some(record) = judge.record(3, &pose, 0.75) else {

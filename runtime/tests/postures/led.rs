@@ -6,10 +6,10 @@ use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::postures::path::{PathError, Pattern, ToolPath, plan_path};
+use touchoff::postures::path::{PathError, PathRequest, Pattern, ToolPath};
 use touchoff::postures::sweep::PostureSweep;
 use touchoff::postures::{Directions, Rules};
-use touchoff::{Mesh, Tool, Unit};
+use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 touchoff::tool! {
     tool Wide "a bull nose that is larger than most parts here" {
@@ -42,14 +42,9 @@ impl Case {
         let rules = Rules { tolerance: TOLERANCE * scale, niceness: 0.5, allowed: Vec::new() };
         let (bvh, directions) = (TriangleBvh::new(&mesh), Directions::spread(100));
         let mut access = vec![Vec::new(); mesh.triangles().len()];
-        let sweep = PostureSweep::new(
-            (&mesh, &bvh),
-            vec![tool],
-            &directions,
-            rules.clone(),
-            NonZeroU16::MIN,
-        )
-        .expect("a sweep");
+        let sweep =
+            PostureSweep::new(&mesh, &bvh, vec![tool], &directions, rules.clone(), NonZeroU16::MIN)
+                .expect("a sweep");
         let all: Vec<usize> = (0..sweep.batches()).collect();
         let _: ControlFlow<()> = sweep.run(&all, |batch| {
             for (id, mut row) in batch.rows {
@@ -60,9 +55,20 @@ impl Case {
         Case { mesh, bvh, rules, directions, access, scale }
     }
 
+    fn request<'a>(&'a self, tool: &'a dyn Tool, pattern: &'a Pattern) -> PathRequest<'a> {
+        PathRequest {
+            mesh: &self.mesh,
+            bvh: &self.bvh,
+            tool,
+            rules: &self.rules,
+            directions: &self.directions,
+            accessibility: &self.access,
+            pattern,
+        }
+    }
+
     fn lead(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<ToolPath, PathError> {
-        let of = (&self.mesh, &self.bvh);
-        plan_path(of, (tool, &self.rules), (&self.directions, &self.access), pattern)
+        self.request(tool, pattern).plan()
     }
 
     /// Plans a path over planes with a normal. Distances are in mm.
@@ -76,7 +82,7 @@ impl Case {
 fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
     let mut all = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let size = (b - a).norm().max((c - a).norm()).max((c - b).norm());
         let count = (size / apart).ceil();
         for i in 0..=count as u32 {
@@ -277,13 +283,12 @@ fn a_pattern_that_is_none_is_refused() {
         assert_eq!(path.locations, case.lead(&Mill, &pattern).expect("a path").locations, "{size}");
     }
     let none = vec![Vec::new(); case.access.len()];
-    let of = (&case.mesh, &case.bvh);
     for access in [&none[..], &[], &vec![vec![0; 4]; case.access.len()]] {
-        let found = plan_path(of, (&Mill, &case.rules), (&case.directions, access), &pattern);
+        let found = PathRequest { accessibility: access, ..case.request(&Mill, &pattern) }.plan();
         assert_eq!(found.expect_err("no path"), PathError::NoPosture);
     }
     let wrong = Rules { tolerance: 0.0, ..case.rules.clone() };
-    let found = plan_path(of, (&Mill, &wrong), (&case.directions, &case.access), &pattern);
+    let found = PathRequest { rules: &wrong, ..case.request(&Mill, &pattern) }.plan();
     assert!(matches!(found, Err(PathError::Validator(_))));
 }
 

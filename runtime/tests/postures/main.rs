@@ -11,7 +11,7 @@ use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, Tool, Unit};
+use touchoff::{Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
 
 touchoff::tool! {
     tool Mill "a ball on a neck, in a wider holder" {
@@ -106,7 +106,7 @@ fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
     let back = pose.rotation().transpose();
     let (mut all, mut apart) = (Vec::new(), 0f64);
     for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let (u, v) = ((b - a) / f64::from(RASTER), (c - a) / f64::from(RASTER));
         apart = apart.max(u.norm()).max(v.norm()).max((v - u).norm());
         for i in 0..=RASTER {
@@ -119,7 +119,6 @@ fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
     (all, apart)
 }
 
-fn surface(tool: &dyn Tool, name: &str) -> usize {
-    let surfaces = &tool.info().surfaces;
-    surfaces.iter().position(|surface| surface.name == name).expect("a surface")
+fn surface(tool: &dyn Tool, name: &str) -> SurfaceId {
+    tool.info().surface_named(name).expect("a surface")
 }

@@ -8,14 +8,14 @@ use std::sync::atomic::AtomicBool;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::haptic::{
     DeviceError, DeviceLimits, LoopReport, ScriptedDevice, Session, SessionSettings, SessionState,
-    SimulatedClock, run, state_channel,
+    SimulatedClock, state_channel,
 };
 use touchoff::mesh::shapes;
 use touchoff::postures::{
     MapIdentity, MapRow, PostureMap, Recorder, RecorderError, RecorderStats, Rules,
 };
 use touchoff::tool::Interpreted;
-use touchoff::{Law, Mesh, Part, Pose, Probe, Tool, Unit};
+use touchoff::{Law, Mesh, Part, Pose, Probe, Sampling, Tool, TriangleId, Unit};
 
 const CYCLES: u64 = 4000;
 
@@ -59,11 +59,11 @@ fn looped(
     std::thread::scope(|scope| {
         let running = scope.spawn(move || {
             let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
-            run((&mut session, &mut device), (clock, count), &mut watch, &stop)
+            session.run(&mut device, clock, count, &mut watch, &stop)
         });
         let recorded = match map {
             Some(map) => {
-                let mut recorder = Recorder::new(map, (part, bvh), &Mill).expect("a recorder");
+                let mut recorder = Recorder::new(map, part, bvh, &Mill).expect("a recorder");
                 Some(recorder.follow(&mut samples).expect("recorded"))
             }
             None => {
@@ -89,7 +89,8 @@ fn open(folder: &Path, name: &str) -> PostureMap {
 #[test]
 fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
     let mesh = sphere();
-    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
+    let (part, bvh) =
+        (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let (beside, room) = ((&part, &bvh), CYCLES as usize);
     let map = open(folder.path(), "whole");
@@ -112,7 +113,12 @@ fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
             let pose = record.pose().expect("a pose");
             assert_eq!(record.tool, 1);
             assert_eq!(probe.posture(&pose).niceness, Some(record.niceness));
-            assert!(probe.contacts(&pose).iter().any(|contact| contact.triangle == *triangle));
+            assert!(
+                probe
+                    .contacts(&pose)
+                    .iter()
+                    .any(|contact| contact.triangle == TriangleId(*triangle))
+            );
             assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear);
         }
     }
@@ -135,7 +141,8 @@ fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
 #[test]
 fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     let mesh = sphere();
-    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
+    let (part, bvh) =
+        (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let (beside, room) = ((&part, &bvh), CYCLES as usize);
     let (alone, ..) = looped(beside, 0..CYCLES, (None, room));
@@ -147,7 +154,7 @@ fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     let mut device = ScriptedDevice::new(limits, pose);
     let probe = Probe::new(&part, &Mill).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
-    let mut recorder = Recorder::new(&map, beside, &Mill).expect("a recorder");
+    let mut recorder = Recorder::new(&map, &part, &bvh, &Mill).expect("a recorder");
     for (cycle, before) in alone.iter().enumerate() {
         let state = session.cycle(&mut device).expect("a state");
         recorder.process(&state).expect("recorded");
@@ -181,7 +188,8 @@ fn bits(state: &SessionState) -> Vec<u64> {
 #[test]
 fn a_loop_that_is_too_fast_is_not_waited_for() {
     let mesh = sphere();
-    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
+    let (part, bvh) =
+        (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
     // Room for four states: most are lost, and all others are seen.
@@ -200,15 +208,16 @@ fn a_loop_that_is_too_fast_is_not_waited_for() {
 #[test]
 fn a_tool_of_another_version_or_a_part_in_another_unit_is_refused() {
     let mesh = sphere();
-    let (part, bvh) = (Part::from_mesh(&mesh, 1000, 1).expect("a part"), TriangleBvh::new(&mesh));
+    let (part, bvh) =
+        (Part::from_mesh(&mesh, Sampling::new(1000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
     let other = interpreted("1 - depth/2");
-    let refused = Recorder::new(&map, (&part, &bvh), &other).err().expect("another version");
+    let refused = Recorder::new(&map, &part, &bvh, &other).expect_err("another version");
     assert!(matches!(refused, RecorderError::Tool { .. }), "{refused:?}");
     assert!(refused.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
     let inch = part.converted_to(Unit::Inch);
-    let refused = Recorder::new(&map, (&inch, &bvh), &Mill).err().expect("another unit");
+    let refused = Recorder::new(&map, &inch, &bvh, &Mill).expect_err("another unit");
     assert!(matches!(refused, RecorderError::Unit { .. }), "{refused:?}");
 }
 

@@ -8,7 +8,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::postures::sweep::{Batch, PostureSweep, SweepError, SweepStats};
 use touchoff::postures::{Directions, MapRow, Rules, Validator, ValidatorError};
-use touchoff::{Mesh, Tool, Unit};
+use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 touchoff::tool! {
     tool Lollipop "most of a ball on a thin neck" {
@@ -64,8 +64,8 @@ fn swept(
     rules: Rules,
 ) -> (Vec<MapRow>, SweepStats) {
     let bvh = TriangleBvh::new(mesh);
-    let sweep = PostureSweep::new((mesh, &bvh), tools.to_vec(), directions, rules, keep(3))
-        .expect("a sweep");
+    let sweep =
+        PostureSweep::new(mesh, &bvh, tools.to_vec(), directions, rules, keep(3)).expect("a sweep");
     let all: Vec<usize> = (0..sweep.batches()).collect();
     let (rows, tally) = run(&sweep, mesh.triangles().len(), &[&all]);
     (rows.into_iter().map(|row| row.expect("every triangle")).collect(), tally)
@@ -98,7 +98,7 @@ fn batches_are_the_same_whichever_way_they_are_asked_for() {
     let directions = Directions::spread(25);
     let tools: Vec<&dyn Tool> = vec![&Mill, &Ball];
     let sweep =
-        PostureSweep::new((&mesh, &bvh), tools, &directions, rules(), keep(2)).expect("a sweep");
+        PostureSweep::new(&mesh, &bvh, tools, &directions, rules(), keep(2)).expect("a sweep");
     assert_eq!(sweep.batches(), 5);
     let triangles = mesh.triangles().len();
     let (rows, tally) = run(&sweep, triangles, &[&[0, 1, 2, 3, 4]]);
@@ -127,7 +127,7 @@ fn the_best_are_acceptable_bit_for_bit_and_of_more_the_same_are_first() {
         let bvh = TriangleBvh::new(&mesh);
         let mut judge = Validator::new(&bvh, &Mill, &rules()).expect("a judge");
         let sweep = |count| {
-            PostureSweep::new((&mesh, &bvh), vec![&Mill], &directions, rules(), keep(count))
+            PostureSweep::new(&mesh, &bvh, vec![&Mill], &directions, rules(), keep(count))
                 .expect("a sweep")
         };
         let rows = |sweep: &PostureSweep<'_>| {
@@ -207,7 +207,7 @@ fn an_undercut_is_reached_by_a_lollipop_and_by_no_ball_end() {
         let place = |[along, y]: [f64; 2]| Point3::new(-along * sine, y, along * cosine);
         let mesh =
             Mesh::new(corners.map(place).to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("one");
-        let normal = mesh.normal(0).expect("an area");
+        let normal = mesh.normal(TriangleId(0)).expect("an area");
         assert!(
             (normal - Vector3::new(-cosine, 0.0, -sine)).norm() < 1e-12
                 || (normal - Vector3::new(cosine, 0.0, sine)).norm() < 1e-12,
@@ -315,7 +315,7 @@ fn what_cannot_be_swept_says_why() {
     let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(3);
     let refused = |tools: Vec<&'static dyn Tool>, rules: Rules| {
-        PostureSweep::new((&mesh, &bvh), tools, &directions, rules, keep(1)).err().expect("refused")
+        PostureSweep::new(&mesh, &bvh, tools, &directions, rules, keep(1)).expect_err("refused")
     };
     assert_eq!(refused(vec![&Stick], rules()), SweepError::NoCuttingSurface("Stick".into()));
     let none = Rules { tolerance: 0.0, ..rules() };

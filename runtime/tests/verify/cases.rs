@@ -5,7 +5,7 @@ use crate::oracle::Mounted;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::verify::{FindingKind, Verifier, VerifyReport};
-use touchoff::{Mesh, Program, Unit};
+use touchoff::{Interval, Mesh, Program, SurfaceId, Unit};
 
 touchoff::tool! {
     tool ByHand "a ball without a profile" {
@@ -52,7 +52,8 @@ fn briefly(report: &VerifyReport) -> Vec<(usize, &'static str, Option<usize>)> {
         FindingKind::Undecided { .. } => "undecided",
         FindingKind::Ambiguous(_) => "ambiguous",
     };
-    let brief = report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface()));
+    let brief =
+        report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface().map(|id| id.0)));
     brief.collect()
 }
 
@@ -69,8 +70,14 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
     assert_eq!((found.from, found.line, found.location, found.rapid), (Some(2), 3, 1, false));
     // The ball is 0.5 deep wherever its lowest point is over the pillar.
     assert!((25.0 / 60.0..=35.0 / 60.0).contains(&found.time), "{found:?}");
-    let FindingKind::Deep { surface: 0, allowed, depth: [low, high], most, through: false, .. } =
-        found.kind
+    let FindingKind::Deep {
+        surface: SurfaceId(0),
+        allowed,
+        depth: Interval { low, high },
+        most,
+        through: false,
+        ..
+    } = found.kind
     else {
         panic!("{found:?}")
     };
@@ -100,7 +107,7 @@ fn a_flute_that_gouges_does_not_hide_what_rubs() {
     let margin = [rub[0], rub[1], rub[2], ("nut", -1.0)];
     let near = check(&pillar(), &higher(-24.5), 0.0, &margin);
     assert_eq!(briefly(&near), [(2, "near", Some(3))]);
-    let FindingKind::Near { distance: [low, high], least, margin: kept, .. } =
+    let FindingKind::Near { distance: Interval { low, high }, least, margin: kept, .. } =
         near.findings[0].kind
     else {
         panic!("{near:?}")
@@ -118,7 +125,10 @@ fn what_goes_right_through_says_so() {
         .findings
         .iter()
         .map(|found| {
-            (found.kind.surface(), matches!(found.kind, FindingKind::Deep { through: true, .. }))
+            (
+                found.kind.surface().map(|id| id.0),
+                matches!(found.kind, FindingKind::Deep { through: true, .. }),
+            )
         })
         .collect();
     assert_eq!(through, [(Some(0), true), (Some(1), true)]);
@@ -197,7 +207,7 @@ fn what_cannot_be_checked_is_refused() {
     let margin = Verifier::new(&bvh, &ByHand).expect("proved").with_allowance("ball", -0.1).err();
     assert!(margin.is_some_and(|error| error.to_string().contains("has no profile")));
     let verifier = || Verifier::new(&bvh, &Mounted).expect("a profile");
-    let said = verifier().with_allowance("fluet", 0.1).err().expect("no such surface").to_string();
+    let said = verifier().with_allowance("fluet", 0.1).expect_err("no such surface").to_string();
     assert!(said.contains("no surface `fluet`; it has `ball`, `flute`"), "{said}");
     for wrong in [f64::NAN, f64::NEG_INFINITY] {
         assert!(verifier().with_allowance("flute", wrong).is_err());
@@ -244,7 +254,9 @@ fn a_ball_by_hand_is_checked_as_one_by_its_profile() {
             FindingKind::Deep { depth, .. } => Some(*depth),
             _ => None,
         };
-        if let (Some([low, high]), Some([least, most])) = (depth(&one.kind), depth(&other.kind)) {
+        if let (Some(Interval { low, high }), Some(Interval { low: least, high: most })) =
+            (depth(&one.kind), depth(&other.kind))
+        {
             assert!(low <= most && least <= high, "{one:?}, {other:?}");
         }
     }

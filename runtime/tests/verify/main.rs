@@ -9,7 +9,7 @@ use oracle::{Draw, Mounted, SURFACES, Stand, Worst, along, places};
 use touchoff::certify::{TriangleBvh, Witness};
 use touchoff::mesh::shapes;
 use touchoff::verify::{Finding, FindingKind, Verifier};
-use touchoff::{Mesh, Pose, Program, Unit};
+use touchoff::{Interval, Mesh, Pose, Program, SurfaceId, Unit};
 
 pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
@@ -59,18 +59,25 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
         there
     };
     match &found.kind {
-        FindingKind::Deep { surface, allowed, depth: [low, high], most, witness, .. } => {
-            let there = on(witness).depth[*surface];
-            assert_eq!(*allowed, limits[*surface]);
+        FindingKind::Deep {
+            surface,
+            allowed,
+            depth: Interval { low, high },
+            most,
+            witness,
+            ..
+        } => {
+            let there = on(witness).depth[surface.0];
+            assert_eq!(*allowed, limits[surface.0]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
             assert!(
                 there > allowed.max(0.0) && high - low < RESOLUTION && most >= high,
                 "{found:?}"
             );
         }
-        FindingKind::Near { surface, margin, distance: [low, high], least, witness } => {
-            let there = on(witness).distance[*surface];
-            assert_eq!(-margin, limits[*surface]);
+        FindingKind::Near { surface, margin, distance: Interval { low, high }, least, witness } => {
+            let there = on(witness).distance[surface.0];
+            assert_eq!(-margin, limits[surface.0]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
             assert!(there < *margin && high - low < RESOLUTION && least <= low, "{found:?}");
         }
@@ -81,7 +88,8 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
 /// Compares the findings of a motion with the result of brute force.
 fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
     for (surface, limit) in limits.iter().enumerate() {
-        let found: Vec<_> = of.iter().filter(|f| f.kind.surface() == Some(surface)).collect();
+        let found: Vec<_> =
+            of.iter().filter(|f| f.kind.surface() == Some(SurfaceId(surface))).collect();
         assert!(found.len() <= 1, "{found:?}");
         let (depth, distance) = (worst.depth[surface], worst.distance[surface]);
         let deep = depth > limit.max(0.0) + RESOLUTION;

@@ -2,7 +2,7 @@
 //! of one profile in closed form. It shares nothing with the code under test.
 
 use nalgebra::{Point3, Vector3};
-use touchoff::Mesh;
+use touchoff::{Mesh, TriangleId};
 
 /// The surfaces of the tool, in its order.
 pub(crate) const SURFACES: [&str; 4] = ["ball", "flute", "shank", "nut"];
@@ -107,7 +107,7 @@ pub(crate) fn along((from, to): (&Stand, &Stand), part: f64) -> Stand {
 pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
     let mut places = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
         let n = (longest / step).ceil() as u32;
         for i in 0..=n {

@@ -6,13 +6,13 @@ pub mod wall;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::{Part, Pose, Unit};
+use touchoff::{Part, Pose, Sampling, Unit};
 
 /// Returns a block whose top is z = 0, as `points` points.
 pub fn block(points: usize) -> Part {
     let (low, high) = (Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.));
     let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-    Part::from_mesh(&mesh, points, 1).expect("points of a block")
+    Part::from_mesh(&mesh, Sampling::new(points)).expect("points of a block")
 }
 
 /// Returns the pose of an upright tool with its tip at height `z` above the origin.

@@ -5,13 +5,13 @@ use super::{tool, upright};
 use nalgebra::Point3;
 use touchoff::haptic::{Rendering, Session, SessionSettings, SimulatedHand};
 use touchoff::mesh::shapes;
-use touchoff::{Law, Part, Probe, Unit};
+use touchoff::{Law, Part, Probe, Sampling, Unit};
 
 /// Returns a sheet 0.5 mm thick, from z = -0.5 to 0.
 pub fn sheet() -> Part {
     let (low, high) = (Point3::new(-15., -15., -0.5), Point3::new(15., 15., 0.));
     let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a sheet");
-    Part::from_mesh(&mesh, 40_000, 1).expect("points of a sheet")
+    Part::from_mesh(&mesh, Sampling::new(40_000)).expect("points of a sheet")
 }
 
 /// Presses a ball of 2 mm, with a contact of 100 N/mm³, onto the sheet. The hand wants it ever deeper, by 10 mm per

@@ -22,7 +22,7 @@ impl Default for Fig73 {
 }
 
 /// Magnitude, its gradient and the direction in the thesis's `(d, z)`, and niceness.
-type Felt = (f64, [f64; 2], [f64; 2], f64);
+type Value = (f64, [f64; 2], [f64; 2], f64);
 
 /// Returns the region that `(d, z)`, in the thesis's frame, belongs to: the first that contains it.
 fn owner(d: f64, z: f64) -> Option<usize> {
@@ -41,7 +41,7 @@ fn owner(d: f64, z: f64) -> Option<usize> {
     holds.into_iter().position(|h| h)
 }
 
-fn evaluation(owner: usize, d: f64, z: f64) -> Felt {
+fn evaluation(owner: usize, d: f64, z: f64) -> Value {
     match owner {
         0 => (z, [0.0, 1.0], [0.0, -1.0], 0.0),
         1 => (5.0 - d, [-1.0, 0.0], [1.0, 0.0], 0.0),

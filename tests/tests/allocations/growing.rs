@@ -46,7 +46,7 @@ fn session<T: BatchEvaluator + ?Sized>(part: &Part, probe: &Probe<'_, T>, name: 
         let settings =
             SessionSettings { stiffness: 1e-6, rendering, ..SessionSettings::new(1000.0) };
         let region = Region::new(COUNTED);
-        let mut session = Session::new(probe.another(), &settings, limits).expect("settings");
+        let mut session = Session::new(probe.clone(), &settings, limits).expect("settings");
         let reserved = region.change().bytes_allocated;
         let mut device = ScriptedDevice::new(limits, |cycle| Ok(upright(height(cycle))));
         let (mut largest, mut growing) = (0, 0);

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::haptic::{
     DeviceAxes, DeviceLimits, Rendering, Session, SessionSettings, SimulatedClock, SimulatedHand,
-    StatePublisher, run, state_channel,
+    StatePublisher, state_channel,
 };
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Law, Pose, Probe};
@@ -23,7 +23,7 @@ fn everything(probe: &mut Probe<'_>, poses: &[Pose]) -> usize {
         .iter()
         .map(|pose| {
             let posture = probe.posture(pose);
-            let deepest = probe.deepest(pose).map_or(0, |deepest| deepest.triangle as usize % 2);
+            let deepest = probe.deepest(pose).map_or(0, |deepest| deepest.triangle.index() % 2);
             usize::from(probe.detect(pose))
                 + posture.colliding
                 + deepest
@@ -63,7 +63,7 @@ fn a_certifier() {
         let tool = tools_library::find(name).expect("a tool");
         let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
         let mut round = |poses: &[Pose]| -> f64 {
-            let depths = poses.iter().map(|pose| certifier.deepest(pose, 1e-6).depth[0]);
+            let depths = poses.iter().map(|pose| certifier.deepest(pose, 1e-6).depth.low);
             depths.sum()
         };
         let poses: Vec<Pose> =
@@ -75,7 +75,7 @@ fn a_certifier() {
         let change = region.change();
         assert_eq!((change.allocations, change.reallocations), (0, 0));
         assert!((first - second).abs() <= 1e-6 * poses.len() as f64);
-        let touches = |pose: &&Pose| certifier.deepest(pose, 1e-6).depth[0] > 1e-3;
+        let touches = |pose: &&Pose| certifier.deepest(pose, 1e-6).depth.low > 1e-3;
         let touching: Vec<Pose> = poses.iter().filter(touches).copied().collect();
         let mut all_touch = || {
             touching
@@ -113,8 +113,7 @@ fn a_haptic_loop() {
             let stop = AtomicBool::new(false);
             let clock = &mut SimulatedClock::default();
             let mut round = |watch: &mut StatePublisher| {
-                let ends = (&mut session, &mut hand);
-                run(ends, (&mut *clock, cycles), watch, &stop).peak_wrench[0]
+                session.run(&mut hand, &mut *clock, cycles, watch, &stop).peak_wrench[0]
             };
             let first = round(&mut watch);
             assert!(first > 0.0, "{name}");

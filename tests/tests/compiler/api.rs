@@ -73,11 +73,11 @@ fn stripped(mut item: Item) -> Item {
         }
         Item::Fn(item) => {
             keep(&mut item.attrs);
-            item.block = Box::new(syn::parse_quote!({}));
+            *item.block = syn::parse_quote!({});
         }
         Item::Const(item) => {
             keep(&mut item.attrs);
-            item.expr = Box::new(syn::parse_quote!(..));
+            *item.expr = syn::parse_quote!(..);
         }
         Item::Type(item) => keep(&mut item.attrs),
         Item::Macro(item) => {
@@ -142,7 +142,7 @@ fn exports(tree: &UseTree, path: &[String], to: &mut Vec<(Option<String>, Vec<St
     match tree {
         UseTree::Path(tree) => exports(&tree.tree, &longer(tree.ident.to_string()), to),
         UseTree::Name(tree) => {
-            to.push((Some(tree.ident.to_string()), longer(tree.ident.to_string())))
+            to.push((Some(tree.ident.to_string()), longer(tree.ident.to_string())));
         }
         UseTree::Rename(tree) => {
             to.push((Some(tree.rename.to_string()), longer(tree.ident.to_string())));

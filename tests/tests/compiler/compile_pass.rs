@@ -68,7 +68,7 @@ fn a_tool_in_place_is_what_it_says() {
         info.surfaces.iter().map(|surface| (surface.name.as_ref(), surface.cutting)).collect();
     assert_eq!(surfaces, [("edge", true), ("shank", false)]);
     assert!((info.radius() - 6.0 / 25.4).abs() < 1e-4);
-    assert!((info.reach()[1] - 2.0).abs() < 1e-4);
+    assert!((info.reach().high - 2.0).abs() < 1e-4);
 }
 
 #[test]

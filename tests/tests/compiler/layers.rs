@@ -31,11 +31,14 @@ const COMPILER: &[&str] = &[
 ];
 
 const RUNTIME: &[&str] = &[
+    "debug",
     "atomic_file",
     "parallel",
     "escape",
     "input",
     "unit",
+    "interval",
+    "id",
     "keywords",
     "mesh",
     "pose",

@@ -4,13 +4,13 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeSet;
 use tools_library::{Ball, Fig73, Fig73Exact};
 use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Wrench};
+use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
 use touchoff_tests::oracle::draw::Rng;
 
 const POSES: usize = 2_000;
 
 fn detailed(points: usize) -> Part {
-    Part::with_lods(&tube(), points, 1).expect("the tube has a surface")
+    Part::with_lods(&tube(), Sampling::new(points)).expect("the tube has a surface")
 }
 
 fn evaluation(part: &Part, budget: usize, path: ScenePath) -> Vec<touchoff::LodWrench> {
@@ -61,7 +61,7 @@ fn no_query_looks_at_more_nodes_than_it_may() {
 #[test]
 fn a_budget_too_small_is_refused() {
     let part = detailed(2_000);
-    let refused = LodProbe::new(&part, &Fig73, 5, Law::Thesis).err().expect("5 nodes are too few");
+    let refused = LodProbe::new(&part, &Fig73, 5, Law::Thesis).expect_err("5 nodes are too few");
     assert!(refused.needed > 5 && refused.to_string().contains("a budget of 5 nodes is too small"));
     assert!(LodProbe::new(&part, &Fig73, refused.needed, Law::Thesis).is_ok());
 }
@@ -138,8 +138,11 @@ fn left<'a>(
     poses: &'a [Pose],
     draw: &'a mut Rng,
 ) -> impl Iterator<Item = Point3<f64>> + 'a {
-    let cloud =
-        Cloud::uniform(mesh, 60_000, (1e9 * draw.between(0.0, 1.0)) as u64).expect("a cloud");
+    let cloud = Cloud::sample(
+        mesh,
+        Sampling::monte_carlo(60_000).with_seed((1e9 * draw.between(0.0, 1.0)) as u64),
+    )
+    .expect("a cloud");
     cloud.points().to_vec().into_iter().filter(move |place| {
         poses.iter().all(|pose| {
             let from = pose.rotation().transpose() * (place - pose.tip());
@@ -213,7 +216,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
 fn nothing_is_left_of_a_part_inside_a_tool() {
     let high = Point3::new(0.1, 0.1, 0.1);
     let cube = touchoff::mesh::shapes::cuboid(Point3::origin(), high, touchoff::Unit::Millimetre);
-    let cloud = Cloud::uniform(&cube.expect("a cube"), 500, 1).expect("a cloud");
+    let cloud = Cloud::sample(&cube.expect("a cube"), Sampling::monte_carlo(500)).expect("a cloud");
     let mut part = Part::from_cloud(&cloud);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, -3.0), Vector3::z()).expect("a pose");
     assert_eq!((part.cut(&Ball, &pose), part.tree().is_empty()), (500, true));
@@ -235,7 +238,7 @@ fn a_part_that_bends_is_felt_where_it_is() {
     let after = cover.radius - before.radius;
     assert!(before.proved && !cover.proved);
     assert!((after - 2.0 * farthest).abs() < 1e-3 * farthest, "{after}");
-    let cloud = Cloud::blue_noise(&tube(), 20_000, 1).expect("a cloud");
+    let cloud = Cloud::sample(&tube(), Sampling::new(20_000)).expect("a cloud");
     let bent: Vec<Point3<f64>> =
         cloud.points().iter().map(|p| bend(0.02)(*p, Vector3::z()).0).collect();
     let (normals, triangles) = (cloud.normals().to_vec(), cloud.triangles().to_vec());

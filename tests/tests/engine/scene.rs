@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::scenes::ScenePath;
-use touchoff::{Part, Pose, Probe, Scene, Tool, Unit, Wrench};
+use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit, Wrench};
 use touchoff_tests::fixtures::{part, poses};
 
 fn fig73() -> &'static dyn Tool {
@@ -66,7 +66,7 @@ fn what_moves_together_feels_the_same() {
 #[test]
 fn parts_add_up_and_move() {
     let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre);
-    let cube = Part::from_mesh(&cube.expect("a cube"), 4_000, 1).expect("a part");
+    let cube = Part::from_mesh(&cube.expect("a cube"), Sampling::new(4_000)).expect("a part");
     let mut scene = Scene::new(Unit::Millimetre);
     let beside = |x: f64| Pose::try_from(Isometry3::translation(x, 0.0, 0.0)).expect("finite");
     let left = scene.add_part(&cube, beside(-20.5)).expect("millimetres");

@@ -133,7 +133,7 @@ fn cards_say_how_far_solids_reach() {
     let info = Block::info();
     assert_eq!(info.unit, Unit::Millimetre);
     let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
-    let [z, radius] = [info.reach(), [0.0, info.radius()]];
+    let [z, radius] = [[info.reach().low, info.reach().high], [0.0, info.radius()]];
     for ([low, high], [from, to]) in
         [x, y, z, radius].into_iter().zip([[-20.0, 20.0], [-15.0, 15.0], [0.0, 20.0], [0.0, 25.0]])
     {

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
-use touchoff::{Cloud, Law, Part, Pose, Probe, Tool, Unit, Weights, Wrench};
+use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit, Weights, Wrench};
 use touchoff_tests::oracle::brute::{self, Query};
 use touchoff_tests::oracle::{Fig73, Oracle, d2_ball, fig_7_3_exact};
 
@@ -59,7 +59,7 @@ fn tool(name: &str) -> &'static dyn Tool {
 fn tube(unit: Unit, count: usize) -> Part {
     let long = Unit::Millimetre.factor_to(unit);
     let mesh = shapes::tube(3.0, 5.0, HEIGHT, 256, 4, Unit::Millimetre).expect("a tube");
-    let cloud = Cloud::uniform(&mesh, count, 3).expect("a cloud");
+    let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(3)).expect("a cloud");
     let points = cloud.points().iter().map(|p| p * long).collect();
     let weights = cloud.weights().iter().map(|w| w * long * long).collect();
     let ids = (0..count as u32).collect();

@@ -39,6 +39,12 @@ pub struct Prover<'m> {
     reaches: Vec<Cell>,
 }
 
+impl std::fmt::Debug for Prover<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Prover").field("reaches", &self.reaches).finish_non_exhaustive()
+    }
+}
+
 impl<'m> Prover<'m> {
     /// Makes a prover that uses the curves only.
     pub fn new(model: &'m Model) -> Prover<'m> {

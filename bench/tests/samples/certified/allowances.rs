@@ -6,7 +6,7 @@ use touchoff::certify::{
     AllowanceError, Certifier, MotionVerdict, PoseVerdict, TriangleBvh, Witness,
 };
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_bench::certified::brute::Brute;
 use touchoff_bench::certified::owned::Owned;
 use touchoff_bench::certified::{poses, ways};
@@ -114,9 +114,10 @@ fn each_surface(tools: &[&str]) -> usize {
             let samples = owned.samples(&pose, draw);
             let mut most = [0.0f64; 2];
             for surface in 0..owned.names.len() {
-                let found = certifier.deepest_on(surface, &pose, tolerance);
+                let found =
+                    certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
                 let text = format!("{name} {surface} at {pose:?}, {tolerance:e}: {found:?}");
-                let [low, high] = found.depth;
+                let Interval { low, high } = found.depth;
                 assert!(0.0 <= low && low <= high, "{text}");
                 let best = owned.most(&pose, &samples, |p| owned.depth(surface, p), draw);
                 if let Some(best) = best {
@@ -128,14 +129,14 @@ fn each_surface(tools: &[&str]) -> usize {
                     let depth = owned.brute.depth(p) * owned.brute.length;
                     assert!(depth >= low - rounding, "{text}: {depth}");
                     assert!(owned.away(surface, p) <= depth.abs() + 4.0 * rounding, "{text}");
-                    assert_eq!(witness.surface, surface, "{text}");
+                    assert_eq!(witness.surface, SurfaceId(surface), "{text}");
                 } else {
                     assert_eq!(low, 0.0, "{text}");
                 }
                 most = [most[0].max(low), most[1].max(high)];
             }
             let whole = certifier.deepest(&pose, tolerance).depth;
-            let agree = most[0] <= whole[1] + rounding && whole[0] <= most[1] + rounding;
+            let agree = most[0] <= whole.high + rounding && whole.low <= most[1] + rounding;
             assert!(agree, "{name} at {pose:?}: {most:?} of each, {whole:?} of all");
         }
     });
@@ -145,8 +146,9 @@ fn each_surface(tools: &[&str]) -> usize {
 /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
 fn holds(owned: &Owned<'_>, pose: &Pose, witness: &Witness, text: &str) {
     let p = owned.brute.inside(pose, witness.point);
-    let (slack, allowed) = (4.0 * rounding(owned), owned.allowed[witness.surface]);
-    let (depth, away) = (owned.brute.depth(p) * owned.brute.length, owned.away(witness.surface, p));
+    let (slack, allowed) = (4.0 * rounding(owned), owned.allowed[witness.surface.0]);
+    let (depth, away) =
+        (owned.brute.depth(p) * owned.brute.length, owned.away(witness.surface.0, p));
     let deep = away <= depth + slack && depth >= allowed.max(0.0) - slack;
     assert!(deep || away <= -allowed + slack, "{text}: {depth} deep, {away} away");
 }
@@ -252,7 +254,7 @@ fn a_flute_may_cut_and_a_shank_may_not() {
             assert_eq!((found, still), (PoseVerdict::Clear, MotionVerdict::Clear), "{top}");
         } else {
             let PoseVerdict::Touching(witness) = found else { panic!("{top}: {found:?}") };
-            assert_eq!(names(tool("Flat"))[witness.surface], "shank", "{top}");
+            assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
             assert!(matches!(still, MotionVerdict::Touching(..)), "{top}: {still:?}");
         }
     }
@@ -316,7 +318,7 @@ fn a_nut_keeps_its_margin_from_all_sides() {
                 let PoseVerdict::Touching(witness) = found else {
                     panic!("{case} {gap}: {found:?}")
                 };
-                assert_eq!(names(tool("BallEr16"))[witness.surface], "nut.nut");
+                assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
                 assert!(matches!(still, MotionVerdict::Touching(..)), "{case} {gap}: {still:?}");
             }
             // Approach from far away along the axis.
@@ -395,7 +397,7 @@ fn allowances_that_mean_nothing_are_refused() {
     let bvh = TriangleBvh::new(&plate());
     let refused = |surface: &str, allowed: f64| {
         let certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
-        certifier.with_allowance(surface, allowed).err().expect("no allowance")
+        certifier.with_allowance(surface, allowed).expect_err("no allowance")
     };
     let known = "`face`, `flute`, `shank`".to_owned();
     let expected =

@@ -4,7 +4,7 @@ use super::{plate, pose, tool};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, Unit};
+use touchoff::{Interval, Mesh, Pose, TriangleId, Unit};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -16,13 +16,13 @@ fn a_ball_above_a_plate_is_as_far_as_it_was_lifted() {
     let bvh = TriangleBvh::new(&plate());
     let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
     for gap in [1e-9, 1e-6, 1e-3, 0.5, 20.0, 1e4] {
-        let [low, high] =
+        let Interval { low, high } =
             certifier.clearance(&pose([0.3, 0.1, gap], [0.0, 0.0, 1.0]), 1e-9).distance;
         assert!(low <= gap && gap <= high, "{gap}: {low} to {high}");
         assert!(high - low < 2e-9 + 1e-11 * gap, "{gap}: {low} to {high}");
     }
     let touching = certifier.clearance(&pose([0.3, 0.1, -0.5], [0.0, 0.0, 1.0]), 1e-9);
-    assert_eq!(touching.distance, [0.0, 0.0]);
+    assert_eq!(touching.distance, Interval::new(0.0, 0.0));
     assert!(touching.witness.is_some());
 }
 
@@ -32,7 +32,8 @@ fn a_tool_in_material_is_as_far_as_its_surface() {
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid");
     let bvh = TriangleBvh::new(&block);
     let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    let [low, high] = certifier.clearance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9).distance;
+    let Interval { low, high } =
+        certifier.clearance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9).distance;
     assert!(low <= 5.0 && 5.0 <= high && high - low < 2e-9, "{low} to {high}");
 }
 
@@ -41,7 +42,7 @@ fn raster(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
     let back = pose.rotation().transpose();
     let (mut least, mut apart) = (f64::INFINITY, 0f64);
     for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let (u, v) = ((b - a) / f64::from(RASTER), (c - a) / f64::from(RASTER));
         apart = apart.max(u.norm()).max(v.norm()).max((v - u).norm());
         for i in 0..=RASTER {
@@ -70,7 +71,7 @@ fn no_point_of_a_part_is_nearer_than_is_said() {
                 let tip = Point3::from(Vector3::from_fn(|_, _| draw.between(-25.0, 25.0)));
                 let Ok(pose) = Pose::from_axis(tip, axis) else { continue };
                 let [nearest, apart] = raster(mesh, &oracle, &pose);
-                let [low, high] = certifier.clearance(&pose, 1e-6).distance;
+                let Interval { low, high } = certifier.clearance(&pose, 1e-6).distance;
                 let text = format!("{name} at {tip}, {axis}: {nearest} by points, {low} to {high}");
                 if nearest <= 0.0 {
                     assert_eq!(low, 0.0, "{text}");

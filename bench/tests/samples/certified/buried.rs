@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use tools_library::TOOLS;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Motion, Pose, Tool, Unit};
+use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -44,10 +44,14 @@ fn every_surface_of_every_tool_is_found_inside() {
             let only = |other: usize| (other == index).then_some(0.0);
             let Some(mut certifier) = restricted(&bvh, *tool, only) else { continue };
             let (name, surface) = (&tool.info().name, &surface.name);
-            assert_eq!(certifier.check_pose(&at), PoseVerdict::Inside(index), "{name}/{surface}");
+            assert_eq!(
+                certifier.check_pose(&at),
+                PoseVerdict::Inside(SurfaceId(index)),
+                "{name}/{surface}"
+            );
             asked += 1;
             let swept = certifier.check_motion(&motion, 1e-6);
-            assert_eq!(swept, MotionVerdict::Inside(index), "{name}/{surface}");
+            assert_eq!(swept, MotionVerdict::Inside(SurfaceId(index)), "{name}/{surface}");
         }
     }
     assert!(asked > 100, "{asked}");
@@ -68,7 +72,7 @@ fn any_surfaces_of_any_tool_are_found_inside() {
             let found = certifier.check_pose(&at.expect("an axis"));
             match found {
                 PoseVerdict::Inside(surface) => {
-                    assert!(only(surface).is_some(), "{}", tool.info().name);
+                    assert!(only(surface.0).is_some(), "{}", tool.info().name);
                 }
                 other => {
                     assert!(!any && other == PoseVerdict::Clear, "{}: {other:?}", tool.info().name);
@@ -135,7 +139,7 @@ fn samples_of_the_section_agree_with_what_is_inside() {
                 }
                 PoseVerdict::Inside(surface) => {
                     inside += 1;
-                    assert!(limits[surface].is_some(), "{name}");
+                    assert!(limits[surface.0].is_some(), "{name}");
                 }
                 PoseVerdict::Touching(_) => {}
                 other => panic!("{name}: {other:?} {limits:?} {cut} {up}"),

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Pose, Unit, scenes};
+use touchoff::{Interval, Mesh, Pose, Unit, scenes};
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
@@ -17,7 +17,7 @@ fn holds(mesh: &Mesh, name: &str, pose: &Pose, depth: f64) {
     let size = 100.0 + least.coords.amax().max(most.coords.amax());
     let rounding = 1e3 * f64::EPSILON * size;
     for tolerance in [0.0, 1e-9, 1e-6, 1e-3, 1.0] {
-        let [low, high] = certifier.deepest(pose, tolerance).depth;
+        let Interval { low, high } = certifier.deepest(pose, tolerance).depth;
         let text = format!("{name}: {depth:e} in {low:e} to {high:e}, tolerance {tolerance:e}");
         assert!(low - rounding <= depth && depth <= high + rounding, "{text}");
         assert!(high - low <= tolerance + rounding, "{text}");
@@ -141,5 +141,5 @@ fn above_the_centre_of_a_ball_on_a_neck_the_corner_is_nearest() {
     let bvh = TriangleBvh::new(&mesh);
     let mut certifier = Certifier::new(&bvh, tool("Lollipop")).expect("a profile");
     let found = certifier.deepest(&pose([0.0; 3], UP), 1e-9);
-    assert!(found.depth[1] >= depth - 1e-12, "{depth} in {found:?}");
+    assert!(found.depth.high >= depth - 1e-12, "{depth} in {found:?}");
 }

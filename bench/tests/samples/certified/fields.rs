@@ -7,7 +7,7 @@ use touchoff::certify::{
 };
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Mesh, Motion, Pose, Unit};
+use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, TriangleId, Unit};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
 
@@ -39,7 +39,7 @@ fn seen(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
 fn places(mesh: &Mesh, draw: &mut Rng) -> Vec<Point3<f64>> {
     let ids = (0..mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
     let place = |id: u32| {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
         let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
         a + v * (b - a) + w * (c - a)
@@ -60,7 +60,7 @@ fn what_a_field_says_is_within_the_interval() {
     for (name, oracle) in all() {
         let tool = super::tool(name);
         let length = tool.info().unit.factor_to(Unit::Millimetre);
-        let size = length * tool.info().radius().max(tool.info().reach()[1]);
+        let size = length * tool.info().radius().max(tool.info().reach().high);
         let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
         let bvh = TriangleBvh::new(&mesh);
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
@@ -68,7 +68,7 @@ fn what_a_field_says_is_within_the_interval() {
         for _ in 0..12 {
             let pose = about(0.5 * size, &mut draw);
             let found = certifier.deepest(&pose, TOLERANCE * size);
-            let [low, high] = found.depth;
+            let Interval { low, high } = found.depth;
             let brute = sampled(&mesh, &*oracle, &pose, length, &mut draw);
             assert!(brute <= high + 1e-9, "{name} {pose:?}: {brute} in {:?}", found.depth);
             if let Some(witness) = found.witness {
@@ -83,7 +83,8 @@ fn what_a_field_says_is_within_the_interval() {
                 PoseVerdict::Undecided(most) => assert!(brute <= most + 1e-9, "{name} {pose:?}"),
                 _ => assert!(brute == 0.0, "{name} {pose:?}: {clear:?} at {brute}"),
             }
-            let [near, far] = certifier.clearance(&pose, TOLERANCE * size).distance;
+            let Interval { low: near, high: far } =
+                certifier.clearance(&pose, TOLERANCE * size).distance;
             assert!(near <= far && (brute == 0.0 || near == 0.0), "{name} {pose:?}: {near}..{far}");
         }
         assert!(touching > 3 && decided > 8, "{name}: {touching} and {decided} of 12");
@@ -119,7 +120,7 @@ fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
         let tool = super::tool(name);
         let info = tool.info();
         let length = info.unit.factor_to(Unit::Millimetre);
-        let size = length * info.radius().max(info.reach()[1]);
+        let size = length * info.radius().max(info.reach().high);
         let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
         let bvh = TriangleBvh::new(&mesh);
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
@@ -129,9 +130,10 @@ fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
             let whole = certifier.deepest(&pose, TOLERANCE).depth;
             let mut most = [0.0f64; 2];
             for surface in 0..info.surfaces.len() {
-                let found = certifier.deepest_on(surface, &pose, TOLERANCE);
+                let found =
+                    certifier.deepest_on(SurfaceId(surface), &pose, TOLERANCE).expect("a surface");
                 let text = format!("{name} {surface} at {pose:?}: {found:?}");
-                let [low, high] = found.depth;
+                let Interval { low, high } = found.depth;
                 most = [most[0].max(low), most[1].max(high)];
                 wide += usize::from(high - low > 1.01 * TOLERANCE);
                 let owned = |p: Point3<f64>| {
@@ -140,19 +142,19 @@ fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
                 };
                 for point in places(&mesh, &mut draw) {
                     if let Some((depth, owner)) = owned(point)
-                        && owner == surface
+                        && owner == SurfaceId(surface)
                     {
                         assert!(depth <= high + 1e-9, "{text}: {depth} at {point}");
                     }
                 }
                 if let Some(witness) = found.witness {
                     touching += 1;
-                    assert_eq!(witness.surface, surface, "{text}");
+                    assert_eq!(witness.surface, SurfaceId(surface), "{text}");
                     let (depth, _) = owned(witness.point).expect("inside");
                     assert!(low <= depth + 1e-9, "{text}: {depth}");
                 }
             }
-            let agree = most[0] <= whole[1] + 1e-9 && whole[0] <= most[1] + 1e-9;
+            let agree = most[0] <= whole.high + 1e-9 && whole.low <= most[1] + 1e-9;
             assert!(agree, "{name} at {pose:?}: {most:?} of each, {whole:?} of all");
         }
         assert!(touching > 5 && wide == 0, "{name}: {touching} touch, {wide} are wide");
@@ -171,15 +173,20 @@ fn surfaces_of_a_field_are_allowed_for_one_by_one() {
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
     let along = Motion::new(&at(-1.0, 0.0), &at(1.0, 0.0)).expect("upright");
     assert_eq!(side.check_motion(&along, 1e-6), MotionVerdict::Clear);
-    let found = certifier().motion_depth(0, &along, 0.4, 1e-6);
-    let MotionDepth::Deeper { depth: [low, high], most, .. } = found else { panic!("{found:?}") };
+    let found = certifier().motion_depth(SurfaceId(0), &along, 0.4, 1e-6).expect("a surface");
+    let MotionDepth::Deeper { depth: Interval { low, high }, most, .. } = found else {
+        panic!("{found:?}")
+    };
     assert!(low <= 0.5 && 0.5 <= high + 1e-9 && most < 0.52, "{found:?}");
-    assert_eq!(certifier().motion_depth(1, &along, 0.0, 1e-6), MotionDepth::Within);
+    assert_eq!(
+        certifier().motion_depth(SurfaceId(1), &along, 0.0, 1e-6).expect("a surface"),
+        MotionDepth::Within
+    );
     // Raised by 0.8 mm, the wall's lower edge is nearer to the bottom.
     let PoseVerdict::Touching(witness) = side.check_pose(&at(0.0, 0.8)) else {
         panic!("it touches")
     };
-    assert_eq!(witness.surface, 1);
+    assert_eq!(witness.surface, SurfaceId(1));
     let up = Motion::new(&at(0.0, 0.0), &at(0.0, 0.8)).expect("upright");
     assert!(matches!(side.check_motion(&up, 1e-6), MotionVerdict::Touching(at, _) if at > 0.6));
 }
@@ -200,6 +207,6 @@ fn a_tool_whose_depth_jumps_is_refused() {
         niceness cutting: 1; }";
     let tool = Interpreted::parse(&Source::new("jump.tool", text)).expect("a tool");
     let bvh = TriangleBvh::new(&super::plate());
-    let refused = Certifier::new(&bvh, &tool).err().expect("a refusal").to_string();
+    let refused = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
     assert!(refused.contains("Jump") && refused.contains("profile"), "{refused}");
 }

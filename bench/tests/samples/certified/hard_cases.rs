@@ -3,7 +3,7 @@
 use super::{plate, pose, soup, tool};
 use nalgebra::Point3;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Level, Mesh, Pose, Unit};
+use touchoff::{Interval, Level, Mesh, Pose, TriangleId, Unit};
 use touchoff_bench::certified::{brute::Brute, poses};
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::draw::Rng;
@@ -13,7 +13,7 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
     let bvh = TriangleBvh::new(mesh);
     let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
-    certifier.deepest(pose, tolerance).depth
+    certifier.deepest(pose, tolerance).depth.into()
 }
 
 /// Returns all SIMD levels of this machine.
@@ -89,9 +89,9 @@ fn a_budget_that_is_spent_leaves_an_interval_that_holds_the_truth() {
             let clear = exact.check_pose(&pose);
             for budget in [0, 1, 2, 3, 10, 30, 100, 1000] {
                 let mut poor = certifier().with_budget(budget);
-                let [low, high] = poor.deepest(&pose, 0.0).depth;
+                let Interval { low, high } = poor.deepest(&pose, 0.0).depth;
                 let text = format!("{name}, {budget}: {truth:?} in {low} to {high} at {pose:?}");
-                assert!(low <= truth[1] && truth[0] <= high, "{text}");
+                assert!(low <= truth.high && truth.low <= high, "{text}");
                 wide += usize::from(high - low > 1e-6);
                 let hurried = poor.check_pose(&pose);
                 let same = std::mem::discriminant(&hurried) == std::mem::discriminant(&clear);
@@ -123,11 +123,11 @@ fn every_level_holds_the_truth() {
                 let pose = poses::pose(&mesh, &oracle, 1.0, &mut draw);
                 let found: Vec<_> = certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
                 for (one, level) in found.iter().zip(&levels) {
-                    let [low, high] = one.depth;
+                    let Interval { low, high } = one.depth;
                     let text = format!("{tool_name} in {name}, {level:?}, {pose:?}: {found:?}");
                     assert!(high - low < 2e-6, "{text}");
                     assert!(
-                        found.iter().all(|o| low <= o.depth[1] && o.depth[0] <= high),
+                        found.iter().all(|o| low <= o.depth.high && o.depth.low <= high),
                         "{text}"
                     );
                 }
@@ -143,14 +143,14 @@ fn a_level_face_that_is_hardly_pressed_into_a_part_is_not_clear() {
     let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
     let mut missed = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
-        let normal = mesh.normal(id).expect("it has an area");
-        let corners = mesh.triangle(id);
+        let normal = mesh.normal(TriangleId(id)).expect("it has an area");
+        let corners = mesh.triangle(TriangleId(id));
         let middle =
             Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
         let pose = Pose::from_axis(middle - 1e-8 * normal, normal).expect("an axis");
         let found = certifier.deepest(&pose, 1e-9);
         let clear = certifier.check_pose(&pose);
-        if found.depth[1] < 0.99e-8 || !matches!(clear, PoseVerdict::Touching(_)) {
+        if found.depth.high < 0.99e-8 || !matches!(clear, PoseVerdict::Touching(_)) {
             missed.push((pose, found, clear));
         }
     }
@@ -166,7 +166,7 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     let (mut draw, mut samples) = (Rng::new(1), 0);
     let mut deeper = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
-        let corners = mesh.triangle(id).map(|p| [p.x, p.y, p.z]);
+        let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
         let one = soup(&[corners]);
         let brute = Brute::new(&one, &oracle, 1.0);
         let found = brute.deepest(&brute.seen(&above), &mut draw, &mut samples);
@@ -191,7 +191,7 @@ fn what_f32_cannot_hold_is_not_lost() {
         let bvh = TriangleBvh::new(&plate());
         let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
         let far = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
-        let [low, high] = far.distance;
+        let Interval { low, high } = far.distance;
         assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
     }
 }

@@ -4,7 +4,7 @@ use super::{pose, soup};
 use nalgebra::Point3;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Tool, Unit};
+use touchoff::{Interval, SurfaceId, Tool, Unit};
 use touchoff_tests::oracle::restated::Restated;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
@@ -170,7 +170,7 @@ fn a_rim_is_as_deep_as_its_circle() {
             oracle.sense(p.into()).map_or(0.0, |sense| sense.depth)
         };
         let sampled = places.map(depth).fold(0.0, f64::max);
-        let [low, high] =
+        let Interval { low, high } =
             Certifier::new(&bvh, tool(name).expect("it")).expect("it").deepest(&pose, 0.0).depth;
         assert!(sampled <= high && low <= sampled + 0.01, "{name}: {sampled} in {low}..{high}");
     }
@@ -202,6 +202,6 @@ fn a_piece_at_a_corner_on_the_axis_is_found_inside() {
             certifier = certifier.with_allowance(surface, limit).expect("a surface");
         }
         let found = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
-        assert_eq!(found, PoseVerdict::Inside(0), "{limit}");
+        assert_eq!(found, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
     }
 }

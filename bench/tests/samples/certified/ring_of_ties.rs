@@ -6,7 +6,7 @@ use super::{pose, soup, tool};
 use tool_dsl::source::Source;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
-use touchoff::{Mesh, Motion, Pose, Tool};
+use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Tool};
 
 /// Returns a wall at y = 3 that is larger than the tool.
 fn wall() -> Mesh {
@@ -24,8 +24,8 @@ const DEEPEST: f64 = 4.5;
 fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
     let bvh = TriangleBvh::new(&wall());
     let mut certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
-    let found = certifier.deepest_on(1, &upright(), 1e-9);
-    let [low, high] = found.depth;
+    let found = certifier.deepest_on(SurfaceId(1), &upright(), 1e-9).expect("a surface");
+    let Interval { low, high } = found.depth;
     assert!(low <= DEEPEST && DEEPEST <= high, "{found:?}");
 }
 
@@ -48,7 +48,8 @@ fn an_allowance_of_such_a_flute_is_not_passed_over() {
 fn a_corner_is_deepest_at_its_centre() {
     let bvh = TriangleBvh::new(&wall());
     let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
-    let [low, high] = certifier.deepest_on(1, &upright(), 1e-9).depth;
+    let Interval { low, high } =
+        certifier.deepest_on(SurfaceId(1), &upright(), 1e-9).expect("a surface of the tool").depth;
     assert!(low <= 2.0 && 2.0 <= high, "{low} to {high}");
 }
 
@@ -64,8 +65,8 @@ fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
     let mesh = soup(&[[[-100.0, 2.0, -50.0], [100.0, 2.0, -50.0], [0.0, 2.0, 150.0]]]);
     let bvh = TriangleBvh::new(&mesh);
     let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
-    let known = tool.info().surfaces.iter().position(|known| known.name == surface);
-    certifier.deepest_on(known.expect("a surface"), &upright(), 1e-9).depth
+    let known = tool.info().surface_named(surface).expect("a surface");
+    certifier.deepest_on(known, &upright(), 1e-9).expect("a surface").depth.into()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::pose;
 use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Motion, Pose, Unit};
+use touchoff::{Mesh, Motion, Pose, SurfaceId, TriangleId, Unit};
 use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Block, LBracket, Oracle};
 
@@ -45,12 +45,17 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     }
     // During the motion the deepest point is on the wall beside the corner. At both ends the block is outside.
     let most = (0..6)
-        .filter_map(|surface| match certifier.motion_depth(surface, &turning(-24.5), 0.0, 1e-6) {
-            MotionDepth::Deeper { depth, most, .. } => Some((depth, most)),
-            MotionDepth::Within => None,
-            other => panic!("{other:?}"),
+        .filter_map(|surface| {
+            match certifier
+                .motion_depth(SurfaceId(surface), &turning(-24.5), 0.0, 1e-6)
+                .expect("a surface")
+            {
+                MotionDepth::Deeper { depth, most, .. } => Some((depth, most)),
+                MotionDepth::Within => None,
+                other => panic!("{other:?}"),
+            }
         })
-        .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth[0]), high.max(most)]);
+        .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth.low), high.max(most)]);
     // With `a` the angle between the wall's normal and a side's, the wall's point equally far from both sides has depth
     // `h / (cos a + sin a)` if the corner extends `h` beyond the wall. It is largest when the corner points slightly
     // past the wall's normal.
@@ -73,7 +78,10 @@ fn a_solid_is_not_swept_where_its_spin_is_not_said() {
     let still = pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
     let motion = Motion::new(&still, &still).expect("at rest");
     assert_eq!(certifier.check_motion(&motion, 1e-3), MotionVerdict::Undecided(0.0));
-    assert_eq!(certifier.motion_depth(0, &motion, 0.0, 1e-3), MotionDepth::Undecided(0.0));
+    assert_eq!(
+        certifier.motion_depth(SurfaceId(0), &motion, 0.0, 1e-3).expect("a surface"),
+        MotionDepth::Undecided(0.0)
+    );
 }
 
 /// Random motions, short and long, past a ball and a plate. The oracle rotates each point by the quaternion formula and
@@ -113,7 +121,7 @@ fn no_sample_of_a_motion_is_deeper_than_is_proved() {
                         (whole.conjugate() * q * whole).imag().into()
                     };
                     let places = (0..mesh.triangles().len() as u32).flat_map(|id| {
-                        let [a, b, c] = mesh.triangle(id);
+                        let [a, b, c] = mesh.triangle(TriangleId(id));
                         [
                             a,
                             b,
@@ -147,7 +155,10 @@ fn no_sample_of_a_motion_is_deeper_than_is_proved() {
                 if k % 3 == 0 {
                     let surfaces = 0..tool.info().surfaces.len();
                     let most = surfaces.map(|surface| {
-                        match certifier.motion_depth(surface, &motion, 0.0, TOLERANCE) {
+                        match certifier
+                            .motion_depth(SurfaceId(surface), &motion, 0.0, TOLERANCE)
+                            .expect("a surface")
+                        {
                             MotionDepth::Deeper { most, .. } => most,
                             MotionDepth::Within | MotionDepth::Inside => TOLERANCE,
                             MotionDepth::Undecided(_) => f64::INFINITY,

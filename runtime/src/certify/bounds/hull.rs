@@ -10,6 +10,7 @@ use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::{self, Section};
+use crate::interval::Interval;
 use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
@@ -80,7 +81,7 @@ impl<R: Real> Hull<R> {
     /// Creates a hull for a tool whose depth has the Lipschitz constant `steep`: depth is at most `steep` times the
     /// distance to the boundary of the envelope.
     pub(crate) fn about(info: &ToolInfo, steep: f64, error: f64) -> Hull<R> {
-        let [bottom, top] = info.reach();
+        let Interval { low: bottom, high: top } = info.reach();
         let plane = |nd: f64, nz: f64, c: f64| [nd, nz, c].map(|part| R::of(steep * part));
         let slabs = info.envelope.iter().map(|slab| HullSlab {
             low: R::of(slab.low - error),

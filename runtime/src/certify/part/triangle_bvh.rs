@@ -3,6 +3,7 @@
 use super::coplanar_faces::CoplanarFaces;
 use super::planarity::Plane;
 use crate::bvh::{Bounds, Boxes, BuildItem, Frame, WIDTH, levels, order};
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::mesh::{self, inverted};
 use crate::unit::Unit;
@@ -116,7 +117,7 @@ impl TriangleBvh {
             self.ids.iter().enumerate().for_each(|(place, id)| places[*id as usize] = place);
         }
         let is_void = |id: u32| !self.is_negative_beside(places[id as usize]);
-        inverted.into_iter().all(|id| mesh.normal(id).is_none() || is_void(id))
+        inverted.into_iter().all(|id| mesh.normal(TriangleId(id)).is_none() || is_void(id))
     }
 
     /// Returns the lowest and the highest corner of the bounding box, in the part's unit.

@@ -4,6 +4,7 @@ use crate::certify::space::Point;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::Depth;
+use crate::interval::Interval;
 use crate::tool::Symmetry;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -50,7 +51,7 @@ impl Field<'_> {
         factor: f64,
     ) -> Option<Option<(Point, Depth, f64)>> {
         let info = self.info();
-        let [bottom, top] = info.reach();
+        let Interval { low: bottom, high: top } = info.reach();
         // For a tool with an axis the half plane is enough.
         let [x, y] = match info.symmetry {
             Symmetry::Revolved => [[0.0, info.radius()], [0.0; 2]],

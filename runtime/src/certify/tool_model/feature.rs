@@ -348,7 +348,7 @@ fn below_tangents(
 /// Returns the features of a profile segment: an arc is cut where its tangent is horizontal or vertical.
 pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
     let Some(circle) = piece.circle else {
-        return vec![Feature::new([piece.from, piece.to], None, piece.surface)];
+        return vec![Feature::new([piece.from, piece.to], None, piece.surface.0)];
     };
     let Circle { centre, radius, convex } = circle;
     const FULL: f64 = std::f64::consts::TAU;
@@ -370,13 +370,16 @@ pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
     cuts.push(piece.to);
     let mut from = piece.from;
     cuts.into_iter()
-        .map(|to| Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface))
+        .map(|to| {
+            Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface.0)
+        })
         .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::id::SurfaceId;
 
     /// The end of the arc is an ulp before its beginning, as rounding may leave it.
     #[test]
@@ -385,7 +388,10 @@ mod tests {
         for convex in [true, false] {
             let (from, to) = if convex { (from, to) } else { (to, from) };
             let circle = Some(Circle { centre: [3.0, 0.1], radius: 2.0_f64.hypot(0.2), convex });
-            assert_eq!(quarters(&ProfileSegment { from, to, circle, surface: 0 }).len(), 1);
+            assert_eq!(
+                quarters(&ProfileSegment { from, to, circle, surface: SurfaceId(0) }).len(),
+                1
+            );
         }
     }
 }

@@ -194,6 +194,7 @@ const STEPS: u32 = 256;
 mod tests {
     use super::*;
     use crate::certify::tool_model::owners::Owners;
+    use crate::id::SurfaceId;
     use crate::tool::Tool;
     use crate::tool::{Circle, ProfileSegment, ToolInfo};
     use std::borrow::Cow;
@@ -273,7 +274,7 @@ mod tests {
             from: *from,
             to: *to,
             circle: *circle,
-            surface: 0,
+            surface: SurfaceId(0),
         });
         let info = ToolInfo { outline: Cow::Owned(pieces.collect()), ..Dumbbell.info().clone() };
         Section::new(&info, 1e-12).expect("a profile")

@@ -15,6 +15,7 @@ use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::{Depth, Section};
+use crate::id::SurfaceId;
 
 /// A tool with its source of depth.
 pub(crate) enum ToolModel<'a> {
@@ -34,9 +35,9 @@ impl ToolModel<'_> {
     }
 
     /// Returns the surface of a feature.
-    pub(crate) fn surface(&self, feature: usize) -> usize {
+    pub(crate) fn surface(&self, feature: usize) -> SurfaceId {
         match self {
-            ToolModel::Profile(section) => section.features[feature].surface,
+            ToolModel::Profile(section) => SurfaceId(section.features[feature].surface),
             ToolModel::Field(field) => field.info().regions[feature].surface,
         }
     }

@@ -30,7 +30,7 @@ struct End {
 
 /// The interval between two points of a line.
 #[derive(Clone, Copy)]
-struct Interval(End, End);
+struct LineInterval(End, End);
 
 impl SearchLine {
     /// Creates the segment of a line with `t` in `span`.
@@ -70,9 +70,9 @@ impl SearchLine {
         End { t, place, slope }
     }
 
-    fn interval(&self, from: f64, to: f64) -> Interval {
+    fn interval(&self, from: f64, to: f64) -> LineInterval {
         let middle = from / 2.0 + to / 2.0;
-        Interval(self.end(from, middle), self.end(to, middle))
+        LineInterval(self.end(from, middle), self.end(to, middle))
     }
 
     /// Returns the spans on either side of the point nearest to the axis.
@@ -98,10 +98,10 @@ impl SearchLine {
     }
 }
 
-impl Interval {
+impl LineInterval {
     /// Returns a triangle of the half plane that contains the interval.
     fn triangle(&self, course: &SearchLine) -> Triangle {
-        let Interval(first, last) = self;
+        let LineInterval(first, last) = self;
         let length = last.t - first.t;
         let meet =
             (last.place[0] - first.place[0] - last.slope * length) / (first.slope - last.slope);
@@ -121,7 +121,7 @@ fn change(depth: &Depth, end: &End, course: &SearchLine) -> f64 {
 /// Returns the parameter at which an interval is cut. If the same feature is nearest at both ends, it is an
 /// estimate of where that is deepest, else of where the two depths are equal, as the slopes predict. Both pieces
 /// are examined wherever the cut is, so its value never makes a result wrong.
-fn cut(Interval(first, last): &Interval, depths: [&Depth; 2], course: &SearchLine) -> f64 {
+fn cut(LineInterval(first, last): &LineInterval, depths: [&Depth; 2], course: &SearchLine) -> f64 {
     let length = last.t - first.t;
     let [up, down] = [change(depths[0], first, course), change(depths[1], last, course)];
     let x = if depths[0].feature == depths[1].feature {
@@ -176,7 +176,7 @@ pub(crate) struct DepthSearch {
     /// True if a point was found.
     found: bool,
     budget: u32,
-    stack: Vec<Interval>,
+    stack: Vec<LineInterval>,
 }
 
 impl DepthSearch {
@@ -318,7 +318,7 @@ impl DepthSearch {
     fn run(
         &mut self,
         course: &SearchLine,
-        whole: Interval,
+        whole: LineInterval,
         bound: impl Fn(&Triangle, f64) -> f64,
         depth: impl Fn(MeridianPoint) -> Depth,
         found: &mut Option<LineMaximum>,
@@ -333,7 +333,7 @@ impl DepthSearch {
             if self.enough() {
                 break;
             }
-            let Interval(first, last) = interval;
+            let LineInterval(first, last) = interval;
             let depths = [first, last].map(|end| depth(end.place));
             self.note(first.t, &depths[0], found);
             self.note(last.t, &depths[1], found);
@@ -347,8 +347,8 @@ impl DepthSearch {
             }
             let middle = course.end(t, first.t / 2.0 + last.t / 2.0);
             self.note(t, &depth(middle.place), found);
-            self.stack.push(Interval(first, middle));
-            self.stack.push(Interval(middle, last));
+            self.stack.push(LineInterval(first, middle));
+            self.stack.push(LineInterval(middle, last));
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::mesh::{MeshError, Outlier, SourceLocation};
 
 /// Reasons why a PLY file could not be read. Lines count from 1, elements and bytes from 0.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlyError {
     /// The first line is not `ply`.
     #[error("{file} is no PLY file: its first line is not `ply`: convert the part to PLY")]

@@ -1,6 +1,7 @@
 //! Tests of reading and refusing PLY.
 
 use super::*;
+use crate::id::TriangleId;
 use crate::mesh::shapes;
 use crate::mesh::tests::mangled;
 use rand_core::SeedableRng;
@@ -167,7 +168,7 @@ fn reads_points_in_every_encoding() {
 #[test]
 fn reads_ascii_in_every_dress() {
     let expected = Mesh::from_ply(ascii("ply", "ply").as_bytes(), "", UNIT).expect("plain");
-    assert_eq!(expected.triangle(0)[2], Point3::new(0.0, 2.0, 0.1));
+    assert_eq!(expected.triangle(TriangleId(0))[2], Point3::new(0.0, 2.0, 0.1));
     for text in [
         ascii("ply\n", "ply \nobj_info  \ncomment a b\n"),
         ascii("ply", "ply").replace('\n', "\r"),
@@ -206,7 +207,7 @@ fn polygons_are_fanned_unless_that_folds_them() {
         )
     };
     let mesh = Mesh::from_ply(with("5 0 1 2 3 4", 3.0).as_bytes(), "", UNIT).expect("convex");
-    let areas: Vec<f64> = (0..3).map(|id| mesh.area(id)).collect();
+    let areas: Vec<f64> = (0..3).map(|id| mesh.area(TriangleId(id))).collect();
     assert_eq!(areas, [2.0, 2.0, 1.0]);
     let hollow = Mesh::from_ply(with("5 3 4 0 1 2", 0.5).as_bytes(), "", UNIT);
     assert_eq!(hollow.expect("seen whole from its first corner").diagnostics().area, 2.5);

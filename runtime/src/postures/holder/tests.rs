@@ -1,6 +1,7 @@
 //! Stick-outs: closed forms, and a comparison with sample points of triangles.
 
 use super::*;
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::mesh::shapes;
 use crate::tool::Surface;
@@ -69,7 +70,7 @@ fn mounted(tool: &dyn Tool) -> ToolInfo {
 fn outline(info: &ToolInfo) -> Vec<[f64; 2]> {
     const PLACES: u32 = 64;
     let own =
-        info.outline.iter().filter(|piece| info.surfaces[piece.surface].name.starts_with("nut"));
+        info.outline.iter().filter(|piece| info.surfaces[piece.surface.0].name.starts_with("nut"));
     let places = own.flat_map(|piece| {
         (0..=PLACES).map(|k| {
             let part = f64::from(k) / f64::from(PLACES);
@@ -140,7 +141,7 @@ fn a_wall_that_leans_asks_for_more_the_nearer_it_comes() {
 fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
     let mut all = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
-        let [a, b, c] = mesh.triangle(id);
+        let [a, b, c] = mesh.triangle(TriangleId(id));
         let size = (b - a).norm().max((c - a).norm()).max((c - b).norm());
         let count = (size / apart).ceil();
         for i in 0..=count as u32 {

@@ -5,6 +5,7 @@ use std::io;
 
 /// A reason for which a posture map cannot be opened, read or written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MapError {
     /// The file cannot be opened or read.
     #[error("cannot open {file}: {source}: check the path and its permissions")]
@@ -84,7 +85,7 @@ pub enum MapError {
     },
     /// The map belongs to another part, or to other tools, rules or directions.
     #[error(
-        "{file} cannot go on: {difference}: give another path for a new map, or remove the file"
+        "{file} cannot be continued: {difference}: give another path for a new map, or remove the file"
     )]
     Differs {
         /// The file.

@@ -31,7 +31,7 @@ impl PartFingerprint {
         let mut hasher = SipHasher24::new();
         hasher.write(mesh.unit().symbol().as_bytes());
         let triangles = mesh.triangles().len() as u32;
-        for corner in (0..triangles).flat_map(|id| mesh.triangle(id)) {
+        for corner in mesh.ids().flat_map(|id| mesh.triangle(id)) {
             for coordinate in corner.coords.iter() {
                 hasher.write(&coordinate.to_bits().to_le_bytes());
             }

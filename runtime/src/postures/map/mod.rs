@@ -18,6 +18,7 @@ pub use error::MapError;
 pub use identity::{Difference, MapIdentity, PartFingerprint, ToolFingerprint};
 
 use super::{Accessibility, MapRow, PostureRecord};
+use crate::debug::debug;
 use codec::{decode, encode};
 pub(super) use merge::merge;
 use redb::{Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition};
@@ -86,6 +87,8 @@ pub struct MapRows<'a> {
     /// The least triangle id that may come next.
     next: u64,
 }
+
+debug!([] MapRows<'_>, "MapRows", |this| { next: this.next });
 
 impl Iterator for MapRows<'_> {
     type Item = Result<(u32, MapRow), MapError>;

@@ -81,7 +81,7 @@ impl PathPlanner<'_> {
             .iter()
             .map(|place| {
                 let normal = mesh.normal(place.triangle)?;
-                let set = access.get(place.triangle as usize)?;
+                let set = access.get(place.triangle.index())?;
                 // A set of another length belongs to other directions, and is ignored.
                 let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
                 any.then_some(ReachableDirections {

@@ -20,6 +20,7 @@ mod slice;
 use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use super::{Directions, Rules, Validator, ValidatorError};
 use crate::certify::{MotionVerdict, TriangleBvh};
+use crate::debug::debug;
 use crate::mesh::Mesh;
 use crate::motion::Motion;
 use crate::parallel;
@@ -43,6 +44,7 @@ pub struct Pattern {
 
 /// A reason for which there is no path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PathError {
     /// A length of the pattern is not finite or not above 0.
     #[error("{what} of {value} is no length above 0: give one in the part's unit, such as 1")]
@@ -123,73 +125,93 @@ pub(super) struct PathPlanner<'a> {
     postures: Vec<CandidatePosture>,
 }
 
-/// Plans a path of a tool over all that it reaches of a part. The tool is no deeper than the rules' tolerance
-/// at cutter locations and between them, where the tip moves straight and the axis turns evenly. At every point
-/// it is nicer than the rules require. `access` has, per triangle id, the directions from which a sweep found
-/// that the tool reaches it, in the format of [`Accessibility`](super::Accessibility); an empty list where it
-/// does not.
-///
-/// # Errors
-/// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
-pub fn plan_path<'a>(
-    (mesh, bvh): (&Mesh, &'a TriangleBvh),
-    (tool, rules): (&'a dyn Tool, &'a Rules),
-    (directions, access): (&Directions, &[Vec<u64>]),
-    pattern: &Pattern,
-) -> Result<ToolPath, PathError> {
-    for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(PathError::Pattern { what, value });
-        }
-    }
-    // Divide by the largest component first, so that no square overflows or underflows.
-    let normal = Vector3::from(pattern.normal);
-    let normal = (normal / normal.amax()).try_normalize(0.0).filter(|n| n.norm().is_finite());
-    let normal = normal.ok_or(PathError::Normal)?;
-    let [low, high] = mesh.bounds();
-    let planes = (high - low).norm() / pattern.stepover;
-    if planes > MOST as f64 {
-        return Err(PathError::TooMany { planes, most: MOST });
-    }
-    let places = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
-    if places > MOST_PLACES as f64 {
-        return Err(PathError::TooFine { places, most: MOST_PLACES });
-    }
-    let mut leader = PathPlanner::new(bvh, tool, rules)?;
-    let around = RetractSphere::new(mesh, leader.touching.reach());
-    let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
-    let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
-        .iter()
-        .enumerate()
-        .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
-        .collect();
-    let runs = parallel::ranges(lines.len(), TOGETHER, |range| {
-        // Errors were reported for the planner above.
-        let Ok(mut leader) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
-        let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
-            leader.judge.certifier.forget();
-            (*plane, leader.runs(mesh, (directions, access), line))
-        };
-        lines[range].iter().map(run).collect()
-    });
-    let mut path =
-        DrawnPath { seen: lines.iter().map(|(_, line)| line.len()).sum(), ..DrawnPath::default() };
-    let mut runs = runs.into_iter().flatten().peekable();
-    while let Some((plane, mut here)) = runs.next() {
-        while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
-            here.extend(more);
-        }
-        here.iter().for_each(|run| path.count(run));
-        // Continue with the remaining run whose end is nearest.
-        while let Some((next, reverse)) = path.nearest(&here) {
-            let mut run = here.swap_remove(next);
-            if reverse {
-                run.reverse();
+/// The part, the tool and the pattern of a path to plan.
+#[derive(Clone, Copy)]
+pub struct PathRequest<'a> {
+    /// The part's mesh.
+    pub mesh: &'a Mesh,
+    /// The mesh's triangles in a hierarchy.
+    pub bvh: &'a TriangleBvh,
+    /// The tool.
+    pub tool: &'a dyn Tool,
+    /// The limits of acceptable postures.
+    pub rules: &'a Rules,
+    /// The directions that the sweep tried.
+    pub directions: &'a Directions,
+    /// Per triangle id the directions from which the sweep found that the tool reaches it, in the format of
+    /// [`Accessibility`](super::Accessibility); an empty list where it does not.
+    pub accessibility: &'a [Vec<u64>],
+    /// The lines to follow.
+    pub pattern: &'a Pattern,
+}
+
+debug!([] PathRequest<'_>, "PathRequest", |this| { tool: this.tool.info().name, rules: this.rules, pattern: this.pattern });
+
+impl PathRequest<'_> {
+    /// Plans a path of the tool over all that it reaches of the part. The tool is no deeper than the rules' tolerance
+    /// at cutter locations and between them, where the tip moves straight and the axis turns evenly. At every point
+    /// it is nicer than the rules require.
+    ///
+    /// # Errors
+    /// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
+    pub fn plan(&self) -> Result<ToolPath, PathError> {
+        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern } = *self;
+        for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(PathError::Pattern { what, value });
             }
-            path.follow(&mut leader, &around, &run, 3.0 * pattern.stepover);
         }
+        // Divide by the largest component first, so that no square overflows or underflows.
+        let normal = Vector3::from(pattern.normal);
+        let normal = (normal / normal.amax()).try_normalize(0.0).filter(|n| n.norm().is_finite());
+        let normal = normal.ok_or(PathError::Normal)?;
+        let [low, high] = mesh.bounds();
+        let planes = (high - low).norm() / pattern.stepover;
+        if planes > MOST as f64 {
+            return Err(PathError::TooMany { planes, most: MOST });
+        }
+        let places = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
+        if places > MOST_PLACES as f64 {
+            return Err(PathError::TooFine { places, most: MOST_PLACES });
+        }
+        let mut leader = PathPlanner::new(bvh, tool, rules)?;
+        let around = RetractSphere::new(mesh, leader.touching.reach());
+        let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
+        let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
+            .iter()
+            .enumerate()
+            .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
+            .collect();
+        let runs = parallel::ranges(lines.len(), TOGETHER, |range| {
+            // Errors were reported for the planner above.
+            let Ok(mut leader) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
+            let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
+                leader.judge.certifier.forget();
+                (*plane, leader.runs(mesh, (directions, accessibility), line))
+            };
+            lines[range].iter().map(run).collect()
+        });
+        let mut path = DrawnPath {
+            seen: lines.iter().map(|(_, line)| line.len()).sum(),
+            ..DrawnPath::default()
+        };
+        let mut runs = runs.into_iter().flatten().peekable();
+        while let Some((plane, mut here)) = runs.next() {
+            while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
+                here.extend(more);
+            }
+            here.iter().for_each(|run| path.count(run));
+            // Continue with the remaining run whose end is nearest.
+            while let Some((next, reverse)) = path.nearest(&here) {
+                let mut run = here.swap_remove(next);
+                if reverse {
+                    run.reverse();
+                }
+                path.follow(&mut leader, &around, &run, 3.0 * pattern.stepover);
+            }
+        }
+        path.end(&mut leader, &around)
     }
-    path.end(&mut leader, &around)
 }
 
 impl<'a> PathPlanner<'a> {

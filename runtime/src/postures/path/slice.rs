@@ -1,5 +1,6 @@
 //! Slices of a mesh by parallel planes, as ordered lines.
 
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::postures::placement::SurfacePoint;
 use nalgebra::{Point3, Vector3};
@@ -8,7 +9,7 @@ use std::collections::HashMap;
 /// The segment of a line within one triangle.
 #[derive(Clone, Copy, Debug)]
 struct SliceSegment {
-    triangle: u32,
+    triangle: TriangleId,
     ends: [Point3<f64>; 2],
 }
 
@@ -16,7 +17,7 @@ struct SliceSegment {
 #[derive(Clone, Debug)]
 pub(super) struct SlicePoint {
     pub(super) point: Point3<f64>,
-    pub(super) triangle: u32,
+    pub(super) triangle: TriangleId,
     /// Points on the edges that the line crossed since the previous point, in order; per edge with the normals
     /// of the triangle before it and of the one after it.
     pub(super) crossed: Vec<SurfacePoint>,
@@ -33,7 +34,7 @@ pub(super) fn slices(
     let count = ((high - low) / stepover).round().max(1.0);
     let plane = |k: usize| low + (high - low) * (k as f64 + 0.5) / count;
     let mut planes: Vec<Vec<SliceSegment>> = vec![Vec::new(); count as usize];
-    for id in 0..mesh.triangles().len() as u32 {
+    for id in mesh.ids() {
         let corners = mesh.triangle(id);
         let heights = heights(mesh, normal, id);
         let place = |height: f64| (height - low) / (high - low) * count - 0.5;
@@ -57,18 +58,18 @@ pub(super) fn slices(
 /// planes, divided by the distance between planes.
 pub(super) fn length_of_lines(mesh: &Mesh, normal: &Vector3<f64>, stepover: f64) -> f64 {
     let [low, high] = range(mesh, normal);
-    let steep = (0..mesh.triangles().len() as u32)
-        .filter_map(|id| Some(mesh.area(id) * mesh.normal(id)?.cross(normal).norm()));
+    let steep =
+        mesh.ids().filter_map(|id| Some(mesh.area(id) * mesh.normal(id)?.cross(normal).norm()));
     steep.sum::<f64>() / stepover.min(high - low)
 }
 
-fn heights(mesh: &Mesh, normal: &Vector3<f64>, id: u32) -> [f64; 3] {
+fn heights(mesh: &Mesh, normal: &Vector3<f64>, id: TriangleId) -> [f64; 3] {
     mesh.triangle(id).map(|corner| corner.coords.dot(normal))
 }
 
 /// Returns the lowest and the highest coordinate of a mesh along a normal.
 fn range(mesh: &Mesh, normal: &Vector3<f64>) -> [f64; 2] {
-    let all = (0..mesh.triangles().len() as u32).flat_map(|id| heights(mesh, normal, id));
+    let all = mesh.ids().flat_map(|id| heights(mesh, normal, id));
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
         [low.min(height), high.max(height)]
     })

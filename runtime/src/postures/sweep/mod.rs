@@ -14,6 +14,7 @@ pub use stats::SweepStats;
 
 use super::{Directions, MapRow, Rules, RulesError, ValidatorError};
 use crate::certify::TriangleBvh;
+use crate::debug::debug;
 use crate::mesh::Mesh;
 use crate::tool::Tool;
 use std::num::NonZeroU16;
@@ -35,8 +36,11 @@ pub struct PostureSweep<'a> {
     keep: NonZeroU16,
 }
 
+debug!([] PostureSweep<'_>, "PostureSweep", |this| { tools: this.tools.len(), rules: this.rules, keep: this.keep });
+
 /// A reason for which a sweep cannot run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SweepError {
     /// A tool has no cutting surface.
     #[error("nothing of {0} cuts: write `cutting` behind the surface in its file")]
@@ -64,7 +68,8 @@ impl<'a> PostureSweep<'a> {
     /// # Errors
     /// If the rules are invalid, or a tool cannot be used; see [`SweepError`].
     pub fn new(
-        (mesh, bvh): (&'a Mesh, &'a TriangleBvh),
+        mesh: &'a Mesh,
+        bvh: &'a TriangleBvh,
         tools: Vec<&'a dyn Tool>,
         directions: &'a Directions,
         rules: Rules,

@@ -3,6 +3,7 @@
 use super::stats::PostureDecision;
 use super::{Batch, PostureSweep, SweepError, SweepStats};
 use crate::certify::{ContactVerdict, Containment, Location};
+use crate::id::TriangleId;
 use crate::pose::Pose;
 use crate::postures::holder::Holder;
 use crate::postures::map::merge;
@@ -53,10 +54,11 @@ impl<'a> Worker<'a> {
             for (id, row) in &mut rows {
                 tally.triangles += 1;
                 let mesh = self.of.mesh;
-                let [a, b, c] = mesh.triangle(*id);
+                let [a, b, c] = mesh.triangle(TriangleId(*id));
                 let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
                 // A triangle without an area has no normal.
-                let spot = mesh.normal(*id).map(|normal| SurfacePoint { point, normal });
+                let spot =
+                    mesh.normal(TriangleId(*id)).map(|normal| SurfacePoint { point, normal });
                 let access = tried.triangle(self.of, spot, (&mut row.best, &mut tally));
                 row.access.push(access);
             }

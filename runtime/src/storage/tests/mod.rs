@@ -2,6 +2,7 @@ mod refused;
 
 use super::layout::{List, lists};
 use super::*;
+use crate::cloud::Sampling;
 use crate::cloud::{Cloud, CoveringRadius};
 use crate::mesh::shapes;
 use crate::point_bvh::PointBvh;
@@ -47,7 +48,7 @@ fn cuboid() -> crate::Mesh {
 
 /// Returns a part of forty points, which fits into some thousand bytes.
 fn small() -> Part {
-    Part::from_mesh(&cuboid(), 40, 1).expect("a part")
+    Part::from_mesh(&cuboid(), Sampling::new(40)).expect("a part")
 }
 
 /// Returns all lists as bytes.
@@ -84,10 +85,11 @@ fn an_opened_part_feels_like_the_one_that_was_saved() {
     let path = folder.path().join("tube.part");
     let poses = along_the_courses(500);
     let tube = scenes::tube();
-    let random = Part::from_cloud(&Cloud::uniform(&tube, 20_000, 1).expect("a cloud"));
-    let even = Part::from_mesh(&tube, 3_000, 1).expect("a part");
-    let few = Part::from_cloud(&Cloud::uniform(&tube, 16, 1).expect("a cloud"));
-    let one = Part::from_cloud(&Cloud::uniform(&tube, 1, 1).expect("a cloud"));
+    let random =
+        Part::from_cloud(&Cloud::sample(&tube, Sampling::monte_carlo(20_000)).expect("a cloud"));
+    let even = Part::from_mesh(&tube, Sampling::new(3_000)).expect("a part");
+    let few = Part::from_cloud(&Cloud::sample(&tube, Sampling::monte_carlo(16)).expect("a cloud"));
+    let one = Part::from_cloud(&Cloud::sample(&tube, Sampling::monte_carlo(1)).expect("a cloud"));
     for part in [random, even, few, one] {
         part.save(&path).expect("saved");
         let opened = Part::open(&path).expect("opened");
@@ -107,7 +109,7 @@ fn an_opened_part_feels_like_the_one_that_was_saved() {
 #[test]
 fn what_is_cut_stays_cut() {
     let poses = along_the_courses(100);
-    let mut part = Part::with_lods(&scenes::tube(), 4_000, 1).expect("a part");
+    let mut part = Part::with_lods(&scenes::tube(), Sampling::new(4_000)).expect("a part");
     let mut opened = open(&saved(&part)).expect("opened");
     // An opened part can be edited in the same way, and an edited part can be saved.
     for pose in &poses {
@@ -130,7 +132,9 @@ fn what_is_cut_stays_cut() {
 fn every_tree_is_saved() {
     let mut part = small();
     for (points, proved) in [(300, false), (17, true)] {
-        let mut tree = PointBvh::new(&Cloud::uniform(&cuboid(), points, 1).expect("a cloud"));
+        let mut tree = PointBvh::new(
+            &Cloud::sample(&cuboid(), Sampling::monte_carlo(points)).expect("a cloud"),
+        );
         tree.cover = Some(CoveringRadius { radius: 0.1 + 0.2, proved });
         part.levels.push(tree);
     }
@@ -151,7 +155,7 @@ fn what_becomes_of_the_file_does_not_matter() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("tube.part");
     let poses = along_the_courses(100);
-    let part = Part::from_mesh(&scenes::tube(), 3_000, 1).expect("a part");
+    let part = Part::from_mesh(&scenes::tube(), Sampling::new(3_000)).expect("a part");
     let expected = evaluations(&part, &poses);
     part.save(&path).expect("saved");
     let opened = Part::open(&path).expect("opened");
@@ -192,7 +196,9 @@ fn lists_lie_at_multiples_of_64() {
 #[test]
 fn lists_have_the_lengths_that_trees_have() {
     for points in [1, 15, 16, 17, 255, 256, 257, 4095, 4096, 4097, 65_537] {
-        let tree = PointBvh::new(&Cloud::uniform(&cuboid(), points, 1).expect("a cloud"));
+        let tree = PointBvh::new(
+            &Cloud::sample(&cuboid(), Sampling::monte_carlo(points)).expect("a cloud"),
+        );
         let mut levels = 0;
         for (list, count) in lists(points as u64) {
             let found = match list {

@@ -4,6 +4,7 @@ use super::super::layout::{
     FileHeader, MAGIC, SectionHeader, Start, Surveyed, VERSION, checksums, lists, seal,
 };
 use super::*;
+use crate::cloud::Sampling;
 use nalgebra::Vector3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -24,7 +25,9 @@ fn every_bit_is_guarded() {
 
 #[test]
 fn bits_of_many_chunks_are_guarded() {
-    let part = Part::from_cloud(&Cloud::uniform(&cuboid(), 40_000, 1).expect("a cloud"));
+    let part = Part::from_cloud(
+        &Cloud::sample(&cuboid(), Sampling::monte_carlo(40_000)).expect("a cloud"),
+    );
     let mut bytes = saved(&part);
     let mut random = Pcg64::seed_from_u64(1);
     for _ in 0..300 {
@@ -155,7 +158,8 @@ fn reseal(bytes: &mut [u8], trees: usize, sections: usize) {
 fn no_file_with_right_checksums_leads_out_of_a_list() {
     let pose = |z: f64, axis| Pose::from_axis(Point3::new(4.0, 4.0, z), axis).expect("a pose");
     let poses = [pose(6.5, Vector3::z()), pose(-1.0, Vector3::x()), pose(1e9, Vector3::z())];
-    let part = Part::from_cloud(&Cloud::uniform(&cuboid(), 300, 1).expect("a cloud"));
+    let part =
+        Part::from_cloud(&Cloud::sample(&cuboid(), Sampling::monte_carlo(300)).expect("a cloud"));
     let whole = saved(&part);
     let start: Start = bytemuck::pod_read_unaligned(&whole[..size_of::<Start>()]);
     let sections = lists(300).len();

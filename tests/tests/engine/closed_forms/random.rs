@@ -7,7 +7,7 @@ use super::{
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 use touchoff::mesh::shapes;
-use touchoff::{Cloud, Mesh, Part, Pose};
+use touchoff::{Cloud, Mesh, Part, Pose, Sampling};
 use touchoff_tests::oracle::closed_forms::quadrature;
 use touchoff_tests::oracle::draw::Rng;
 
@@ -25,7 +25,9 @@ fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> S
         for seed in 0..SEEDS {
             let scene = scenes(seed);
             // A longer cloud begins with the shorter one of its seed: other seeds for every count.
-            let cloud = Cloud::uniform(mesh, count, count as u64 + seed).expect("a cloud");
+            let cloud =
+                Cloud::sample(mesh, Sampling::monte_carlo(count).with_seed(count as u64 + seed))
+                    .expect("a cloud");
             let part = Part::from_cloud(&cloud);
             let (got, _) = measure(&scene, &part);
             for (k, want) in figures(&scene.want).into_iter().enumerate() {

@@ -14,7 +14,7 @@ pub(crate) fn of(tool: &dyn Tool, oracle: &Nearest) {
         .regions
         .iter()
         .map(|region| {
-            let surface = &info.surfaces[region.surface];
+            let surface = &info.surfaces[region.surface.0];
             (&*region.name, &*surface.name, surface.cutting)
         })
         .collect();

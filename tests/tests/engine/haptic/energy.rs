@@ -5,7 +5,7 @@ use touchoff::haptic::{
     Coupling, DeviceLimits, EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings,
 };
 use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Law, Part, Probe};
+use touchoff::{Law, Part, Probe, Sampling};
 use touchoff_tests::haptics::energy::{height, plane, tapping, tapping_at};
 use touchoff_tests::haptics::tool;
 use touchoff_tests::haptics::wall::LIMITS;
@@ -63,7 +63,7 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
 /// 0.02 % everywhere. Where the tool springs from one grain of the cloud to the next, some energy is lost.
 #[test]
 fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
-    let part = Part::from_mesh(&tube(), 20_000, 1).expect("points of a tube");
+    let part = Part::from_mesh(&tube(), Sampling::new(20_000)).expect("points of a tube");
     let coupling = Coupling { damping: 0.0, ..Coupling::of(&STRONG) };
     let rendering = Some(Rendering::Coupled(coupling));
     for path in ScenePath::ALL {

@@ -134,8 +134,8 @@ fn a_space_mouse_refuses_a_rate_of_zero() {
     use touchoff::haptic::spacenav::{Spacenav, SpeedGains};
     let nobody = std::path::Path::new("nobody.sock");
     let open = |rate, way, turn| {
-        let start = (upright(10.0), Unit::Millimetre);
-        match Spacenav::open(nobody, start, (rate, SpeedGains { linear: way, angular: turn })) {
+        let (start, gains) = (upright(10.0), SpeedGains { linear: way, angular: turn });
+        match Spacenav::open(nobody, start, Unit::Millimetre, rate, gains) {
             Ok(_) => panic!("it was accepted"),
             Err(error) => error.kind(),
         }

@@ -6,7 +6,7 @@ use touchoff::haptic::{
     SimulatedHand,
 };
 use touchoff::mesh::shapes;
-use touchoff::{Law, Part, Pose, Probe, Unit};
+use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::haptics::tool;
 use touchoff_tests::haptics::wall::LIMITS;
 
@@ -25,7 +25,7 @@ fn pressed(unit: Unit) -> SessionState {
     let mm = Unit::Millimetre.factor_to(unit);
     let (low, high) = (Point3::new(-20., -20., -10.) * mm, Point3::new(20., 20., 0.) * mm);
     let mesh = shapes::cuboid(low, high, unit).expect("a block");
-    let part = Part::from_mesh(&mesh, 40_000, 1).expect("points of a block");
+    let part = Part::from_mesh(&mesh, Sampling::new(40_000)).expect("points of a block");
     let probe = Probe::new(&part, tool("Block")).with_law(Law::Gradient);
     let hand = SimulatedHand::new(LIMITED, 1000.0, |time| wish(time, unit));
     let mut hand = hand.and_then(|hand| hand.with_centre(Point3::origin(), unit)).expect("a hand");

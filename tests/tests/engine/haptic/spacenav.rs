@@ -23,8 +23,8 @@ const FLIGHT: SpeedGains = SpeedGains { linear: 100.0, angular: 1.0 };
 fn opened(folder: &tempfile::TempDir) -> (UnixListener, UnixStream, Spacenav) {
     let socket = folder.path().join("spnav.sock");
     let listener = UnixListener::bind(&socket).expect("a socket");
-    let start = (upright(10.0), Unit::Millimetre);
-    let device = Spacenav::open(&socket, start, (1000.0, FLIGHT)).expect("a daemon");
+    let device = Spacenav::open(&socket, upright(10.0), Unit::Millimetre, 1000.0, FLIGHT);
+    let device = device.expect("a daemon");
     let (stream, _) = listener.accept().expect("a client");
     (listener, stream, device)
 }
@@ -89,7 +89,6 @@ fn a_daemon_that_goes_away_is_called_again() {
 #[test]
 fn nobody_there_is_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
-    let start = (upright(10.0), Unit::Millimetre);
     let nobody = folder.path().join("nobody.sock");
-    assert!(Spacenav::open(&nobody, start, (1000.0, FLIGHT)).is_err());
+    assert!(Spacenav::open(&nobody, upright(10.0), Unit::Millimetre, 1000.0, FLIGHT).is_err());
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use touchoff::haptic::{
     Clock, DeviceError, LoopReport, MonotonicClock, PlaybackDevice, ScriptedDevice, Session,
-    SessionSettings, SimulatedClock, run, state_channel,
+    SessionSettings, SimulatedClock, state_channel,
 };
 use touchoff::{Law, Part, Pose, Probe};
 use touchoff_tests::haptics::wall::LIMITS;
@@ -23,7 +23,7 @@ fn ran(clock: &mut impl Clock) -> LoopReport {
     let mut device = ScriptedDevice::new(LIMITS, |_| Ok(upright(-0.2)));
     let (mut watch, _latest, _samples) = state_channel(16);
     let stop = AtomicBool::new(false);
-    run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
+    session(&part).run(&mut device, clock, SECOND, &mut watch, &stop)
 }
 
 #[test]
@@ -117,13 +117,13 @@ fn it_stops_when_it_is_told_or_nothing_is_left() {
     };
     let clock = &mut SimulatedClock::default();
     let mut device = ScriptedDevice::new(LIMITS, stops);
-    let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
+    let report = session(&part).run(&mut device, clock, SECOND, &mut watch, &stop);
     assert_eq!(report.cycles, 100);
 
     let never = AtomicBool::new(false);
     let path = vec![upright(1.0), upright(-1.0), upright(1.0)];
     let mut played = PlaybackDevice::new(path, 50, LIMITS).expect("no axis turns over");
-    let report = run((&mut session(&part), &mut played), (clock, SECOND), &mut watch, &never);
+    let report = session(&part).run(&mut played, clock, SECOND, &mut watch, &never);
     assert_eq!(report.cycles, 51);
 }
 
@@ -140,7 +140,7 @@ fn others_see_it() {
         let looped = scope.spawn(|| {
             let mut device = ScriptedDevice::new(LIMITS, script);
             let clock = &mut MonotonicClock::new(Duration::ZERO);
-            run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
+            session(&part).run(&mut device, clock, SECOND, &mut watch, &stop)
         });
         let mut seen = 0;
         while !looped.is_finished() {
@@ -159,6 +159,6 @@ fn others_see_it() {
     let (mut watch, _latest, _full) = state_channel(10);
     let clock = &mut SimulatedClock::default();
     let mut device = ScriptedDevice::new(LIMITS, script);
-    let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
+    let report = session(&part).run(&mut device, clock, SECOND, &mut watch, &stop);
     assert_eq!(report.dropped_states, 990);
 }

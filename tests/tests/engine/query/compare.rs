@@ -171,7 +171,7 @@ impl<'a> Case<'a> {
 
     /// Compares the points that touch, one by one; both sides list them in the tree's order.
     fn compare_points(&self, asked: &Asked<'_>, seen: &mut Seen) {
-        let place = |contact: &Contact| self.places[contact.triangle as usize];
+        let place = |contact: &Contact| self.places[contact.triangle.index()];
         assert!(asked.contacts.is_sorted_by_key(place));
         let mut evaluation: BTreeMap<usize, &Contact> =
             asked.contacts.iter().map(|contact| (place(contact), contact)).collect();

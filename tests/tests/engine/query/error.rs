@@ -1,7 +1,7 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
 use nalgebra::{Point3, Vector3};
-use touchoff::{Cloud, Part, Pose, Probe};
+use touchoff::{Cloud, Interval, Part, Pose, Probe};
 use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Rng;
@@ -18,7 +18,7 @@ fn depths_keep_the_error_that_is_stated() {
             continue;
         }
         let reference = Reference::new(&restated);
-        let [low, high] = info.reach();
+        let Interval { low, high } = info.reach();
         // A box of points about the tool, each with a triangle id of its own, far from the world's origin.
         let far = Vector3::new(700.0, -300.0, 55.0);
         let count = 4_000;
@@ -41,7 +41,7 @@ fn depths_keep_the_error_that_is_stated() {
         let pose = Pose::from_axis(Point3::from(far), Vector3::z()).expect("a pose");
         let mut worst = 0.0f64;
         for contact in probe.contacts(&pose) {
-            let given = points[contact.triangle as usize] - far;
+            let given = points[contact.triangle.index()] - far;
             let at = [given.x, given.y, given.z];
             let exact = reference.depth(&At::new(at));
             worst = worst.max((&Big::exactly(contact.depth) - &exact).abs().to_f64());

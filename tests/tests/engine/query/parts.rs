@@ -3,7 +3,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::{Cloud, Mesh, Part, Unit};
+use touchoff::{Cloud, Mesh, Part, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
@@ -16,7 +16,7 @@ pub(crate) fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: 
 
 /// Returns a part of random points of a mesh, mapped by `at`.
 pub(crate) fn carried(mesh: &Mesh, count: usize, at: impl Fn(Point3<f64>) -> Point3<f64>) -> Part {
-    let cloud = Cloud::uniform(mesh, count, 1).expect("a cloud");
+    let cloud = Cloud::sample(mesh, Sampling::monte_carlo(count)).expect("a cloud");
     let points = cloud.points().iter().copied().map(at).collect();
     of(points, cloud.normals().to_vec(), cloud.weights().to_vec())
 }

@@ -4,7 +4,7 @@ use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use tools_library::{Block, LBracket};
 use touchoff::mesh::shapes;
-use touchoff::{Law, Part, Pose, Probe, Unit};
+use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
 /// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.
@@ -109,15 +109,15 @@ fn a_bracket_around_a_rail() {
         Point3::new(3.5, 40.0, 30.0),
         Unit::Millimetre,
     );
-    let part = Part::from_mesh(&rail.expect("a box"), 40_000, 3).expect("a part");
+    let part =
+        Part::from_mesh(&rail.expect("a box"), Sampling::new(40_000).with_seed(3)).expect("a part");
     let mut probe = Probe::new(&part, &LBracket);
     let at = |x: f64, z: f64| Pose::from_quaternion(Point3::new(x, 0.0, z), [0.0, 0.0, 0.0, 1.0]);
     // Standing clear, then against the inner face, then lifted into the upper one.
     assert!(!probe.detect(&at(0.0, 0.0).expect("a pose")));
     let mut surfaces = |x: f64, z: f64| {
         let contacts = probe.contacts(&at(x, z).expect("a pose")).to_vec();
-        let name =
-            |k: usize| &*tools_library::find("LBracket").expect("there").info().surfaces[k].name;
+        let name = |id| &*tools_library::find("LBracket").expect("there").info().surface(id).name;
         let deepest = contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
         let mut names: Vec<String> = contacts.iter().map(|c| name(c.surface).to_owned()).collect();
         names.sort();

@@ -2,16 +2,16 @@
 
 use crate::failure::Failure;
 use crate::output::unwritable;
+use crate::postures::default_tolerance;
 use crate::postures::map::check_part;
-use crate::postures::usual;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use touchoff::haptic::{SessionState, StateStream};
 use touchoff::postures::{MapError, MapIdentity, PostureMap, Recorder, RecorderStats, Rules};
 use touchoff::{AtomicFile, Mesh, Tool};
 
-const COLUMNS: &str = "cycle,seconds,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
-    tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,colliding,put_in,held";
+const COLUMNS: &str = "cycle,time_s,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
+    tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,contacts,energy_in,energy_stored";
 
 /// A table of all states. The file takes its name when the session is over.
 pub(super) struct Table {
@@ -48,15 +48,15 @@ impl Table {
 }
 
 /// The recordings of a session. One that cannot be written is reported at once and ends; the loop goes on.
-pub(super) struct Kept<'a> {
+pub(super) struct Recordings<'a> {
     table: Option<Table>,
     recorder: Option<Recorder<'a>>,
     failed: usize,
 }
 
-impl<'a> Kept<'a> {
-    pub(super) fn new(table: Option<Table>, recorder: Option<Recorder<'a>>) -> Kept<'a> {
-        Kept { table, recorder, failed: 0 }
+impl<'a> Recordings<'a> {
+    pub(super) fn new(table: Option<Table>, recorder: Option<Recorder<'a>>) -> Recordings<'a> {
+        Recordings { table, recorder, failed: 0 }
     }
 
     /// Takes the states that are available.
@@ -78,7 +78,10 @@ impl<'a> Kept<'a> {
             && let Some(table) = self.table.take()
         {
             self.failed += 1;
-            say!("error: {}; nothing is recorded from here on", unwritable(&table.file, source));
+            message!(
+                "error: {}; the recording of states stops here",
+                unwritable(&table.file, source)
+            );
         }
     }
 
@@ -86,7 +89,7 @@ impl<'a> Kept<'a> {
         if let Err(error) = recorded {
             self.failed += 1;
             self.recorder = None;
-            say!("error: {error}; no posture is kept from here on");
+            message!("error: {error}; the recording of postures stops here");
         }
     }
 
@@ -99,12 +102,14 @@ impl<'a> Kept<'a> {
         self.recorded(recorded);
         if let Some(recorder) = &self.recorder {
             let RecorderStats { judged, accepted, skipped, .. } = recorder.stats();
-            say!("postures: {accepted} acceptable of {judged} judged; {skipped} states not seen");
+            message!(
+                "postures: {accepted} acceptable of {judged} validated; {skipped} states skipped"
+            );
         }
         if let Some(Table { out, file, .. }) = self.table {
             out.commit().map_err(|source| unwritable(&file, source))?;
         }
-        if self.failed > 0 { Err(Failure::NotKept) } else { Ok(()) }
+        if self.failed > 0 { Err(Failure::RecordingFailed) } else { Ok(()) }
     }
 }
 
@@ -119,6 +124,7 @@ pub(super) fn map_of(
         check_part(&map, file, (mesh, part))?;
         return Ok(map);
     }
-    let rules = Rules { tolerance: usual(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
+    let rules =
+        Rules { tolerance: default_tolerance(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
     Ok(PostureMap::open(file, &MapIdentity::new(mesh, &[tool], rules)?)?)
 }

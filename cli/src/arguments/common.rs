@@ -1,0 +1,78 @@
+//! Arguments that several commands share.
+
+use super::values::{count, point_count, positive_length};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use tool_dsl::source::Source;
+use touchoff::tool::{Interpreted, ToolError};
+use touchoff::{SamplingMethod, Unit};
+
+/// Values for the params of `.tool` files, and the root of their mounts.
+#[derive(Args, Default)]
+pub(crate) struct ParamArguments {
+    /// Value for a `param` of the `.tool` file, written as in the language: `--set D=0.25inch`. Can be repeated;
+    /// holds for all tools named.
+    #[arg(long, value_name = "PARAM=VALUE")]
+    set: Vec<String>,
+    /// Folder below which the `.tool` file may mount others [default: its own folder].
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
+}
+
+impl ParamArguments {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.set.is_empty()
+    }
+
+    /// Returns the values as sources for the compiler.
+    pub(crate) fn sources(&self) -> Vec<Source> {
+        self.set.iter().map(|text| Source::new("--set", text)).collect()
+    }
+
+    /// Reads a `.tool` file, and sets the folder below which it may mount others.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub(crate) fn source(&self, file: &Path) -> Result<Source, ToolError> {
+        let source = Interpreted::source(file)?;
+        Ok(match &self.root {
+            Some(root) => source.with_root(root),
+            None => source,
+        })
+    }
+}
+
+/// The part, and the sampling of its points.
+#[derive(Args)]
+pub(crate) struct PartFile {
+    /// Part: a mesh in STL, PLY or OBJ, points with normals in PLY, or a saved `.touchoff`.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: PathBuf,
+    /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
+    #[arg(long)]
+    pub(crate) unit: Unit,
+    /// Number of points to sample on the surface, from 1 to 100000000.
+    #[arg(long, value_name = "NUMBER", default_value_t = 20_000, value_parser = point_count)]
+    pub(crate) points: u64,
+    /// Largest depth that may be missed between points, in the part's unit, instead of a number of points. Where
+    /// `run` would need more than a million points, it proves depth to this tolerance instead.
+    #[arg(long, value_name = "LENGTH", value_parser = positive_length, conflicts_with = "points")]
+    pub(crate) sampling_error: Option<f64>,
+    /// Distribution of the points: `blue`, evenly spread, or `random`.
+    #[arg(long, value_name = "METHOD", default_value_t = SamplingMethod::BlueNoise)]
+    pub(crate) sampling: SamplingMethod,
+    /// Seed of the sampling; the same seed gives the same points.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = count)]
+    pub(crate) seed: u64,
+}
+
+/// The part, as triangles.
+#[derive(Args)]
+pub(crate) struct MeshFile {
+    /// Finished part: a mesh in STL, PLY or OBJ.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: PathBuf,
+    /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
+    #[arg(long)]
+    pub(crate) unit: Unit,
+}

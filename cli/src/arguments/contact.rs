@@ -1,0 +1,185 @@
+//! The arguments of the commands that compute contact: `run`, `verify`, `haptic`, `sample` and `bench`.
+
+use super::values::{allowance, core, count, length, point, positive, rate};
+use super::{MeshFile, ParamArguments, PartFile};
+use clap::{Args, ValueEnum};
+use nalgebra::Point3;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use touchoff::{Law, Unit, Weights};
+
+#[derive(Args)]
+pub(crate) struct Sample {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
+    /// Tool for which `--sampling-error` holds, by name or as a `.tool` file [default: any tool whose depth is the
+    /// distance to its surface].
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: Option<OsString>,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Output file for the points.
+    #[arg(short, long, value_name = "OUT.touchoff")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct Run {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: OsString,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) program: PathBuf,
+    /// Force law: `thesis`, `gradient` or `facing`.
+    #[arg(long, default_value_t = Law::Thesis)]
+    pub(crate) law: Law,
+    /// Weights of the points: `area` or `unit`.
+    #[arg(long, default_value_t = Weights::Area)]
+    pub(crate) weights: Weights,
+    /// Compliance centre, in the tool's frame and the part's unit [default: the tip].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point)]
+    pub(crate) center: Option<Point3<f64>>,
+    /// Prove the depth of the part's triangles in the tool to this tolerance, in the part's unit; 0 is as close as
+    /// arithmetic allows [default: depth is computed at the points only].
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) certify: Option<f64>,
+}
+
+#[derive(Args)]
+pub(crate) struct Verify {
+    #[command(flatten)]
+    pub(crate) mesh: MeshFile,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: OsString,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) program: PathBuf,
+    /// Largest depth allowed for any surface of the tool in the part, in the part's unit.
+    #[arg(long, value_name = "LENGTH", value_parser = length, default_value_t = 0.0)]
+    pub(crate) tolerance: f64,
+    /// Largest depth allowed for one surface instead, where it is the nearest and in feed, in the part's unit:
+    /// `--allow flute=0.05 --allow nut=-1`. `inf` allows any depth; a value below 0 is a margin to keep.
+    #[arg(long, value_name = "SURFACE=LENGTH", value_parser = allowance)]
+    pub(crate) allow: Vec<(String, f64)>,
+    /// Excess over the allowed depth, in the part's unit, up to which a finding may or may not be reported
+    /// [default: 0.001 mm].
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) resolution: Option<f64>,
+    /// Check only the part's surface where its mesh leaks or is inside out, as it is then unknown whether the tool
+    /// is inside the material. Without this option, such a part ends with status 2.
+    #[arg(long)]
+    pub(crate) surface_only: bool,
+    /// Accept a program that never comes within the tool's diameter of the part. Without this option, such a
+    /// program ends with status 2.
+    #[arg(long)]
+    pub(crate) allow_distant: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Haptic {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: OsString,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Device that moves the tool.
+    #[arg(long, value_enum, default_value_t = DeviceKind::Hand)]
+    pub(crate) device: DeviceKind,
+    /// Program that `--device playback` plays once: APT-CL, or a table of poses, in the part's unit.
+    #[arg(long, value_name = "FILE", required_if_eq("device", "playback"))]
+    pub(crate) program: Option<PathBuf>,
+    /// Rate of the loop, in cycles per second, from 1 to 100000.
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0, value_parser = rate)]
+    pub(crate) rate: f64,
+    /// Duration of the session, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = positive)]
+    pub(crate) duration: f64,
+    /// Force law: `thesis`, `gradient` or `facing`.
+    #[arg(long, default_value_t = Law::Gradient)]
+    pub(crate) law: Law,
+    /// Stiffness of contact, in N per unit of the law's force: N/mm³ for a part in mm.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = positive)]
+    pub(crate) stiffness: f64,
+    /// Stiffest spring that the device can render, in N/mm.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, value_parser = positive)]
+    pub(crate) device_stiffness: f64,
+    /// Largest force of the device, in N.
+    #[arg(long, value_name = "NEWTON", default_value_t = 8.0, value_parser = positive)]
+    pub(crate) max_force: f64,
+    /// Render the contact at the device's own pose, without a virtual coupling, scaled to what the device can
+    /// render.
+    #[arg(long)]
+    pub(crate) direct: bool,
+    /// Ask the system for real-time priority and locked memory.
+    #[arg(long)]
+    pub(crate) realtime: bool,
+    /// Run the loop on this core only, counted from 0 [default: any].
+    #[arg(long, value_name = "NUMBER", value_parser = core)]
+    pub(crate) core: Option<usize>,
+    /// Busy waiting before each cycle, in µs, to cover the system's delay in waking a thread.
+    #[arg(long, value_name = "MICROSECONDS", default_value_t = 60, value_parser = count)]
+    pub(crate) spin: u64,
+    /// Write every state to a table, which takes its name when the session ends. A full disk is reported at once,
+    /// and the session goes on without the table; the exit status is then 1.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) record: Option<PathBuf>,
+    /// Posture map, old or new, to which acceptable postures of the session are added.
+    #[arg(long, value_name = "MAP")]
+    pub(crate) postures: Option<PathBuf>,
+}
+
+/// The device that moves the tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DeviceKind {
+    /// A simulated hand that presses the tool onto the part.
+    Hand,
+    /// The poses of `--program`, played once.
+    Playback,
+    /// A SpaceMouse, through its daemon `spacenavd`.
+    Spacenav,
+}
+
+impl DeviceKind {
+    /// Returns the device's name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            DeviceKind::Hand => "hand",
+            DeviceKind::Playback => "playback",
+            DeviceKind::Spacenav => "spacenav",
+        }
+    }
+}
+
+#[derive(Args)]
+pub(crate) struct Bench {
+    /// Use fewer and smaller clouds, for a run of some seconds.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Seed of the clouds.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = count)]
+    pub(crate) seed: u64,
+    /// Part: a mesh in STL, PLY or OBJ [default: the thesis's tube, with its tool and path].
+    #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "program"])]
+    pub(crate) part: Option<PathBuf>,
+    /// Unit of the part: `mm`, `inch` or `m`.
+    #[arg(long, requires = "part")]
+    pub(crate) unit: Option<Unit>,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
+    pub(crate) tool: Option<OsString>,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Program of the tool along the part: APT-CL, or a table of poses, in the part's unit.
+    #[arg(long, value_name = "FILE", requires = "part")]
+    pub(crate) program: Option<PathBuf>,
+}

@@ -1,0 +1,111 @@
+//! The arguments of the commands for tools and their files.
+
+use super::{ParamArguments, examples};
+use clap::{Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Args)]
+#[command(subcommand_value_name = "list|show")]
+pub(crate) struct Tools {
+    /// Action; without one, list the built-in tools.
+    #[command(subcommand)]
+    pub(crate) command: Option<ToolsCommand>,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum ToolsCommand {
+    /// List the built-in tools, or the tools of files, with their units and titles.
+    #[command(after_help = examples::TOOLS_LIST)]
+    List {
+        /// `.tool` files to list instead of the built-in tools.
+        #[arg(value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        params: ParamArguments,
+    },
+    /// Print the text of a built-in tool, to be mounted or changed.
+    ///
+    /// With `--output`, a tool that mounts others works from its new folder: the files that it mounts are written
+    /// below that folder too.
+    #[command(after_help = examples::TOOLS_SHOW)]
+    Show {
+        /// Name of the built-in tool.
+        #[arg(value_name = "NAME")]
+        name: String,
+        /// Output file [default: standard output, without the files that the tool mounts].
+        #[arg(short, long, value_name = "OUT.tool")]
+        output: Option<PathBuf>,
+    },
+}
+
+#[derive(Args)]
+pub(crate) struct Check {
+    /// `.tool` files to check.
+    #[arg(required = true, value_name = "FILE.tool")]
+    pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Print the whole table: every region and every border between regions. Without this option, five lines per
+    /// file.
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Explain {
+    /// Code to explain, as printed between the brackets of a message, such as T0201.
+    #[arg(value_name = "CODE")]
+    pub(crate) code: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct Fmt {
+    /// Change nothing: print the names of the files that would be rewritten, and fail if there are any.
+    #[arg(long)]
+    pub(crate) check: bool,
+    /// `.tool` files to format in place; `-` reads standard input and writes standard output.
+    #[arg(required = true, value_name = "FILE.tool")]
+    pub(crate) files: Vec<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Expand {
+    /// `.tool` files to expand.
+    #[arg(required = true, value_name = "FILE.tool")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Stage to print.
+    #[arg(long, value_enum, default_value_t = Stage::Rust)]
+    pub(crate) stage: Stage,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+    /// Output file [default: standard output].
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// A stage of a file's compilation.
+#[derive(ValueEnum, Clone, Copy)]
+pub(crate) enum Stage {
+    /// Syntax tree.
+    Ast,
+    /// Values, surfaces and regions, after name resolution.
+    Model,
+    /// Regions in the order of the tool's surfaces, with their sides.
+    Regions,
+    /// Decision tree of splits in DOT, for Graphviz.
+    Plan,
+    /// Rust code.
+    Rust,
+}
+
+#[derive(Args)]
+pub(crate) struct Draw {
+    /// `.tool` file to draw.
+    #[arg(value_name = "FILE.tool")]
+    pub(crate) file: PathBuf,
+    /// Output file, `.svg` or `.png` [default: SVG on standard output].
+    #[arg(short, long, value_name = "OUT.svg|OUT.png")]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+}

@@ -1,0 +1,105 @@
+//! Tools as the command line names them: built in, or from `.tool` files.
+
+use crate::arguments::ParamArguments;
+use crate::failure::Failure;
+use crate::output::show;
+use std::ffi::OsStr;
+use std::path::Path;
+use tool_dsl::diagnostic::escaped;
+use tool_dsl::source::Source;
+use tool_dsl::{Compiled, compile_with};
+use tools_library::TOOLS;
+use touchoff::Tool;
+use touchoff::tool::Interpreted;
+
+/// A built-in tool, or one from a `.tool` file.
+pub(crate) enum LoadedTool {
+    BuiltIn(&'static dyn Tool),
+    File(Box<Interpreted>),
+}
+
+impl LoadedTool {
+    /// Loads the tool that `--tool` names.
+    ///
+    /// # Errors
+    /// If there is no such tool, its file cannot be loaded, or a built-in tool is given values.
+    pub(crate) fn load(name: &OsStr, params: &ParamArguments) -> Result<LoadedTool, Failure> {
+        if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+            return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
+        }
+        let tool = built_in(&name.to_string_lossy())?;
+        if params.is_empty() {
+            Ok(LoadedTool::BuiltIn(tool))
+        } else {
+            Err(Failure::FixedParams(tool.info().name.to_string()))
+        }
+    }
+
+    pub(crate) fn tool(&self) -> &dyn Tool {
+        match self {
+            LoadedTool::BuiltIn(tool) => *tool,
+            LoadedTool::File(tool) => &**tool,
+        }
+    }
+}
+
+/// Returns a built-in tool by its name.
+///
+/// # Errors
+/// [`Failure::UnknownTool`], with a hint at what may be meant.
+pub(crate) fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
+    tools_library::find(name).ok_or_else(|| {
+        let distance =
+            |known: &str| strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
+        let known = TOOLS.iter().map(|tool| &*tool.info().name);
+        let near = known.filter(|known| distance(known) <= 1 + name.len() / 4);
+        let is_tool_file = Path::new(name).extension().is_some_and(|ending| ending == "tool");
+        let hint = if is_tool_file {
+            "`touchoff tools` lists them; this command takes no files".to_owned()
+        } else if Path::new(name).is_file() {
+            "a tool's file ends in `.tool`: rename it".to_owned()
+        } else if Path::new(name).with_extension("tool").is_file() {
+            format!("did you mean the file `{}.tool`?", escaped(name))
+        } else if let Some(nearest) = near.min_by_key(|known| distance(known)) {
+            format!("did you mean `{nearest}`? `touchoff tools` lists them")
+        } else {
+            "`touchoff tools` lists them; the name of a tool's file ends in `.tool`".to_owned()
+        };
+        Failure::UnknownTool { name: escaped(name).into_owned(), hint }
+    })
+}
+
+/// Reads a `.tool` file.
+///
+/// # Errors
+/// If it cannot be read; with a hint if a built-in tool is named instead.
+pub(crate) fn read_source(file: &Path, params: &ParamArguments) -> Result<Source, Failure> {
+    params.source(file).map_err(|error| {
+        let tool = file.to_str().and_then(tools_library::find).filter(|_| !file.exists());
+        match tool {
+            Some(tool) => Failure::FileExpected(tool.info().name.to_string()),
+            None => error.into(),
+        }
+    })
+}
+
+/// Loads the tool of a file, and prints its warnings.
+pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpreted, Failure> {
+    let tool = Interpreted::parse_with(&read_source(file, params)?, &params.sources())?;
+    if !tool.warnings().is_empty() {
+        message!("{}", tool.warnings());
+    }
+    Ok(tool)
+}
+
+/// Compiles the tool of a file, and shows its diagnostics.
+///
+/// # Errors
+/// If the file cannot be read.
+pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
+    let compiled = compile_with(&read_source(file, params)?, &params.sources());
+    for diagnostic in compiled.diagnostics() {
+        show(diagnostic, &compiled.sources);
+    }
+    Ok(compiled)
+}

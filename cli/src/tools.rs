@@ -1,0 +1,165 @@
+//! `touchoff tools`: the built-in tools, and the tools of files.
+
+use crate::arguments::{ParamArguments, Tools, ToolsCommand};
+use crate::failure::Failure;
+use crate::loaded_tool::{built_in, load_file};
+use crate::output::{Output, extension, unwritable, write_file};
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tools_library::{SOURCES, TOOLS};
+use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
+use touchoff::{Escaped, Tool};
+
+#[derive(Serialize)]
+struct Row<'a> {
+    name: &'a str,
+    title: &'a str,
+    unit: &'static str,
+    z_range: [f64; 2],
+    /// Upper bound on the radius about z.
+    radius: f64,
+    /// The extent of a solid along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    x_range: Option<[f64; 2]>,
+    /// The extent of a solid along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    y_range: Option<[f64; 2]>,
+    surfaces: Vec<SurfaceRow<'a>>,
+    regions: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct SurfaceRow<'a> {
+    name: &'a str,
+    cutting: bool,
+}
+
+impl<'a> Row<'a> {
+    fn of(info: &'a ToolInfo) -> Row<'a> {
+        let [x_range, y_range] = match info.symmetry {
+            Symmetry::Revolved => [None, None],
+            Symmetry::Solid { across } => across.map(Some),
+        };
+        Row {
+            name: &info.name,
+            title: &info.title,
+            unit: info.unit.symbol(),
+            z_range: info.reach().into(),
+            radius: info.radius(),
+            x_range,
+            y_range,
+            surfaces: info
+                .surfaces
+                .iter()
+                .map(|s| SurfaceRow { name: &s.name, cutting: s.cutting })
+                .collect(),
+            regions: info.regions.iter().map(|region| &*region.name).collect(),
+        }
+    }
+}
+
+/// Lists tools.
+pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
+    match &arguments.command {
+        None => list(&[], &ParamArguments::default(), json),
+        Some(ToolsCommand::List { files, params }) => list(files, params, json),
+        Some(ToolsCommand::Show { name, output }) => show(name, output.as_deref(), json),
+    }
+}
+
+/// Lists the tools of files; without files, the built-in tools.
+fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Failure> {
+    let files: Vec<Interpreted> =
+        files.iter().map(|file| load_file(file, params)).collect::<Result<_, _>>()?;
+    let infos: Vec<&ToolInfo> = match files.as_slice() {
+        [] if params.is_empty() => TOOLS.iter().map(|tool| tool.info()).collect(),
+        [] => return Err(Failure::UnusedParams("name the files to list")),
+        files => files.iter().map(Tool::info).collect(),
+    };
+    let mut out = Output::lines();
+    for info in infos {
+        if json {
+            serde_json::to_writer(&mut out, &Row::of(info))?;
+            writeln!(out)?;
+        } else {
+            writeln!(out, "{:<20} {:<5} {}", info.name, info.unit.symbol(), Escaped(&info.title))?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+/// The text of a built-in tool.
+#[derive(Serialize)]
+struct TextRow<'a> {
+    name: &'a str,
+    /// The tool's own file first, then those that it mounts.
+    files: Vec<FileRow>,
+}
+
+#[derive(Serialize)]
+struct FileRow {
+    file: &'static str,
+    text: &'static str,
+}
+
+/// Prints the text of a built-in tool, or writes it to a file with the files that it mounts below the same folder.
+fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
+    built_in(name)?;
+    let index = TOOLS.iter().position(|tool| tool.info().name == name).unwrap_or_default();
+    let [(_, text), mounted @ ..] = SOURCES[index] else { return Ok(()) };
+    if let Some(output) = output {
+        return write_tool(name, output, (text, mounted));
+    }
+    let mut out = Output::bytes();
+    if json {
+        let files = SOURCES[index].iter().map(|(file, text)| FileRow { file, text }).collect();
+        serde_json::to_writer(&mut out, &TextRow { name, files })?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{text}")?;
+    }
+    out.flush()?;
+    if !mounted.is_empty() && !json {
+        let files: Vec<String> = mounted.iter().map(|(file, _)| format!("`{file}`")).collect();
+        message!(
+            "`{name}` mounts {}: `touchoff tools show {name} -o FILE.tool` writes them too, beside FILE.tool",
+            files.join(", ")
+        );
+    }
+    Ok(())
+}
+
+/// Writes a tool to a file, and the files that it mounts below the same folder.
+///
+/// # Errors
+/// If a file cannot be written, or would replace another than the one that is mounted.
+fn write_tool(
+    name: &str,
+    output: &Path,
+    (text, mounted): (&str, &[(&str, &str)]),
+) -> Result<(), Failure> {
+    if extension(output).as_deref() != Some("tool") {
+        let file = output.display().to_string();
+        return Err(Failure::ToolFormat { file, better: output.with_extension("tool") });
+    }
+    let folder = output.parent().unwrap_or(Path::new(""));
+    let mounted: Vec<(PathBuf, &str)> =
+        mounted.iter().map(|(file, text)| (folder.join(file), *text)).collect();
+    for (file, text) in &mounted {
+        let differs = std::fs::read_to_string(file).is_ok_and(|present| present != *text);
+        if differs || file == output {
+            let (file, name) = (file.display().to_string(), name.to_owned());
+            return Err(Failure::MountedFileExists { file, name });
+        }
+    }
+    for (file, text) in &mounted {
+        let parent = file.parent().unwrap_or(folder);
+        std::fs::create_dir_all(parent).map_err(|source| unwritable(parent, source))?;
+        write_file(file, text)?;
+        message!("{}", file.display());
+    }
+    write_file(output, text)?;
+    message!("{}", output.display());
+    Ok(())
+}

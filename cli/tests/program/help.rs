@@ -1,0 +1,88 @@
+//! Help texts: every command has two examples that work as they stand.
+
+use crate::bench::{Bench, stderr, stdout, touchoff};
+use std::process::{Command, Output};
+
+const COMMANDS: [&str; 15] = [
+    // `sweep` makes the map that `map` and `path` read.
+    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "tools", "check",
+    "explain", "fmt", "expand", "draw",
+];
+
+const TOOL: &str = "tool My {
+    units mm;
+    param D = 4;
+    profile {
+        start (0, 0);
+        arc to (D/2, D/2) center (0, D/2) as ball cutting;
+        line to (D/2, 20), (0, 20) as shank;
+    }
+    niceness cutting: 1;
+}
+";
+
+const PROGRAM: &str =
+    "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
+
+/// Returns the examples at the end of a help text, without their explanations.
+fn examples(help: &str) -> Vec<Vec<&str>> {
+    let (_, examples) = help.split_once("\nExamples:\n").expect("examples at the end");
+    let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("touchoff "));
+    lines.map(|line| line.split(' ').collect()).collect()
+}
+
+fn run_in(bench: &Bench, arguments: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_touchoff"));
+    program.args(arguments).current_dir(&bench.folder).output().expect("the program runs")
+}
+
+#[test]
+fn all_commands_are_listed() {
+    let help = stdout(&touchoff(&["--help"]));
+    let (_, rest) = help.split_once("Commands:\n").expect("a list");
+    let (list, _) = rest.split_once("\n\n").expect("its end");
+    let mut listed: Vec<&str> =
+        list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    listed.retain(|command| *command != "help");
+    let mut commands = COMMANDS.to_vec();
+    listed.sort_unstable();
+    commands.sort_unstable();
+    assert_eq!(listed, commands);
+}
+
+#[test]
+fn examples_work_as_they_stand() {
+    let bench = Bench::new();
+    let block = bench.folder.path().join("block.stl");
+    std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
+    bench.write("program.apt", PROGRAM);
+    bench.write("my.tool", TOOL);
+    for command in COMMANDS.into_iter().chain(["tools list", "tools show"]) {
+        let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
+        let help = stdout(&touchoff(&words));
+        let examples = examples(&help);
+        assert_eq!(examples.len(), 2, "{command}: {help}");
+        for mut example in examples {
+            assert!(example.join(" ").starts_with(command), "{command}: {example:?}");
+            // These run for seconds: clap parses their options, and then shows the help text.
+            if ["demo", "bench", "haptic"].contains(&command) {
+                example.push("--help");
+            }
+            let output = run_in(&bench, &example);
+            let status = output.status.code().expect("a status");
+            assert!(status == 0, "{}: {status}: {}", example.join(" "), stderr(&output));
+        }
+    }
+}
+
+/// Every option says what it does.
+#[test]
+fn options_have_a_description() {
+    for command in COMMANDS {
+        let help = stdout(&touchoff(&[command, "--help"]));
+        let lines: Vec<&str> = help.lines().collect();
+        for pair in lines.windows(2).filter(|pair| pair[0].trim_start().starts_with("--")) {
+            assert!(!pair[1].trim().is_empty() || pair[0].contains("  "), "{command}: {}", pair[0]);
+        }
+    }
+}
