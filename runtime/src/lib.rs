@@ -100,6 +100,19 @@
 #[doc = include_str!("../../README.md")]
 struct Readme;
 
+// The code blocks of these pages are tests, too.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/certified.md")]
+struct CertifiedPage;
+
+#[cfg(all(doctest, feature = "haptic"))]
+#[doc = include_str!("../../docs/haptics.md")]
+struct HapticsPage;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/verify.md")]
+struct VerifyPage;
+
 // Generated code refers to this crate as `::touchoff`, also inside the crate itself.
 extern crate self as touchoff;
 
