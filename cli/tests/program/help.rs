@@ -31,7 +31,13 @@ fn examples(help: &str) -> Vec<Vec<&str>> {
     lines.map(|line| line.split(' ').collect()).collect()
 }
 
-fn run_in(bench: &Bench, arguments: &[&str]) -> Output {
+/// Runs a command in the folder of a bench. Of a partial command, and of one that runs for seconds, clap parses the
+/// options and then shows the help text.
+pub(super) fn parsed(bench: &Bench, mut arguments: Vec<&str>, partial: bool) -> Output {
+    let command = arguments.first().copied().unwrap_or("demo");
+    if partial || ["demo", "bench", "haptic"].contains(&command) {
+        arguments.push("--help");
+    }
     let mut program = Command::new(env!("CARGO_BIN_EXE_touchoff"));
     program.args(arguments).current_dir(&bench.folder).output().expect("the program runs")
 }
@@ -62,13 +68,9 @@ fn examples_work_as_they_stand() {
         let help = stdout(&touchoff(&words));
         let examples = examples(&help);
         assert_eq!(examples.len(), 2, "{command}: {help}");
-        for mut example in examples {
+        for example in examples {
             assert!(example.join(" ").starts_with(command), "{command}: {example:?}");
-            // These run for seconds: clap parses their options, and then shows the help text.
-            if ["demo", "bench", "haptic"].contains(&command) {
-                example.push("--help");
-            }
-            let output = run_in(&bench, &example);
+            let output = parsed(&bench, example.clone(), false);
             let status = output.status.code().expect("a status");
             assert!(status == 0, "{}: {status}: {}", example.join(" "), stderr(&output));
         }
