@@ -58,7 +58,7 @@ pub(crate) fn check(
         Ok(extent) => extent,
         // An undefined curve prevents bounding; report the undefined value instead of the missing bound.
         Err(diagnostic) => {
-            diagnostics.extend(lint::undefined(&model));
+            diagnostics.extend(lint::undefined_curves(&model));
             let undefined = Reported::among(diagnostics);
             return Err(undefined.unwrap_or_else(|| Reported::push(diagnostics, diagnostic)));
         }

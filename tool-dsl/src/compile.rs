@@ -159,7 +159,7 @@ mod tests {
 
     /// The consequences of a broken item are recognised by kind and names, not by a message's text.
     #[test]
-    fn words_decide_nothing() {
+    fn consequences_are_recognised_by_kind_and_name() {
         let at = Span { start: 0, end: 0 };
         let broken = BTreeSet::from(["flute", "units"]);
         let follows = |kind: Kind| follows(&Diagnostic::new(at, kind), &broken);

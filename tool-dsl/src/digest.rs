@@ -26,9 +26,9 @@ fn meaning(tool: &CheckedTool) -> String {
     needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
     leaves(&tool.plan.outside, &mut needed);
     let needed = model.graph.needed(needed);
-    let places: HashMap<Id, usize> =
-        needed.iter().enumerate().map(|(place, id)| (*id, place)).collect();
-    let place = |id: Id| places[&id];
+    let indices: HashMap<Id, usize> =
+        needed.iter().enumerate().map(|(index, id)| (*id, index)).collect();
+    let index = |id: Id| indices[&id];
 
     let mut text = String::new();
     // Writing to a String does not fail.
@@ -40,19 +40,19 @@ fn meaning(tool: &CheckedTool) -> String {
     model.outline().for_each(|piece| line(&piece));
     model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
     for region in &model.regions {
-        let outputs: Vec<usize> = region.outputs.roots().into_iter().map(place).collect();
+        let outputs: Vec<usize> = region.outputs.roots().into_iter().map(index).collect();
         line(&(&region.name, region.surface, outputs));
     }
-    model.curves.iter().for_each(|curve| line(&place(curve.value)));
+    model.curves.iter().for_each(|curve| line(&index(curve.value)));
     line(&(&tool.plan.owner, &tool.plan.inside));
-    line(&tool.plan.outside.map(&|id: &Id| Some(place(*id))));
+    line(&tool.plan.outside.map(&|id: &Id| Some(index(*id))));
     for id in &needed {
         match model.graph.node(*id) {
             // The rounded value, as in the generated code.
             Node::Const(value) => line(&value.to_f64()),
             Node::Coord(coord) => line(coord),
             node => {
-                let operands: Vec<usize> = node.operands().map(place).collect();
+                let operands: Vec<usize> = node.operands().map(index).collect();
                 let kind = format!("{node:?}");
                 line(&(kind.split(['(', ' ']).next(), operands));
             }
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn words_for_people_do_not_matter() {
+    fn names_titles_and_comments_do_not_change_the_digest() {
         let own = of(BALL, "");
         let others = [
             BALL.replace("\n", " "),
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_tool_answers_does() {
+    fn changed_outputs_change_the_digest() {
         let mut all = vec![of(BALL, ""), of(BALL, "D = 6.000000000000001")];
         for (from, to) in [
             ("mm", "inch"),
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_without_a_profile_has_one_too() {
+    fn a_tool_without_a_profile_has_a_digest() {
         let text = |depth: &str| {
             format!(
                 "tool Ball {{ units mm; region ball as ball cutting where hypot(d, z - 3) <= 3 {{ \

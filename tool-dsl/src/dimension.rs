@@ -21,7 +21,7 @@ pub(crate) const LENGTH: Dimension = Length(1.0);
 impl Dimension {
     /// Returns the dimension of a sum, a difference, a minimum, or the two sides of a comparison; `None` if
     /// they do not match.
-    pub(crate) fn alike(self, other: Dimension) -> Option<Dimension> {
+    pub(crate) fn common(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (Bare, Length(_)) => Some(other),
             (Length(_), Bare) => Some(self),

@@ -18,9 +18,9 @@ pub enum Domain {
 }
 
 /// The coordinates of a tool, each with its axis in the half plane.
-const OF_HALF_PLANE: &[(Coord, usize, &str)] = &[(Coord::D, 0, "d"), (Coord::Z, 2, "z")];
+const HALF_PLANE_COORDINATES: &[(Coord, usize, &str)] = &[(Coord::D, 0, "d"), (Coord::Z, 2, "z")];
 /// The coordinates of a solid, each with its axis.
-const OF_SPACE: &[(Coord, usize, &str)] =
+const SPACE_COORDINATES: &[(Coord, usize, &str)] =
     &[(Coord::X, 0, "x"), (Coord::Y, 1, "y"), (Coord::Z, 2, "z")];
 
 impl Domain {
@@ -35,8 +35,8 @@ impl Domain {
     /// Returns the coordinates, each with its axis (0, 1, 2 for x, y, z) and its name.
     pub fn coordinates(self) -> &'static [(Coord, usize, &'static str)] {
         match self {
-            Domain::HalfPlane => OF_HALF_PLANE,
-            Domain::Space => OF_SPACE,
+            Domain::HalfPlane => HALF_PLANE_COORDINATES,
+            Domain::Space => SPACE_COORDINATES,
         }
     }
 
@@ -51,15 +51,15 @@ impl Domain {
 
     /// Returns the cell of all points at most `size` from the origin along each coordinate.
     pub fn whole(self, size: f64) -> Cell {
-        let all = Interval::new(-size, size);
+        let full_range = Interval::new(-size, size);
         match self {
-            Domain::HalfPlane => Cell::half_plane(Interval::new(0.0, size), all),
-            Domain::Space => Cell { sides: [all; 3] },
+            Domain::HalfPlane => Cell::half_plane(Interval::new(0.0, size), full_range),
+            Domain::Space => Cell { sides: [full_range; 3] },
         }
     }
 
     /// Returns the directions in which a solid can extend, each as an axis and whether toward its high end.
-    pub(crate) fn ways(self) -> &'static [(usize, bool)] {
+    pub(crate) fn axis_directions(self) -> &'static [(usize, bool)] {
         match self {
             Domain::HalfPlane => &[(0, true), (2, true), (2, false)],
             Domain::Space => &[(0, true), (0, false), (1, true), (1, false), (2, true), (2, false)],

@@ -27,8 +27,8 @@
 //! - **Depth.** [`RegionOutputs::depth`] of the owner is `max(0, depth)`. With a `Section` it is the distance
 //!   to the solid's surface. For regions written by hand it is the file's expression, and `prove` bounds it
 //!   by the distance.
-//! - **Direction.** [`RegionOutputs::direction`] is a unit vector. It is the normalised *course*, the vector
-//!   that the file writes or that is derived. Where the course has zero length, and on the axis of a tool,
+//! - **Direction.** [`RegionOutputs::direction`] is a unit vector. It is the normalised *raw direction*, the vector
+//!   that the file writes or that is derived. Where the raw direction has zero length, and on the axis of a tool,
 //!   where the radial unit vector does not exist, it is a fixed one: `+x` replaces the radial direction.
 //! - **Magnitude.** If the file gives none, the magnitude is the depth in the part's unit. Otherwise it is
 //!   the file's own number and does not change with the unit. [`RegionOutputs::gradient`] is its gradient
@@ -46,7 +46,7 @@
 //! |---|---|---|
 //! | `syntax::parse` | items in the order of the text; at most 300 operations lie between a value and a coordinate; lists and texts are bounded | the grammar, `syntax::limits`, `syntax::refuse` |
 //! | `resolve` | each name has one definition above its use, or in a mounted file; no definition depends on itself | `lower::Lowering`, `scope`, `cycle` |
-//! | | sums, minima and comparisons have operands of one dimension; a depth and a course are lengths, a niceness has no dimension | `dimension::Dimension::alike` |
+//! | | sums, minima and comparisons have operands of one dimension; a depth and a raw direction are lengths, a niceness has no dimension | `dimension::Dimension::alike` |
 //! | | lengths are in one unit, `z` in the tool's frame: the tip is at 0, the spindle is toward `+z` | `lower` for expressions, `Frame::to_tool` for constants |
 //! | | indices of curves and surfaces are in range; `regions` is not empty | by construction: the lists only grow |
 //! | | each region has a depth, a direction, a niceness and a magnitude | `region::regions`, `law::Laws` |

@@ -10,7 +10,7 @@ use std::str::FromStr;
 use std::sync::OnceLock;
 
 /// The precision of every constant, in bits.
-const PRECISION: usize = 256;
+const PRECISION_BITS: usize = 256;
 
 /// The largest residue of a cancelling sum of [`Number`]s, relative to the absolute values of its terms.
 pub(crate) const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
@@ -31,16 +31,16 @@ impl Number {
     /// Rounds to the precision. Zero has no sign, so that equal numbers have equal representations.
     fn rounded(value: FBig<HalfEven, 2>) -> Number {
         if value.repr().significand().is_zero() {
-            return Number::new(FBig::ZERO.with_precision(PRECISION).value());
+            return Number::new(FBig::ZERO.with_precision(PRECISION_BITS).value());
         }
-        Number::new(value.with_precision(PRECISION).value())
+        Number::new(value.with_precision(PRECISION_BITS).value())
     }
 
     /// Parses a decimal literal such as `0.25` or `1e-3`.
     pub fn decimal(text: &str) -> Option<Number> {
         let value = DBig::from_str(text).ok()?;
         Some(Number::rounded(
-            value.with_rounding::<HalfEven>().with_base_and_precision::<2>(PRECISION).value(),
+            value.with_rounding::<HalfEven>().with_base_and_precision::<2>(PRECISION_BITS).value(),
         ))
     }
 
@@ -56,7 +56,7 @@ impl Number {
 
     /// Returns π.
     pub fn pi() -> Number {
-        Number::new(FBig::<HalfEven, 2>::pi(PRECISION))
+        Number::new(FBig::<HalfEven, 2>::pi(PRECISION_BITS))
     }
 
     /// Returns the nearest double; an infinity if the number is out of range.
@@ -123,8 +123,8 @@ impl Number {
 
     /// Returns twice this exponent, if that is an integer between -32 and 32.
     pub fn halves(&self) -> Option<i32> {
-        let twice = self.to_f64() * 2.0;
-        let whole = twice.round();
+        let doubled = self.to_f64() * 2.0;
+        let whole = doubled.round();
         let exact = Number::from_f64(whole / 2.0)? == *self;
         (exact && whole.abs() <= 32.0).then_some(whole as i32)
     }

@@ -177,20 +177,20 @@ impl Source {
                 }
                 TokenTree::Punct(punct) => {
                     // A space in `. 5` would hide that the text was `.5`.
-                    let apart = punct.spacing() == Spacing::Alone && punct.as_char() != '.';
-                    self.push(&punct.as_char().to_string(), punct.span(), apart);
+                    let is_separate = punct.spacing() == Spacing::Alone && punct.as_char() != '.';
+                    self.push(&punct.as_char().to_string(), punct.span(), is_separate);
                 }
                 other => self.push(&other.to_string(), other.span(), true),
             }
         }
     }
 
-    fn push(&mut self, token: &str, span: proc_macro2::Span, apart: bool) {
+    fn push(&mut self, token: &str, span: proc_macro2::Span, is_separate: bool) {
         let start = self.text.len();
         self.text.push_str(token);
-        let place = Span { start, end: self.text.len() };
-        self.tokens.get_or_insert_default().push((place, span));
-        if apart {
+        let token_span = Span { start, end: self.text.len() };
+        self.tokens.get_or_insert_default().push((token_span, span));
+        if is_separate {
             self.text.push(' ');
         }
     }
@@ -199,9 +199,9 @@ impl Source {
     pub fn tokens_at(&self, span: Span) -> Option<[proc_macro2::Span; 2]> {
         let tokens = self.tokens.as_ref()?;
         let end = tokens.len().checked_sub(1)?;
-        let first = tokens.partition_point(|(place, _)| place.end <= span.start).min(end);
-        let behind = tokens.partition_point(|(place, _)| place.start < span.end);
-        Some([first, behind.saturating_sub(1).max(first)].map(|at| tokens[at].1))
+        let first = tokens.partition_point(|(token_span, _)| token_span.end <= span.start).min(end);
+        let end_index = tokens.partition_point(|(token_span, _)| token_span.start < span.end);
+        Some([first, end_index.saturating_sub(1).max(first)].map(|at| tokens[at].1))
     }
 
     /// Returns the file that contains the text, if there is one.
@@ -210,7 +210,7 @@ impl Source {
     }
 
     /// Resolves a path that this text mentions: the path to show, and the path to open.
-    fn beside(&self, file: &str) -> Option<(String, PathBuf)> {
+    fn resolve_path(&self, file: &str) -> Option<(String, PathBuf)> {
         let near = |path: &Path| folder(path).join(file);
         let shown = match self.tokens {
             Some(_) => file.to_owned(),
@@ -287,8 +287,8 @@ impl Sources {
 
     /// Resolves a path mentioned at a location: the path to show, and the path to open. Returns `None` if the
     /// mentioning text has no file.
-    pub(crate) fn beside(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
-        self.locate(by).0.beside(file)
+    pub(crate) fn resolve_path(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
+        self.locate(by).0.resolve_path(file)
     }
 
     /// Returns the folder that must contain mounted files, if it was [set](Source::with_root).
@@ -302,15 +302,15 @@ impl Sources {
         let Some(root) = self.own().root() else { return false };
         let root = if root == Path::new("") { Path::new(".") } else { root };
         let real = |path: &Path| {
-            let beside =
+            let in_real_folder =
                 || Ok(folder(path).canonicalize()?.join(path.file_name().unwrap_or_default()));
             path.canonicalize()
-                .or_else(|_| beside())
+                .or_else(|_| in_real_folder())
                 .or_else(|_: io::Error| std::path::absolute(path))
         };
-        let (Ok(root), Ok(wanted)) = (real(root), real(path)) else { return false };
-        let leads_up = wanted.components().any(|part| part == Component::ParentDir);
-        wanted.starts_with(root) && !leads_up
+        let (Ok(root), Ok(path_on_disk)) = (real(root), real(path)) else { return false };
+        let leads_up = path_on_disk.components().any(|part| part == Component::ParentDir);
+        path_on_disk.starts_with(root) && !leads_up
     }
 
     /// Reads a file that a `mount` mentions, unless it was read before.
@@ -323,9 +323,9 @@ impl Sources {
         (shown, path): (String, PathBuf),
     ) -> io::Result<&Source> {
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let wanted = real(&path);
+        let path_on_disk = real(&path);
         let same = |source: &Source| {
-            source.tokens.is_none() && source.path().is_some_and(|path| real(path) == wanted)
+            source.tokens.is_none() && source.path().is_some_and(|path| real(path) == path_on_disk)
         };
         if let Some(known) = self.0.iter().position(same) {
             return Ok(&self.0[known]);

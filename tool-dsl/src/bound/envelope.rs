@@ -8,9 +8,9 @@ use crate::geometry::outline;
 use crate::model::Model;
 
 /// The largest number of slabs in an envelope.
-const SLABS: usize = 24;
+const MAX_SLABS: usize = 24;
 /// The number of additional slabs before neighbours are merged.
-const SPARE: usize = 8;
+const SPARE_SLABS: usize = 8;
 
 /// An interval of the axis with the largest radius of the solid in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
         ends.windows(2).map(|pair| slab(pair[0], pair[1], extent.radius)).collect();
     // Halve the slab whose halving saves most area, while that is more than 1 %.
     let mut halves: Vec<Option<[EnvelopeSlab; 2]>> = vec![None; slabs.len()];
-    while slabs.len() < SLABS + SPARE {
+    while slabs.len() < MAX_SLABS + SPARE_SLABS {
         for (own, half) in slabs.iter().zip(&mut halves) {
             half.get_or_insert_with(|| {
                 let middle = own.low / 2.0 + own.high / 2.0;
@@ -85,7 +85,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
         };
         let best = (0..slabs.len() - 1).min_by(|&i, &j| added(i).total_cmp(&added(j)));
         let Some(best) = best else { break };
-        if slabs.len() <= SLABS && added(best) > 0.001 * slabs[best].area() {
+        if slabs.len() <= MAX_SLABS && added(best) > 0.001 * slabs[best].area() {
             break;
         }
         slabs[best] = slabs[best].merged(&slabs[best + 1]);

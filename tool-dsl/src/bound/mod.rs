@@ -14,18 +14,18 @@ use crate::geometry::outline;
 use crate::model::{Model, Region};
 
 /// The exponent of the power of two that bounds the extent of a solid.
-const FARTHEST: i32 = 280;
+const MAX_EXTENT_EXPONENT: i32 = 280;
 /// The largest coordinate, 2^300.
-const LIMIT: f64 = 2.037035976334486e90;
+const MAX_COORDINATE: f64 = 2.037035976334486e90;
 /// The number of boxes per query. It gives a few percent where an expression mentions a coordinate several
 /// times, and rounding accuracy where it does so once.
-const BUDGET: usize = 100;
+const BOXES_PER_QUERY: usize = 100;
 /// The number of boxes for a cylinder about the axis of space, which boxes fit badly: again a few percent.
-const ROUND_BUDGET: usize = 400;
+const BOXES_PER_CYLINDER_QUERY: usize = 400;
 
 /// The position of a box relative to the solid.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum BoxPosition {
     Inside,
     Outside,
     Unknown,
@@ -61,12 +61,12 @@ impl<'m> Prover<'m> {
         let reach = |region: &Region| {
             let mut signs = vec![ANY; model.curves.len()];
             region.inside.demand(&mut signs);
-            let mut reach = linear.reach(&signs);
+            let mut reach = linear.bounding_box(&signs);
             for choices in region.inside.choices() {
                 let one = |choice: &Formula| {
                     let mut signs = signs.clone();
                     choice.demand(&mut signs);
-                    linear.reach(&signs)
+                    linear.bounding_box(&signs)
                 };
                 let hull = choices.iter().map(one).reduce(|a, b| a.hull(&b));
                 reach = hull.map_or(reach, |hull| reach.common(&hull));
@@ -86,26 +86,26 @@ impl<'m> Prover<'m> {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 
-    fn place(&mut self, cell: Cell) -> Place {
+    fn classify(&mut self, cell: Cell) -> BoxPosition {
         self.set(cell);
         let model = self.model;
-        let mut place = Place::Outside;
+        let mut position = BoxPosition::Outside;
         for (index, region) in model.regions.iter().enumerate() {
             if !self.reaches[index].meets(&cell) {
                 continue;
             }
             match region.inside.decided_by(&mut |curve| self.sign(curve)) {
-                Some(true) => return Place::Inside,
+                Some(true) => return BoxPosition::Inside,
                 Some(false) => {}
-                None => place = Place::Unknown,
+                None => position = BoxPosition::Unknown,
             }
         }
-        place
+        position
     }
 
     /// Returns whether the solid provably does not reach into a box.
     fn empty(&mut self, cell: Cell) -> bool {
-        self.empty_within(cell, BUDGET, 0.0)
+        self.empty_within(cell, BOXES_PER_QUERY, 0.0)
     }
 
     /// Returns whether the solid provably has no point in a box at this distance from the axis or farther. No
@@ -113,25 +113,25 @@ impl<'m> Prover<'m> {
     fn none_beyond(&mut self, radius: f64, widest: f64, within: Cell) -> bool {
         match self.model.domain {
             Domain::HalfPlane => self.empty(within.with(0, Interval::new(radius, widest))),
-            Domain::Space => self.empty_within(within, ROUND_BUDGET, radius),
+            Domain::Space => self.empty_within(within, BOXES_PER_CYLINDER_QUERY, radius),
         }
     }
 
     /// The same with a budget of boxes. Points nearer to the axis than `radius` are ignored.
     fn empty_within(&mut self, cell: Cell, budget: usize, radius: f64) -> bool {
-        let mut open = vec![cell];
-        let mut left = budget;
-        while let Some(cell) = open.pop() {
+        let mut pending = vec![cell];
+        let mut remaining = budget;
+        while let Some(cell) = pending.pop() {
             if cell.radius().high < radius {
                 continue;
             }
-            match self.place(cell) {
-                Place::Outside => {}
-                Place::Inside => return false,
-                Place::Unknown if left == 0 => return false,
-                Place::Unknown => {
-                    left -= 1;
-                    open.extend(halves(cell));
+            match self.classify(cell) {
+                BoxPosition::Outside => {}
+                BoxPosition::Inside => return false,
+                BoxPosition::Unknown if remaining == 0 => return false,
+                BoxPosition::Unknown => {
+                    remaining -= 1;
+                    pending.extend(halves(cell));
                 }
             }
         }
@@ -182,25 +182,25 @@ impl Extent {
     }
 }
 
-/// Returns points spread evenly over the extent's box and a margin `around` it, by the additive recurrences
+/// Returns points spread evenly over the extent's box and a `margin` around it, by the additive recurrences
 /// R2 in the half plane and R3 in space (Roberts 2018). The margin is relative to each side.
 pub(crate) fn spread(
     domain: Domain,
     extent: &Extent,
     count: usize,
-    around: f64,
+    margin: f64,
 ) -> impl Iterator<Item = [f64; 3]> {
     // The real roots of x³ = x + 1 and x⁴ = x + 1.
     const PLASTIC: f64 = 1.324_717_957_244_746;
-    const IN_SPACE: f64 = 1.220_744_084_605_759_5;
+    const PLASTIC_IN_SPACE: f64 = 1.220_744_084_605_759_5;
     let cell = extent.cell();
     let step = |root: f64, power: i32| 1.0 / root.powi(power);
     let (low_end, steps) = match domain {
         // The half plane has no points beyond the axis.
         Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
-        Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
+        Domain::Space => (margin, [1, 2, 3].map(|power| step(PLASTIC_IN_SPACE, power))),
     };
-    let ends = [low_end, low_end, around].map(|below| [below, below + around]);
+    let ends = [low_end, low_end, margin].map(|below| [below, below + margin]);
     (1..=count).map(move |k| {
         [0, 1, 2].map(|axis| {
             let (side, [below, both]) = (cell.sides[axis], ends[axis]);
@@ -216,20 +216,20 @@ pub(crate) fn spread(
 /// If no bound is found, or the solid provably has no points.
 pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     if let Some(section) = &model.section {
-        let [low, high] = outline::reach(&section.outline);
+        let [low, high] = outline::bounding_box(&section.outline);
         let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
         return Ok(Extent::of(Cell::half_plane(d, z), high[0]));
     }
     let (domain, mut prover) = (model.domain, Prover::of_regions(model));
     let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
-    let whole = domain.whole(2f64.powi(power));
-    let mut cell = whole;
+    let domain_box = domain.whole(2f64.powi(power));
+    let mut cell = domain_box;
     // Each end moves inward while the rest stays provably empty. The second pass tightens them, since the
     // solid is easier to bound between its ends.
     for pass in 0..2 {
-        for (axis, high) in domain.ways() {
+        for (axis, high) in domain.axis_directions() {
             let side = cell.sides[*axis];
-            let opposite = if pass == 0 { whole.sides[*axis] } else { side };
+            let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
             let end = if *high {
                 let beyond = |v| cell.with(*axis, Interval::new(v, side.high));
                 inward(side.high, opposite.low, 52, |v| prover.empty(beyond(v)))
@@ -237,14 +237,14 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
                 let beyond = |v| cell.with(*axis, Interval::new(side.low, v));
                 inward(side.low, opposite.high, 52, |v| prover.empty(beyond(v)))
             };
-            let place = &mut cell.sides[*axis];
-            if *high { place.high = end } else { place.low = end }
+            let side_to_move = &mut cell.sides[*axis];
+            if *high { side_to_move.high = end } else { side_to_move.low = end }
         }
-        let void = |(_, axis, _): &(_, usize, _)| {
+        let is_empty = |(_, axis, _): &(_, usize, _)| {
             let side = cell.sides[*axis];
             side.low >= side.high
         };
-        if domain.coordinates().iter().any(void) {
+        if domain.coordinates().iter().any(is_empty) {
             return Err(Diagnostic::new(
                 model.name_span,
                 CheckKind::NoPoint { file: domain.keyword() },
@@ -261,8 +261,8 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
 
 /// Returns the exponent of a power of two beyond which the solid provably has no point.
 fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
-    let mut beyond = |size: f64| way_out(domain, prover, size).is_none();
-    let mut power = FARTHEST;
+    let mut beyond = |size: f64| unbounded_direction(domain, prover, size).is_none();
+    let mut power = MAX_EXTENT_EXPONENT;
     if !beyond(2f64.powi(power)) {
         return None;
     }
@@ -275,10 +275,22 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
 }
 
 /// Returns a direction in which the solid may extend farther than `size`.
-fn way_out(domain: Domain, prover: &mut Prover<'_>, size: f64) -> Option<(usize, bool)> {
-    domain.ways().iter().copied().find(|(axis, high)| {
-        let far = if *high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
-        !prover.empty_within(domain.whole(LIMIT).with(*axis, far), 20 * BUDGET, 0.0)
+fn unbounded_direction(
+    domain: Domain,
+    prover: &mut Prover<'_>,
+    size: f64,
+) -> Option<(usize, bool)> {
+    domain.axis_directions().iter().copied().find(|(axis, high)| {
+        let outer = if *high {
+            Interval::new(size, MAX_COORDINATE)
+        } else {
+            Interval::new(-MAX_COORDINATE, -size)
+        };
+        !prover.empty_within(
+            domain.whole(MAX_COORDINATE).with(*axis, outer),
+            20 * BOXES_PER_QUERY,
+            0.0,
+        )
     })
 }
 
@@ -288,7 +300,11 @@ fn endless(model: &Model) -> Diagnostic {
     let mut alone = model.clone();
     for region in &model.regions {
         alone.regions = vec![region.clone()];
-        let out = way_out(domain, &mut Prover::of_regions(&alone), 2f64.powi(FARTHEST));
+        let out = unbounded_direction(
+            domain,
+            &mut Prover::of_regions(&alone),
+            2f64.powi(MAX_EXTENT_EXPONENT),
+        );
         let Some((axis, high)) = out else { continue };
         let coordinate = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
         let toward = if high { "large" } else { "small" };

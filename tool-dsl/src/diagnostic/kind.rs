@@ -11,7 +11,7 @@ use super::table::Entry;
 use super::values::ValueKind;
 
 /// The largest number of edits between two similar codes.
-const MOST_EDITS: usize = 2;
+const MAX_EDITS: usize = 2;
 
 /// A family of kinds, whose codes have a common prefix.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +74,6 @@ pub fn entry(code: &str) -> Option<&'static Entry> {
 /// similar.
 pub fn near(code: &str) -> impl Iterator<Item = &'static Entry> {
     let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
-    let least = entries().map(edits).min().filter(|edits| *edits <= MOST_EDITS);
-    entries().filter(move |entry| Some(edits(entry)) == least).take(3)
+    let min_edits = entries().map(edits).min().filter(|edits| *edits <= MAX_EDITS);
+    entries().filter(move |entry| Some(edits(entry)) == min_edits).take(3)
 }

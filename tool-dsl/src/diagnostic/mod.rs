@@ -108,7 +108,7 @@ impl Diagnostic {
     }
 
     /// Moves the locations to a text that begins at `base`.
-    pub(crate) fn behind(mut self, base: usize) -> Diagnostic {
+    pub(crate) fn offset_by(mut self, base: usize) -> Diagnostic {
         self.span = self.span.behind(base);
         self.second = self.second.map(|(span, label)| (span.behind(base), label));
         self

@@ -65,12 +65,12 @@ pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics.retain(|diagnostic| diagnostic.caused_by.is_none());
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
     // A file that is mounted twice reports each error once.
-    let mut here: Vec<Diagnostic> = Vec::new();
+    let mut shown_here: Vec<Diagnostic> = Vec::new();
     diagnostics.retain(|diagnostic| {
-        here.retain(|other| other.span.start == diagnostic.span.start);
-        let new = !here.contains(diagnostic);
+        shown_here.retain(|other| other.span.start == diagnostic.span.start);
+        let new = !shown_here.contains(diagnostic);
         if new {
-            here.push(diagnostic.clone());
+            shown_here.push(diagnostic.clone());
         }
         new
     });

@@ -33,11 +33,11 @@ pub(super) struct Border {
     pub(super) exact: bool,
 }
 
-/// Length tolerances of the map, in the tool's unit: `weld` merges corners, `seen` is the visible accuracy.
+/// Length tolerances of the map, in the tool's unit: `weld` merges corners, `visible_length` is the visible accuracy.
 #[derive(Clone, Copy)]
 pub(super) struct Nearness {
     pub(super) weld: f64,
-    pub(super) seen: f64,
+    pub(super) visible_length: f64,
     /// The largest distance of a corner from the intersection of its curves.
     pub(super) reach: f64,
 }
@@ -46,7 +46,7 @@ pub(super) struct Nearness {
 pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness) -> Vec<Border> {
     let (mut points, mut edges) = edges(pieces, near);
     let mut chains = chains(&edges, points.len());
-    contract(&mut edges, &mut chains, &points, 0.2 * near.seen);
+    contract(&mut edges, &mut chains, &points, 0.2 * near.visible_length);
     polish(curves, &edges, &chains, &mut points, near.reach);
     chains.iter().map(|chain| border(curves, &edges, chain, &points, near)).collect()
 }
@@ -55,16 +55,16 @@ pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness)
 fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     let mut leaving: Vec<Vec<usize>> = vec![Vec::new(); corners];
     let mut coming: Vec<Vec<usize>> = vec![Vec::new(); corners];
-    for (place, edge) in edges.iter().enumerate() {
-        leaving[edge.ends[0]].push(place);
-        coming[edge.ends[1]].push(place);
+    for (index, edge) in edges.iter().enumerate() {
+        leaving[edge.ends[0]].push(index);
+        coming[edge.ends[1]].push(index);
     }
-    let next = |place: usize| {
-        let corner = edges[place].ends[1];
+    let next = |index: usize| {
+        let corner = edges[index].ends[1];
         let ([after], [_]) = (leaving[corner].as_slice(), coming[corner].as_slice()) else {
             return None;
         };
-        let (a, b) = (&edges[place], &edges[*after]);
+        let (a, b) = (&edges[index], &edges[*after]);
         (a.sides == b.sides && a.curve == b.curve).then_some(*after)
     };
     let followed: Vec<bool> = {
@@ -75,7 +75,7 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     let mut taken = vec![false; edges.len()];
     let mut chains = Vec::new();
     // Chains that begin at a joint come first, closed loops last.
-    let starts = (0..edges.len()).filter(|place| !followed[*place]).chain(0..edges.len());
+    let starts = (0..edges.len()).filter(|index| !followed[*index]).chain(0..edges.len());
     for start in starts.collect::<Vec<_>>() {
         if taken[start] {
             continue;
@@ -98,8 +98,8 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
 fn contract(edges: &mut [Edge], chains: &mut Vec<Vec<usize>>, points: &[Point], speck: f64) {
     let mut joint: Vec<usize> = (0..points.len()).collect();
     chains.retain(|chain| {
-        let length = |place: &usize| {
-            let [from, to] = edges[*place].ends;
+        let length = |index: &usize| {
+            let [from, to] = edges[*index].ends;
             norm(minus(points[to], points[from]))
         };
         if chain.iter().map(length).sum::<f64>() >= speck {
@@ -172,7 +172,7 @@ fn border(
     let first = edges[chain[0]];
     let ends = ends(edges, chain);
     let mut row: Vec<Point> = vec![points[ends[0]]];
-    row.extend(chain.iter().map(|place| points[edges[*place].ends[1]]));
+    row.extend(chain.iter().map(|index| points[edges[*index].ends[1]]));
     let straight =
         first.sides[1] == Side::Axis || first.curve.is_some_and(|curve| curves.straight(curve));
     let (strokes, exact) = if straight && ends[0] != ends[1] {
@@ -184,7 +184,7 @@ fn border(
         };
         match round(&row, foot, near.weld) {
             Some(strokes) => (strokes, true),
-            None => (fitted(&row, near.seen), false),
+            None => (fitted(&row, near.visible_length), false),
         }
     };
     Border { ends, sides: first.sides, strokes, exact }

@@ -4,19 +4,19 @@
 use super::borders::{Border, Side};
 use crate::model::Model;
 
-const AREAS: [&str; 9] = [
+const REGION_FILLS: [&str; 9] = [
     "#77aadd", "#eedd88", "#ffaabb", "#99ddff", "#44bb99", "#ee8866", "#bbcc33", "#dddddd",
     "#aaaa00",
 ];
-const CUTTING: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
-const OTHER: [&str; 5] = ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5"];
+const CUTTING_STROKES: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
+const NON_CUTTING_STROKES: [&str; 5] = ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5"];
 
 /// Returns a colour for each region, different for neighbours as far as the palette allows.
 pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {
     let mut chosen: Vec<usize> = Vec::new();
-    let mut used = [0; AREAS.len()];
+    let mut used = [0; REGION_FILLS.len()];
     for region in 0..regions {
-        let beside = |colour: usize| {
+        let is_neighbour_colour = |colour: usize| {
             borders.iter().any(|border| match border.sides {
                 [Side::Region(a), Side::Region(b)] => {
                     let other = if a == region { b } else { a };
@@ -25,19 +25,20 @@ pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {
                 _ => false,
             })
         };
-        let colour = (0..AREAS.len())
-            .filter(|colour| !beside(*colour))
+        let colour = (0..REGION_FILLS.len())
+            .filter(|colour| !is_neighbour_colour(*colour))
             .min_by_key(|colour| used[*colour])
-            .unwrap_or(region % AREAS.len());
+            .unwrap_or(region % REGION_FILLS.len());
         used[colour] += 1;
         chosen.push(colour);
     }
-    chosen.into_iter().map(|colour| AREAS[colour]).collect()
+    chosen.into_iter().map(|colour| REGION_FILLS[colour]).collect()
 }
 
 /// Returns the colour of each surface.
 pub(super) fn surfaces(model: &Model) -> Vec<&'static str> {
-    let (mut cutting, mut other) = (CUTTING.iter().cycle(), OTHER.iter().cycle());
+    let (mut cutting, mut other) =
+        (CUTTING_STROKES.iter().cycle(), NON_CUTTING_STROKES.iter().cycle());
     let next = |cuts: bool| if cuts { cutting.next() } else { other.next() };
     model
         .surfaces

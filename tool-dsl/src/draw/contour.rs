@@ -7,7 +7,7 @@ use crate::geometry::outline::{Point, cross, dot, minus, norm};
 use crate::model::{Model, Unit};
 
 /// Lengths that differ by less than this fraction of the tool's size are considered equal.
-const EQUAL: f64 = 1e-7;
+const LENGTH_TOLERANCE_FRACTION: f64 = 1e-7;
 
 /// The dimension of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,11 +81,11 @@ pub(super) fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
             let length = stroke.length();
             let known = faces
                 .iter_mut()
-                .find(|face| face.surface == surface && alike(face.measure, measure, size));
+                .find(|face| face.surface == surface && are_equal(face.measure, measure, size));
             match known {
                 Some(face) => {
                     face.length += length;
-                    if length > face.longest.length() * (1.0 + EQUAL) {
+                    if length > face.longest.length() * (1.0 + LENGTH_TOLERANCE_FRACTION) {
                         face.longest = *stroke;
                     }
                 }
@@ -99,10 +99,10 @@ pub(super) fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
 fn measure(stroke: &Stroke, exact: bool, size: f64) -> Measure {
     match stroke.circle {
         Some((centre, radius)) if exact => Measure::Arc(centre, radius),
-        None if (stroke.from[0] - stroke.to[0]).abs() < EQUAL * size => {
+        None if (stroke.from[0] - stroke.to[0]).abs() < LENGTH_TOLERANCE_FRACTION * size => {
             Measure::Cylinder(stroke.from[0] / 2.0 + stroke.to[0] / 2.0)
         }
-        None if (stroke.from[1] - stroke.to[1]).abs() > EQUAL * size => {
+        None if (stroke.from[1] - stroke.to[1]).abs() > LENGTH_TOLERANCE_FRACTION * size => {
             let [d, z] = [0, 1].map(|k| (stroke.to[k] - stroke.from[k]).abs());
             Measure::Cone(d.atan2(z).to_degrees())
         }
@@ -110,8 +110,8 @@ fn measure(stroke: &Stroke, exact: bool, size: f64) -> Measure {
     }
 }
 
-fn alike(a: Measure, b: Measure, size: f64) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() < EQUAL * size;
+fn are_equal(a: Measure, b: Measure, size: f64) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() < LENGTH_TOLERANCE_FRACTION * size;
     match (a, b) {
         (Measure::Cylinder(a), Measure::Cylinder(b)) => near(a, b),
         (Measure::Arc(p, r), Measure::Arc(q, s)) => {
@@ -156,7 +156,9 @@ pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point
     let mut levels: Vec<Point> = Vec::new();
     for step in steps {
         match levels.last_mut() {
-            Some(level) if step[1] - level[1] < EQUAL * size => level[0] = level[0].max(step[0]),
+            Some(level) if step[1] - level[1] < LENGTH_TOLERANCE_FRACTION * size => {
+                level[0] = level[0].max(step[0]);
+            }
             _ => levels.push(step),
         }
     }
@@ -171,7 +173,9 @@ fn one(a: &Stroke, b: &Stroke, size: f64) -> bool {
             let lengths = norm(u) * norm(v);
             cross(u, v).abs() < 1e-6 * lengths && dot(u, v) > 0.0
         }
-        (Some((p, r)), Some((q, s))) => norm(minus(p, q)) + (r - s).abs() < EQUAL * size,
+        (Some((p, r)), Some((q, s))) => {
+            norm(minus(p, q)) + (r - s).abs() < LENGTH_TOLERANCE_FRACTION * size
+        }
         _ => false,
     }
 }

@@ -9,7 +9,7 @@ use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
 
 /// A curve prepared for evaluation at a point and for its signs in a box.
-enum Asked<'m> {
+enum CurveEvaluator<'m> {
     /// The line `a d + b z + c`.
     Line([f64; 3]),
     /// Any other curve.
@@ -19,22 +19,22 @@ enum Asked<'m> {
 /// All curves of a tool. A curve is prepared when it is first used.
 pub(super) struct Curves<'m> {
     model: &'m Model,
-    asked: Vec<Option<Asked<'m>>>,
+    evaluators: Vec<Option<CurveEvaluator<'m>>>,
     /// The step of the finite differences, in the tool's unit.
     step: f64,
 }
 
 impl<'m> Curves<'m> {
     pub(super) fn new(model: &'m Model, extent: &Extent) -> Curves<'m> {
-        let asked = model.curves.iter().map(|_| None).collect();
-        Curves { model, asked, step: 1e-6 * (extent.high - extent.low).max(extent.radius) }
+        let evaluators = model.curves.iter().map(|_| None).collect();
+        Curves { model, evaluators, step: 1e-6 * (extent.high - extent.low).max(extent.radius) }
     }
 
-    fn asked(&mut self, curve: CurveIndex) -> &mut Asked<'m> {
+    fn evaluator(&mut self, curve: CurveIndex) -> &mut CurveEvaluator<'m> {
         let (model, value) = (self.model, self.model.curves[curve].value);
-        self.asked[curve].get_or_insert_with(|| match line(model, curve) {
-            Some(line) => Asked::Line(line),
-            None => Asked::Bent(Box::new((
+        self.evaluators[curve].get_or_insert_with(|| match line(model, curve) {
+            Some(line) => CurveEvaluator::Line(line),
+            None => CurveEvaluator::Bent(Box::new((
                 Evaluator::new(&model.graph, [value]),
                 Encloser::new(&model.graph, [value]),
             ))),
@@ -43,15 +43,15 @@ impl<'m> Curves<'m> {
 
     /// Returns whether a curve is a straight line.
     pub(super) fn straight(&mut self, curve: CurveIndex) -> bool {
-        matches!(self.asked(curve), Asked::Line(_))
+        matches!(self.evaluator(curve), CurveEvaluator::Line(_))
     }
 
     /// Returns a curve's value at a point; +∞ where it is undefined.
     pub(super) fn value(&mut self, curve: CurveIndex, [d, z]: Point) -> f64 {
         let id = self.model.curves[curve].value;
-        let value = match self.asked(curve) {
-            Asked::Line([a, b, c]) => *a * d + *b * z + *c,
-            Asked::Bent(bent) => {
+        let value = match self.evaluator(curve) {
+            CurveEvaluator::Line([a, b, c]) => *a * d + *b * z + *c,
+            CurveEvaluator::Bent(bent) => {
                 bent.0.set(At::meridian(d, z));
                 bent.0.get(id)
             }
@@ -62,8 +62,8 @@ impl<'m> Curves<'m> {
     /// Returns the signs that a curve can have in a box.
     pub(super) fn signs(&mut self, curve: CurveIndex, low: Point, high: Point) -> Signs {
         let id = self.model.curves[curve].value;
-        let range = match self.asked(curve) {
-            Asked::Line([a, b, c]) => {
+        let range = match self.evaluator(curve) {
+            CurveEvaluator::Line([a, b, c]) => {
                 let of = |factor: f64, low: f64, high: f64| {
                     if factor < 0.0 {
                         (factor * high, factor * low)
@@ -74,7 +74,7 @@ impl<'m> Curves<'m> {
                 let (d, z) = (of(*a, low[0], high[0]), of(*b, low[1], high[1]));
                 Interval::new(d.0 + z.0 + *c, d.1 + z.1 + *c)
             }
-            Asked::Bent(bent) => {
+            CurveEvaluator::Bent(bent) => {
                 let side = |k: usize| Interval::new(low[k], high[k]);
                 bent.1.set(Cell::half_plane(side(0), side(1)));
                 bent.1.get(id)
@@ -96,7 +96,7 @@ impl<'m> Curves<'m> {
     /// Returns a curve's gradient at a point, by finite differences.
     fn slope(&mut self, curve: CurveIndex, [d, z]: Point) -> Point {
         let h = self.step;
-        if let Asked::Line([a, b, _]) = self.asked(curve) {
+        if let CurveEvaluator::Line([a, b, _]) = self.evaluator(curve) {
             return [*a, *b];
         }
         // The axis is a mirror: negative d is not sampled.
@@ -156,13 +156,13 @@ fn line(model: &Model, curve: CurveIndex) -> Option<[f64; 3]> {
     let polynomial = Polynomial::of(&model.graph, model.curves[curve].value)?;
     let mut line = [0.0; 3];
     for (monomial, factor) in polynomial.terms() {
-        let place = match monomial {
+        let index = match monomial {
             [1, 0, 0, 0] => 0,
             [0, 0, 0, 1] => 1,
             [0, 0, 0, 0] => 2,
             _ => return None,
         };
-        line[place] = factor.to_f64();
+        line[index] = factor.to_f64();
     }
     Some(line)
 }

@@ -320,7 +320,7 @@ pub(super) fn marked(letter: char) -> Option<(char, &'static [Stroke])> {
         ("çÇ", "cC", TAIL),
     ];
     rows.into_iter().find_map(|(with, without, mark)| {
-        let place = with.chars().position(|other| other == letter)?;
-        Some((without.chars().nth(place)?, mark))
+        let index = with.chars().position(|other| other == letter)?;
+        Some((without.chars().nth(index)?, mark))
     })
 }

@@ -5,14 +5,14 @@ use super::colours;
 use super::lettering::width;
 use super::marks::head;
 use super::regions::Marks;
-use super::sheet::{Anchor, INK, Look, Sheet, lines};
+use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use crate::geometry::outline::Point;
 
-/// The height of capitals; `LINE` is the height of a line. Sheet units.
-const SIZE: f64 = 7.5;
-const LINE: f64 = 16.0;
+/// The height of capitals; `LINE_HEIGHT` is the height of a line. Sheet units.
+const TEXT_SIZE: f64 = 7.5;
+const LINE_HEIGHT: f64 = 16.0;
 /// The length of a sample line, in sheet units.
-const SAMPLE: f64 = 24.0;
+const SAMPLE_LENGTH: f64 = 24.0;
 
 /// A symbol that the legend explains.
 enum Sign {
@@ -27,19 +27,23 @@ enum Sign {
 /// Draws the legend below everything drawn so far.
 pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
     let [low, high] = sheet.frame();
-    let room = (high[0] - low[0]).max(300.0);
+    let available_width = (high[0] - low[0]).max(300.0);
     let mut at = [low[0], high[1] + 24.0];
     for rows in [surfaces(picture), signs(picture, marks)] {
         for (sign, text) in rows {
-            let wide = SAMPLE + 7.0 + width(&text, SIZE);
-            if at[0] > low[0] && at[0] + wide > low[0] + room {
-                at = [low[0], at[1] + LINE];
+            let wide = SAMPLE_LENGTH + 7.0 + width(&text, TEXT_SIZE);
+            if at[0] > low[0] && at[0] + wide > low[0] + available_width {
+                at = [low[0], at[1] + LINE_HEIGHT];
             }
             sample(&sign, at, sheet);
-            sheet.text(&text, [at[0] + SAMPLE + 7.0, at[1]], Look::plain(SIZE, Anchor::Left));
+            sheet.text(
+                &text,
+                [at[0] + SAMPLE_LENGTH + 7.0, at[1]],
+                Look::plain(TEXT_SIZE, Anchor::Left),
+            );
             at[0] += wide + 18.0;
         }
-        at = [low[0], at[1] + LINE];
+        at = [low[0], at[1] + LINE_HEIGHT];
     }
 }
 
@@ -73,7 +77,7 @@ fn signs(picture: &Picture<'_>, marks: &Marks) -> Vec<(Sign, String)> {
 }
 
 fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
-    let row = [[x, y], [x + SAMPLE, y]];
+    let row = [[x, y], [x + SAMPLE_LENGTH, y]];
     let line = |sheet: &mut Sheet, look: &str| {
         sheet.path(&format!("fill=\"none\" {look}"), &lines([&row]));
     };
@@ -89,11 +93,11 @@ fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
             line(sheet, "stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"");
         }
         Sign::Singular => {
-            let middle = [x + SAMPLE / 2.0, y];
-            sheet.group(&format!("fill=\"#fff\" stroke=\"{INK}\""), |sheet| {
+            let middle = [x + SAMPLE_LENGTH / 2.0, y];
+            sheet.group(&format!("fill=\"#fff\" stroke=\"{DEFAULT_COLOUR}\""), |sheet| {
                 sheet.ring(middle, 4.0);
             });
-            sheet.group(&format!("fill=\"{INK}\""), |sheet| sheet.ring(middle, 1.1));
+            sheet.group(&format!("fill=\"{DEFAULT_COLOUR}\""), |sheet| sheet.ring(middle, 1.1));
         }
         Sign::Arrow => {
             line(sheet, "stroke=\"#2b3440\"");

@@ -5,17 +5,17 @@ use super::glyphs::{Stroke, glyph, marked};
 use std::fmt::Write;
 
 /// The height of capitals, in units of the alphabet.
-const HEIGHT: f64 = 14.0;
+const CAPITAL_HEIGHT: f64 = 14.0;
 /// The space between two letters, in units of the alphabet.
-const GAP: f32 = 3.4;
+const LETTER_SPACING: f32 = 3.4;
 
 /// The strokes drawn for an unknown character.
-const UNKNOWN: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
+const UNKNOWN_GLYPH: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
 
 /// Returns the width of a line of text whose capitals are `size` high.
 pub fn width(text: &str, size: f64) -> f64 {
-    let letters = text.chars().map(|letter| advance(letter) + GAP).sum::<f32>();
-    f64::from((letters - GAP).max(0.0)) * size / HEIGHT
+    let letters = text.chars().map(|letter| advance(letter) + LETTER_SPACING).sum::<f32>();
+    f64::from((letters - LETTER_SPACING).max(0.0)) * size / CAPITAL_HEIGHT
 }
 
 /// Returns the path data of a line of text in units of the alphabet, from (0, 0) to the right.
@@ -24,7 +24,7 @@ pub fn strokes(text: &str) -> String {
     let mut pen = 0.0;
     for letter in text.chars() {
         let (base, mark) = marked(letter).unwrap_or((letter, &[]));
-        let strokes = glyph(base).map_or(UNKNOWN, |(_, strokes)| strokes);
+        let strokes = glyph(base).map_or(UNKNOWN_GLYPH, |(_, strokes)| strokes);
         let raised = if base.is_uppercase() { -4.0 } else { 0.0 };
         // Writing to a `String` cannot fail.
         for (x, y, rest) in strokes {
@@ -33,14 +33,14 @@ pub fn strokes(text: &str) -> String {
         for (x, y, rest) in mark {
             let _ = write!(data, "M{} {}{rest}", short(pen + x), short(y + raised));
         }
-        pen += advance(letter) + GAP;
+        pen += advance(letter) + LETTER_SPACING;
     }
     data
 }
 
 /// Returns the scale factor from units of the alphabet to text whose capitals are `size` high.
 pub fn scale(size: f64) -> f64 {
-    size / HEIGHT
+    size / CAPITAL_HEIGHT
 }
 
 /// Breaks text at spaces into lines no wider than `room`.

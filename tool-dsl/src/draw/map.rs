@@ -24,17 +24,17 @@ type Halves = HashMap<[usize; 2], [Option<Half>; 2]>;
 pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
     let mut weld = Weld { near: near.weld, points: Vec::new(), buckets: HashMap::new() };
     let mut halves = Halves::new();
-    for (place, piece) in pieces.iter().enumerate() {
-        for (from, to, curve) in weld.around(piece) {
-            let (key, way) = if from < to { ([from, to], 0) } else { ([to, from], 1) };
-            halves.entry(key).or_default()[way].get_or_insert((place, curve));
+    for (index, piece) in pieces.iter().enumerate() {
+        for (from, to, curve) in weld.edges_of_piece(piece) {
+            let (key, side_index) = if from < to { ([from, to], 0) } else { ([to, from], 1) };
+            halves.entry(key).or_default()[side_index].get_or_insert((index, curve));
         }
     }
     let mut points = weld.points;
     matched(&mut halves, &points);
     // Any of several welded corners may have come first, so corners near the axis are moved onto it.
     points.iter_mut().filter(|p| p[0].abs() <= near.weld).for_each(|p| p[0] = 0.0);
-    let owners = without_specks(pieces, &halves, &points, near.seen);
+    let owners = without_specks(pieces, &halves, &points, near.visible_length);
     let mut edges = Vec::new();
     for (ends, pair) in halves {
         if pair[0].map(|half| owners[half.0]) == pair[1].map(|half| owners[half.0]) {
@@ -108,10 +108,10 @@ fn matched(halves: &mut Halves, points: &[Point]) {
             // The direction from the smaller corner index to the larger may be opposite to that of the whole side.
             let key = [part[0].min(part[1]), part[0].max(part[1])];
             let same = (part[0] < part[1]) == up;
-            for (way, half) in pair.iter().enumerate() {
-                let way = if same { way } else { 1 - way };
+            for (side_index, half) in pair.iter().enumerate() {
+                let side_index = if same { side_index } else { 1 - side_index };
                 if let Some(half) = half {
-                    halves.entry(key).or_default()[way].get_or_insert(*half);
+                    halves.entry(key).or_default()[side_index].get_or_insert(*half);
                 }
             }
         }
@@ -131,9 +131,9 @@ impl Weld {
         for i in [0, -1, 1] {
             for j in [0, -1, 1] {
                 let known = self.buckets.get(&[key[0] + i, key[1] + j]);
-                let same = |place: &&usize| norm(minus(self.points[**place], p)) <= self.near;
-                if let Some(place) = known.into_iter().flatten().find(same) {
-                    return *place;
+                let same = |index: &&usize| norm(minus(self.points[**index], p)) <= self.near;
+                if let Some(index) = known.into_iter().flatten().find(same) {
+                    return *index;
                 }
             }
         }
@@ -143,7 +143,7 @@ impl Weld {
     }
 
     /// Returns the sides of a polygon that have a length.
-    fn around(&mut self, piece: &Piece) -> Vec<(usize, usize, Option<CurveIndex>)> {
+    fn edges_of_piece(&mut self, piece: &Piece) -> Vec<(usize, usize, Option<CurveIndex>)> {
         let corners: Vec<usize> =
             piece.corners.iter().map(|corner| self.corner(corner.at)).collect();
         let next = |k: usize| corners[(k + 1) % corners.len()];
@@ -161,7 +161,7 @@ fn without_specks(
     pieces: &[Piece],
     halves: &Halves,
     points: &[Point],
-    seen: f64,
+    visible_length: f64,
 ) -> Vec<Option<usize>> {
     let mut owners: Vec<Option<usize>> = pieces.iter().map(|piece| piece.owner).collect();
     let mut rows: Vec<(&[usize; 2], &[Option<Half>; 2])> = halves.iter().collect();
@@ -174,45 +174,47 @@ fn without_specks(
         })
         .collect();
     // Connected polygons of one owner (union-find), represented by the first one.
-    let mut whole: Vec<usize> = (0..pieces.len()).collect();
+    let mut roots: Vec<usize> = (0..pieces.len()).collect();
     for (a, b, _) in shared.iter().filter(|(a, b, _)| owners[*a] == owners[*b]) {
-        let (a, b) = (root(&mut whole, *a), root(&mut whole, *b));
-        whole[a.max(b)] = a.min(b);
+        let (a, b) = (root(&mut roots, *a), root(&mut roots, *b));
+        roots[a.max(b)] = a.min(b);
     }
     let mut areas = vec![0.0; pieces.len()];
-    for (place, piece) in pieces.iter().enumerate() {
-        areas[root(&mut whole, place)] += area(piece);
+    for (index, piece) in pieces.iter().enumerate() {
+        areas[root(&mut roots, index)] += area(piece);
     }
     let mut rims = vec![0.0; pieces.len()];
-    let mut beside: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
+    let mut neighbours: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
     for (a, b, length) in shared.iter().filter(|(a, b, _)| owners[*a] != owners[*b]) {
         for (own, other) in [(*a, *b), (*b, *a)] {
-            let (own, other) = (root(&mut whole, own), root(&mut whole, other));
+            let (own, other) = (root(&mut roots, own), root(&mut roots, other));
             rims[own] += length;
-            beside.entry(own).or_default().push((other, *length));
+            neighbours.entry(own).or_default().push((other, *length));
         }
     }
-    let largest = |owner: Option<usize>, whole: &[usize]| {
+    let largest = |owner: Option<usize>, roots: &[usize]| {
         (0..pieces.len())
-            .filter(|k| whole[*k] == *k && pieces[*k].owner == owner)
+            .filter(|k| roots[*k] == *k && pieces[*k].owner == owner)
             .max_by(|a, b| areas[*a].total_cmp(&areas[*b]))
     };
     let specks: Vec<usize> = (0..pieces.len())
-        .filter(|k| whole[*k] == *k && rims[*k] > 0.0 && areas[*k] < 0.1 * seen * rims[*k])
-        .filter(|k| largest(pieces[*k].owner, &whole) != Some(*k))
+        .filter(|k| {
+            roots[*k] == *k && rims[*k] > 0.0 && areas[*k] < 0.1 * visible_length * rims[*k]
+        })
+        .filter(|k| largest(pieces[*k].owner, &roots) != Some(*k))
         .collect();
     for speck in specks {
-        let near = beside.get(&speck).map_or(&[][..], Vec::as_slice);
+        let near = neighbours.get(&speck).map_or(&[][..], Vec::as_slice);
         let along = |other: usize| -> f64 {
             near.iter().filter(|(own, _)| *own == other).map(|(_, length)| length).sum()
         };
-        let most = near
+        let longest = near
             .iter()
             .map(|(other, _)| *other)
             .max_by(|a, b| along(*a).total_cmp(&along(*b)).then(b.cmp(a)));
-        if let Some(other) = most {
-            for (place, owner) in owners.iter_mut().enumerate() {
-                if root(&mut whole, place) == speck {
+        if let Some(other) = longest {
+            for (index, owner) in owners.iter_mut().enumerate() {
+                if root(&mut roots, index) == speck {
                     *owner = pieces[other].owner;
                 }
             }
@@ -222,17 +224,18 @@ fn without_specks(
 }
 
 /// Returns the representative of a polygon's connected component, with path halving.
-fn root(whole: &mut [usize], mut place: usize) -> usize {
-    while whole[place] != place {
-        whole[place] = whole[whole[place]];
-        place = whole[place];
+fn root(roots: &mut [usize], mut index: usize) -> usize {
+    while roots[index] != index {
+        roots[index] = roots[roots[index]];
+        index = roots[index];
     }
-    place
+    index
 }
 
 fn area(piece: &Piece) -> f64 {
     let corners = &piece.corners;
     let first = corners[0].at;
-    let twice = |k: usize| cross(minus(corners[k].at, first), minus(corners[k + 1].at, first));
-    (1..corners.len() - 1).map(twice).sum::<f64>() / 2.0
+    let double_area =
+        |k: usize| cross(minus(corners[k].at, first), minus(corners[k + 1].at, first));
+    (1..corners.len() - 1).map(double_area).sum::<f64>() / 2.0
 }

@@ -81,7 +81,7 @@ impl<'m> Picture<'m> {
         let size = height.max(extent.radius);
         let fineness = Fineness { cell: 10.0 * unit, flat: 0.06 * unit, same: 1e-10 * size };
         let pieces = section::divide(&mut curves, &tool.plan.owner, [low, high], fineness);
-        let near = Nearness { weld: 1e-9 * size, seen: 0.1 * unit, reach: unit };
+        let near = Nearness { weld: 1e-9 * size, visible_length: 0.1 * unit, reach: unit };
         let borders = borders::borders(&mut curves, &pieces, near);
         let view = View::new(&borders);
         let shape = |region| {
@@ -108,14 +108,14 @@ impl<'m> Picture<'m> {
 fn title(tool: &CheckedTool, sheet: &mut Sheet) {
     let model = &tool.model;
     let [low, high] = sheet.frame();
-    let room = (high[0] - low[0]).max(400.0);
+    let available_width = (high[0] - low[0]).max(400.0);
     let unit = model.unit.symbol();
     let mut lines = Vec::new();
     if let Some(title) = &model.title {
-        lines = lettering::wrapped(title, 8.5, room);
+        lines = lettering::wrapped(title, 8.5, available_width);
     }
     let mut y = low[1] - 22.0;
-    let small = Look { colour: sheet::THIN, ..Look::plain(7.5, Anchor::Left) };
+    let small = Look { colour: sheet::SECONDARY_COLOUR, ..Look::plain(7.5, Anchor::Left) };
     sheet.text(&format!("lengths in {unit}, z from the tip"), [low[0], y], small);
     y -= 17.0;
     for line in lines.iter().rev() {
@@ -215,7 +215,7 @@ mod tests {
 
     /// The surface is connected: from the axis, from joint to joint, back to the axis.
     #[test]
-    fn a_profile_is_found_again() {
+    fn a_drawn_profile_matches_its_outline() {
         let text = r#"tool Slot "of a profile with an undercut and a fillet" {
             units mm;
             profile {
@@ -231,9 +231,9 @@ mod tests {
         let picture = Picture::new(&tool);
         let outline: Vec<&Border> =
             picture.borders.iter().filter(|border| view::is_outline(border)).collect();
-        let mut places: Vec<[f64; 2]> =
+        let mut points: Vec<[f64; 2]> =
             outline.iter().flat_map(|border| &border.strokes).map(|stroke| stroke.from).collect();
-        places.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
+        points.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
         let expected = [
             [0.0, 0.0],
             [6.0, 0.0],
@@ -245,10 +245,10 @@ mod tests {
             [9.0, 10.0],
             [9.0, 12.0],
         ];
-        assert_eq!(places.len(), expected.len(), "{places:?}");
-        for (place, expected) in places.iter().zip(expected) {
-            let off = (place[0] - expected[0]).hypot(place[1] - expected[1]);
-            assert!(off < 1e-9, "{place:?}, not {expected:?}");
+        assert_eq!(points.len(), expected.len(), "{points:?}");
+        for (point, expected) in points.iter().zip(expected) {
+            let distance = (point[0] - expected[0]).hypot(point[1] - expected[1]);
+            assert!(distance < 1e-9, "{point:?}, not {expected:?}");
         }
         let arcs: Vec<f64> = outline
             .iter()

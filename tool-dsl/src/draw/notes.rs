@@ -7,21 +7,21 @@ use super::contour::{Face, faces, heights, tidy};
 use super::lettering::width;
 use super::marks::head;
 use super::regions::Marks;
-use super::sheet::{Anchor, Look, Sheet, THIN, lines};
+use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::is_outline;
 use crate::geometry::outline::{Point, minus, norm};
 
 /// The height of capitals, in sheet units.
-const SIZE: f64 = 7.5;
+const TEXT_SIZE: f64 = 7.5;
 /// The distance between lines of notes, in sheet units.
-const GAP: f64 = 13.5;
+const LINE_SPACING: f64 = 13.5;
 /// Distances from the section to the bend of a leader, and to the notes, in sheet units.
-const KNEE: f64 = 12.0;
-const AWAY: f64 = 30.0;
+const BEND_DISTANCE: f64 = 12.0;
+const NOTES_DISTANCE: f64 = 30.0;
 
 /// Draws the notes on both sides.
 pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
-    left(picture, sheet);
+    draw_left_notes(picture, sheet);
     let steps = steps(picture);
     let edge = right(picture, marks, &steps, sheet);
     levels(picture, &steps, edge, sheet);
@@ -38,10 +38,10 @@ struct Note {
 }
 
 /// Draws the notes of faces: the surface's name and the face's dimension.
-fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
+fn draw_left_notes(picture: &Picture<'_>, sheet: &mut Sheet) {
     let view = &picture.view;
-    let room = ((view.height + 60.0) / GAP) as usize;
-    let chosen = chosen(picture, room);
+    let capacity = ((view.height + 60.0) / LINE_SPACING) as usize;
+    let chosen = chosen(picture, capacity);
     let colours = colours::surfaces(picture.model);
     let mut notes: Vec<Note> = chosen
         .iter()
@@ -56,12 +56,12 @@ fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
         })
         .collect();
     notes.sort_by(|a, b| a.bend[1].total_cmp(&b.bend[1]));
-    let wanted: Vec<f64> = notes.iter().map(|note| note.bend[1]).collect();
-    let (knee, text) = (-view.half - KNEE, -view.half - AWAY);
+    let target_heights: Vec<f64> = notes.iter().map(|note| note.bend[1]).collect();
+    let (knee, text) = (-view.half - BEND_DISTANCE, -view.half - NOTES_DISTANCE);
     let mut leaders = Vec::new();
     let mut heads = Vec::new();
-    for (note, y) in notes.iter().zip(spread(&wanted, GAP)) {
-        let look = Look { colour: note.colour, ..Look::plain(SIZE, Anchor::Right) };
+    for (note, y) in notes.iter().zip(spread(&target_heights, LINE_SPACING)) {
+        let look = Look { colour: note.colour, ..Look::plain(TEXT_SIZE, Anchor::Right) };
         sheet.text(&note.text, [text - 4.0, y], look);
         let mut leader = vec![[text, y], [knee, note.bend[1]], note.bend];
         if norm(minus(note.at, note.bend)) > 0.1 {
@@ -72,13 +72,16 @@ fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
         heads.push([a, b, c, a]);
         leaders.push(leader);
     }
-    sheet.path(&format!("fill=\"none\" stroke=\"{THIN}\" stroke-width=\".8\""), &lines(&leaders));
-    sheet.path(&format!("fill=\"{THIN}\""), &lines(&heads));
+    sheet.path(
+        &format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".8\""),
+        &lines(&leaders),
+    );
+    sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(&heads));
 }
 
-/// Chooses the faces to note: cylinders and arcs, and at least one face of every surface. If they are more than `room`,
-/// the longest ones are kept.
-fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
+/// Chooses the faces to note: cylinders and arcs, and at least one face of every surface. If they are more than
+/// `capacity`, the longest ones are kept.
+fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
     let unit = picture.model.unit;
     let all = faces(picture.model, &picture.borders, picture.size);
     let mut chosen: Vec<Face> = Vec::new();
@@ -93,25 +96,25 @@ fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
     }
     // The longest face of each surface that has no cylinder and no arc.
     let best = |surface: usize| -> Option<usize> {
-        let of = |place: &usize| chosen[*place].surface == surface;
-        let told = (0..chosen.len()).filter(of).any(|place| chosen[place].is_telling());
+        let of = |index: &usize| chosen[*index].surface == surface;
+        let is_named = (0..chosen.len()).filter(of).any(|index| chosen[index].is_telling());
         let longer = |a: &usize, b: &usize| chosen[*a].length.total_cmp(&chosen[*b].length);
-        (0..chosen.len()).filter(of).max_by(longer).filter(|_| !told)
+        (0..chosen.len()).filter(of).max_by(longer).filter(|_| !is_named)
     };
     let only: Vec<usize> = (0..picture.model.surfaces.len()).filter_map(best).collect();
-    let mut place = 0;
+    let mut index = 0;
     chosen.retain(|face| {
-        place += 1;
-        face.is_telling() || only.contains(&(place - 1))
+        index += 1;
+        face.is_telling() || only.contains(&(index - 1))
     });
-    while chosen.len() > room.max(4) {
+    while chosen.len() > capacity.max(4) {
         let alone =
             |face: &Face| chosen.iter().filter(|other| other.surface == face.surface).count() == 1;
-        let least = (0..chosen.len())
-            .filter(|place| !alone(&chosen[*place]))
+        let least_telling = (0..chosen.len())
+            .filter(|index| !alone(&chosen[*index]))
             .min_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length));
-        let Some(least) = least else { break };
-        chosen.remove(least);
+        let Some(least_telling) = least_telling else { break };
+        chosen.remove(least_telling);
     }
     chosen
 }
@@ -134,15 +137,15 @@ fn pointed(picture: &Picture<'_>, face: &Face) -> (Point, Point) {
     let at = [-x, y];
     // The leader points away from the material. The material is on the left of a stroke in the tool's coordinates, and
     // on its right on the sheet, where y points downward.
-    let way = match stroke.circle {
+    let tangent = match stroke.circle {
         None => minus(stroke.to, stroke.from),
         Some((centre, _)) => {
             let [u, v] = minus([x, y], centre);
             if stroke.left() { [-v, u] } else { [v, -u] }
         }
     };
-    let length = norm(way);
-    let [dx, dy] = [way[1] / length, way[0] / length];
+    let length = norm(tangent);
+    let [dx, dy] = [tangent[1] / length, tangent[0] / length];
     let [dx, dy] = if dx < -0.98 { [-1.0, 0.0] } else { [dx.min(-0.4), dy] };
     if dy == 0.0 { (at, at) } else { (at, [at[0] + 15.0 * dx, at[1] + 15.0 * dy]) }
 }
@@ -153,34 +156,35 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
     let mut rows: Vec<(&str, Point)> = marks
         .unnamed
         .iter()
-        .map(|(region, place)| (picture.model.regions[*region].name.as_str(), *place))
+        .map(|(region, point)| (picture.model.regions[*region].name.as_str(), *point))
         .collect();
     rows.sort_by(|a, b| a.1[1].total_cmp(&b.1[1]));
-    let levels: Vec<f64> = levels.iter().map(|level| picture.view.place(*level)[1]).collect();
-    let wanted: Vec<f64> = rows.iter().map(|(_, place)| off(place[1], &levels)).collect();
-    let places = spread(&wanted, GAP);
+    let levels: Vec<f64> = levels.iter().map(|level| picture.view.to_sheet(*level)[1]).collect();
+    let target_heights: Vec<f64> =
+        rows.iter().map(|(_, point)| sheet_height(point[1], &levels)).collect();
+    let heights = spread(&target_heights, LINE_SPACING);
     let mut edge = half + 4.0;
     let mut leaders = Vec::new();
     let mut first = 0;
     while first < rows.len() {
         // Notes close together begin at the same distance from the section.
-        let close = |k: &usize| places[*k] - places[*k - 1] < 1.3 * GAP;
-        let end = (first + 1..rows.len()).take_while(close).last().unwrap_or(first) + 1;
-        let low = places[first].min(rows[first].1[1]) - SIZE;
-        let high = places[end - 1].max(rows[end - 1].1[1]) + SIZE;
+        let is_close = |k: &usize| heights[*k] - heights[*k - 1] < 1.3 * LINE_SPACING;
+        let end = (first + 1..rows.len()).take_while(is_close).last().unwrap_or(first) + 1;
+        let low = heights[first].min(rows[first].1[1]) - TEXT_SIZE;
+        let high = heights[end - 1].max(rows[end - 1].1[1]) + TEXT_SIZE;
         let side = widest(picture, [low, high]);
-        for ((text, place), y) in rows[first..end].iter().zip(&places[first..end]) {
-            let left = side + AWAY;
-            let look = Look { halo: true, ..Look::plain(SIZE, Anchor::Left) };
+        for ((text, point), y) in rows[first..end].iter().zip(&heights[first..end]) {
+            let left = side + NOTES_DISTANCE;
+            let look = Look { halo: true, ..Look::plain(TEXT_SIZE, Anchor::Left) };
             sheet.text(text, [left + 4.0, *y], look);
-            leaders.push([*place, [side + KNEE, place[1]], [left, *y]]);
-            edge = edge.max(left + 4.0 + width(text, SIZE));
+            leaders.push([*point, [side + BEND_DISTANCE, point[1]], [left, *y]]);
+            edge = edge.max(left + 4.0 + width(text, TEXT_SIZE));
         }
         first = end;
     }
     sheet.path("fill=\"none\" stroke=\"#22272e\" stroke-width=\".7\"", &lines(&leaders));
     sheet.group("fill=\"#22272e\"", |sheet| {
-        rows.iter().for_each(|(_, place)| sheet.ring(*place, 1.4));
+        rows.iter().for_each(|(_, point)| sheet.ring(*point, 1.4));
     });
     edge
 }
@@ -202,7 +206,7 @@ fn widest(picture: &Picture<'_>, [low, high]: [f64; 2]) -> f64 {
 }
 
 /// Returns a height at which a note lies between dimension lines rather than on one.
-fn off(y: f64, levels: &[f64]) -> f64 {
+fn sheet_height(y: f64, levels: &[f64]) -> f64 {
     let nearest = levels.iter().copied().min_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
     match nearest {
         Some(level) if (level - y).abs() < 8.0 => level + if y < level { -8.0 } else { 8.0 },
@@ -213,12 +217,12 @@ fn off(y: f64, levels: &[f64]) -> f64 {
 /// Returns the heights to note. If there are too many, the most crowded ones are left out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
     let mut steps = heights(picture.model, &picture.borders, picture.size);
-    let most = ((picture.view.height + 80.0) / 11.5) as usize;
-    while steps.len() > most.max(3) {
+    let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
+    while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];
-        let least =
+        let most_crowded =
             (1..steps.len() - 1).min_by(|a, b| crowded(a).total_cmp(&crowded(b))).unwrap_or(1);
-        steps.remove(least);
+        steps.remove(most_crowded);
     }
     steps
 }
@@ -229,18 +233,18 @@ fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) 
     let Some(&[_, origin]) = steps.first() else { return };
     let line = edge + 20.0;
     let unit = picture.model.unit;
-    let places: Vec<Point> = steps.iter().map(|step| view.place(*step)).collect();
+    let positions: Vec<Point> = steps.iter().map(|step| view.to_sheet(*step)).collect();
     // The order is from the top of the sheet, as `spread` requires.
-    let wanted: Vec<f64> = places.iter().rev().map(|place| place[1]).collect();
-    let texts = spread(&wanted, 11.5);
+    let target_heights: Vec<f64> = positions.iter().rev().map(|position| position[1]).collect();
+    let texts = spread(&target_heights, 11.5);
     let mut thin = Vec::new();
     let mut heads = Vec::new();
     let mut below = f64::INFINITY;
-    for (k, place) in places.iter().enumerate() {
-        let (y, text_y) = (place[1], texts[texts.len() - 1 - k]);
-        thin.push(vec![[place[0] + 3.0, y], [line + 4.0, y]]);
+    for (k, position) in positions.iter().enumerate() {
+        let (y, text_y) = (position[1], texts[texts.len() - 1 - k]);
+        thin.push(vec![[position[0] + 3.0, y], [line + 4.0, y]]);
         thin.push(vec![[line + 4.0, y], [line + 12.0, text_y]]);
-        let last = k + 1 == places.len();
+        let last = k + 1 == positions.len();
         if k > 0 && (below - y > 7.0 || last) {
             let [a, b, c] = head([[line, y + 6.0], [line, y]], 6.0);
             heads.push([a, b, c, a]);
@@ -254,23 +258,29 @@ fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) 
         if last {
             figure = format!("{figure} {}", unit.symbol());
         }
-        sheet.text(&figure, [line + 15.0, text_y], Look::plain(SIZE, Anchor::Left));
+        sheet.text(&figure, [line + 15.0, text_y], Look::plain(TEXT_SIZE, Anchor::Left));
     }
-    thin.push(vec![[line, places[0][1]], [line, places[places.len() - 1][1]]]);
-    sheet.path(&format!("fill=\"none\" stroke=\"{THIN}\" stroke-width=\".7\""), &lines(&thin));
-    sheet.path(&format!("fill=\"{THIN}\""), &lines(&heads));
-    sheet.group(&format!("fill=\"#fff\" stroke=\"{THIN}\" stroke-width=\".9\""), |sheet| {
-        sheet.ring([line, places[0][1]], 2.4);
-    });
+    thin.push(vec![[line, positions[0][1]], [line, positions[positions.len() - 1][1]]]);
+    sheet.path(
+        &format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\""),
+        &lines(&thin),
+    );
+    sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(&heads));
+    sheet.group(
+        &format!("fill=\"#fff\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".9\""),
+        |sheet| {
+            sheet.ring([line, positions[0][1]], 2.4);
+        },
+    );
 }
 
-/// Returns positions for notes with preferred positions `wanted`, which are in ascending order. No two are nearer than
-/// `gap`; notes that would crowd are centred on the mean of their preferred positions.
-fn spread(wanted: &[f64], gap: f64) -> Vec<f64> {
+/// Returns positions for notes with preferred positions `target_heights`, which are in ascending order. No two are
+/// nearer than `gap`; notes that would crowd are centred on the mean of their preferred positions.
+fn spread(target_heights: &[f64], gap: f64) -> Vec<f64> {
     // Each cluster: the sum of the positions that its notes would give its first note, and the number of notes.
     let mut clusters: Vec<(f64, usize)> = Vec::new();
-    for place in wanted {
-        let mut cluster = (*place, 1);
+    for height in target_heights {
+        let mut cluster = (*height, 1);
         while let Some((sum, count)) = clusters.last().copied() {
             let end = sum / count as f64 + gap * count as f64;
             if end <= cluster.0 / cluster.1 as f64 {
@@ -293,11 +303,11 @@ mod tests {
     use super::spread;
 
     #[test]
-    fn notes_keep_apart_and_stay_near() {
+    fn notes_keep_their_spacing_and_stay_near_their_anchors() {
         assert_eq!(spread(&[0.0, 30.0, 60.0], 10.0), [0.0, 30.0, 60.0]);
         assert_eq!(spread(&[0.0, 0.0], 10.0), [-5.0, 5.0]);
-        let places = spread(&[0.0, 1.0, 2.0, 3.0, 50.0], 10.0);
-        assert!(places.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9));
-        assert_eq!(places[4], 50.0);
+        let heights = spread(&[0.0, 1.0, 2.0, 3.0, 50.0], 10.0);
+        assert!(heights.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9));
+        assert_eq!(heights[4], 50.0);
     }
 }

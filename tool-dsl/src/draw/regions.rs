@@ -6,7 +6,7 @@ use super::colours;
 use super::lettering::width;
 use super::marks::{Arrow, Directions, head};
 use super::shape::{Frame, Shape};
-use super::sheet::{Anchor, INK, Look, Sheet, data, lines};
+use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, data, lines};
 use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
 use crate::geometry::outline::Point;
@@ -24,17 +24,24 @@ pub(super) struct Marks {
 }
 
 /// Text sizes to try for a region's name, largest first.
-const SIZES: [f64; 3] = [8.5, 7.5, 6.5];
+const TEXT_SIZES: [f64; 3] = [8.5, 7.5, 6.5];
 /// The radius of the circles around singular points.
-const RING: f64 = 4.0;
+const SINGULAR_POINT_RADIUS: f64 = 4.0;
 
 /// Draws the section about the axis.
 pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
     let view = &picture.view;
     let mut directions = Directions::new(picture.model);
     let singular = singular(picture, &mut directions);
-    let rings: Vec<Frame> =
-        singular.iter().map(|[x, y]| [[x - RING, y - RING], [x + RING, y + RING]]).collect();
+    let rings: Vec<Frame> = singular
+        .iter()
+        .map(|[x, y]| {
+            [
+                [x - SINGULAR_POINT_RADIUS, y - SINGULAR_POINT_RADIUS],
+                [x + SINGULAR_POINT_RADIUS, y + SINGULAR_POINT_RADIUS],
+            ]
+        })
+        .collect();
     areas(picture, sheet);
     let splits = splits(picture, sheet);
     outline(picture, sheet);
@@ -45,8 +52,8 @@ pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         if shape.is_empty() {
             continue;
         }
-        let mut draw = |about: &[Frame]| {
-            let taken: Vec<Frame> = rings.iter().chain(about).copied().collect();
+        let mut draw = |around_frames: &[Frame]| {
+            let taken: Vec<Frame> = rings.iter().chain(around_frames).copied().collect();
             directions.arrows(region, shape, view, &taken)
         };
         let (mut place, _) = shape.pole(1.0);
@@ -74,10 +81,10 @@ pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         arrows.extend(own);
     }
     draw_arrows(&arrows, sheet);
-    sheet.group(&format!("fill=\"#fff\" stroke=\"{INK}\""), |sheet| {
-        singular.iter().for_each(|p| sheet.ring(*p, RING));
+    sheet.group(&format!("fill=\"#fff\" stroke=\"{DEFAULT_COLOUR}\""), |sheet| {
+        singular.iter().for_each(|p| sheet.ring(*p, SINGULAR_POINT_RADIUS));
     });
-    sheet.group(&format!("fill=\"{INK}\""), |sheet| {
+    sheet.group(&format!("fill=\"{DEFAULT_COLOUR}\""), |sheet| {
         singular.iter().for_each(|p| sheet.ring(*p, 1.1));
     });
     let axis = axis(picture, &mut directions);
@@ -97,11 +104,11 @@ fn areas(picture: &Picture<'_>, sheet: &mut Sheet) {
             sheet.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &all);
         }
     });
-    let whole = Shape::new(&picture.borders, &picture.view, |side| matches!(side, Side::Region(_)));
-    let left: Vec<Stroke> = whole.loops.iter().flatten().map(mirrored).collect();
-    sheet.path("fill=\"#f4f5f7\" fill-rule=\"evenodd\"", &data(&left));
+    let solid = Shape::new(&picture.borders, &picture.view, |side| matches!(side, Side::Region(_)));
+    let mirrored_strokes: Vec<Stroke> = solid.loops.iter().flatten().map(mirrored).collect();
+    sheet.path("fill=\"#f4f5f7\" fill-rule=\"evenodd\"", &data(&mirrored_strokes));
     // The shape is the right half, so its hatch lines are mirrored for the left half.
-    let hatches = whole.hatched(9.0);
+    let hatches = solid.hatched(9.0);
     let mirrored = hatches.iter().map(|row| row.map(|[x, y]| [-x, y]));
     sheet.path("fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"", &lines(mirrored));
 }
@@ -125,8 +132,8 @@ fn outline(picture: &Picture<'_>, sheet: &mut Sheet) {
     let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
     sheet.group(look, |sheet| {
         for cutting in [false, true] {
-            for (surface, about) in picture.model.surfaces.iter().enumerate() {
-                if about.cutting != cutting {
+            for (surface, around_frames) in picture.model.surfaces.iter().enumerate() {
+                if around_frames.cutting != cutting {
                     continue;
                 }
                 let right: Vec<Stroke> = picture
@@ -138,8 +145,8 @@ fn outline(picture: &Picture<'_>, sheet: &mut Sheet) {
                     })
                     .flat_map(|border| border.strokes.iter().map(|s| picture.view.stroke(s)))
                     .collect();
-                let left: Vec<Stroke> = right.iter().map(mirrored).collect();
-                let all = data(right.iter().chain(&left));
+                let mirrored_strokes: Vec<Stroke> = right.iter().map(mirrored).collect();
+                let all = data(right.iter().chain(&mirrored_strokes));
                 let (colour, wide) = (colours[surface], if cutting { 3.0 } else { 2.0 });
                 sheet.path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &all);
             }
@@ -185,20 +192,21 @@ struct Name {
 /// Returns a position for a region's name inside the region, if there is one.
 fn name(picture: &Picture<'_>, region: usize, shape: &Shape, rings: &[Frame]) -> Option<Name> {
     let text = &picture.model.regions[region].name;
-    let across = SIZES[1] / width(text, SIZES[1]).max(SIZES[1]);
-    let (place, _) = shape.pole(across);
+    let across = TEXT_SIZES[1] / width(text, TEXT_SIZES[1]).max(TEXT_SIZES[1]);
+    let (pole, _) = shape.pole(across);
     // Shifted positions are tried too, to avoid the circles of singular points.
-    let tries = SIZES.into_iter().flat_map(|size| [0.0, 9.0, -9.0, 16.0, -16.0].map(|s| (size, s)));
+    let tries =
+        TEXT_SIZES.into_iter().flat_map(|size| [0.0, 9.0, -9.0, 16.0, -16.0].map(|s| (size, s)));
     tries
         .map(|(size, shift)| {
             let (wide, tall) = (width(text, size) / 2.0 + 3.0, size / 2.0 + 3.0);
-            let [x, y] = [place[0], place[1] + shift];
+            let [x, y] = [pole[0], pole[1] + shift];
             Name { size, at: [x, y], frame: [[x - wide, y - tall], [x + wide, y + tall]] }
         })
         .find(|Name { frame, .. }| {
             let meets =
                 |ring: &Frame| (0..2).all(|k| ring[0][k] < frame[1][k] && ring[1][k] > frame[0][k]);
-            shape.holds(*frame) && !rings.iter().any(meets)
+            shape.contains(*frame) && !rings.iter().any(meets)
         })
 }
 
@@ -226,7 +234,7 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
         else {
             continue;
         };
-        let p = picture.view.place(focus);
+        let p = picture.view.to_sheet(focus);
         let near = |q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.5;
         if !found.iter().any(near) {
             found.push(p);
@@ -244,8 +252,8 @@ fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
             return false;
         };
         let [_, z] = stroke.at(0.5);
-        let way = directions.at(region, [1e-6 * picture.size, z]);
+        let direction = directions.at(region, [1e-6 * picture.size, z]);
         // A direction toward a centre on the axis points along the axis, as seen from beside it.
-        way.is_some_and(|way| way[0].abs() > 1e-3)
+        direction.is_some_and(|direction| direction[0].abs() > 1e-3)
     })
 }

@@ -39,11 +39,11 @@ pub(super) struct Fineness {
 }
 
 /// The maximum number of halvings of a cell.
-const DEPTH: u32 = 24;
+const MAX_HALVINGS: u32 = 24;
 /// The number of cells beyond which none is halved. Two curves that nearly coincide would take any number of cells.
-const CELLS: usize = 8_000;
+const MAX_CELLS: usize = 8_000;
 /// The maximum number of splits that may cut one cell.
-const SPLITS: usize = 12;
+const MAX_SPLITS_PER_CELL: usize = 12;
 
 /// A cell: its corner in an integer lattice, and its side length.
 #[derive(Clone, Copy)]
@@ -73,13 +73,13 @@ pub(super) fn divide(
 ) -> Vec<Piece> {
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
     let root = width.min(height).max(width.max(height) / 64.0);
-    let lattice = Lattice { low, unit: root / f64::from(1 << DEPTH) };
+    let lattice = Lattice { low, unit: root / f64::from(1 << MAX_HALVINGS) };
     let mut division =
         Division { curves, lattice, fineness, cells: Vec::new(), corners: HashSet::new() };
     let counts = [width, height].map(|side| (side / root).ceil() as u64);
     for j in 0..counts[1] {
         for i in 0..counts[0] {
-            let side = 1 << DEPTH;
+            let side = 1 << MAX_HALVINGS;
             division.cell(Cell { corner: [i * side, j * side], side }, owners);
         }
     }
@@ -100,8 +100,8 @@ impl Division<'_, '_> {
     /// Prunes the tree to the splits that are open in a cell, and halves the cell until it is fine enough.
     fn cell(&mut self, cell: Cell, tree: &Owners) {
         let [low, high] = self.ends(cell);
-        let tree = self.open(tree, low, high);
-        if cell.side == 1 || self.cells.len() > CELLS || self.fine(&tree, low, high) {
+        let tree = self.subdivide(tree, low, high);
+        if cell.side == 1 || self.cells.len() > MAX_CELLS || self.is_fine_enough(&tree, low, high) {
             let [i, j] = cell.corner;
             let s = cell.side;
             self.corners.extend([[i, j], [i + s, j], [i + s, j + s], [i, j + s]]);
@@ -121,17 +121,17 @@ impl Division<'_, '_> {
     }
 
     /// Returns the part of a tree that is open in a box.
-    fn open(&mut self, tree: &Owners, low: Point, high: Point) -> Owners {
+    fn subdivide(&mut self, tree: &Owners, low: Point, high: Point) -> Owners {
         let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
         let signs = self.curves.signs(*curve, low, high);
         let side = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
         if signs & !side == 0 {
-            return self.open(below, low, high);
+            return self.subdivide(below, low, high);
         }
         if signs & side == 0 {
-            return self.open(above, low, high);
+            return self.subdivide(above, low, high);
         }
-        let (below, above) = (self.open(below, low, high), self.open(above, low, high));
+        let (below, above) = (self.subdivide(below, low, high), self.subdivide(above, low, high));
         if below == above {
             return below;
         }
@@ -140,14 +140,14 @@ impl Division<'_, '_> {
     }
 
     /// Returns whether cutting a cell by this tree is accurate enough.
-    fn fine(&mut self, tree: &Owners, low: Point, high: Point) -> bool {
+    fn is_fine_enough(&mut self, tree: &Owners, low: Point, high: Point) -> bool {
         let mut splits = Vec::new();
         tested(tree, &mut splits);
         let side = high[0] - low[0];
         let bent: Vec<CurveIndex> =
             splits.iter().copied().filter(|curve| !self.curves.straight(*curve)).collect();
         if bent.is_empty() {
-            return splits.len() <= SPLITS || side < self.fineness.flat;
+            return splits.len() <= MAX_SPLITS_PER_CELL || side < self.fineness.flat;
         }
         if side < 2.0 * self.fineness.flat {
             return true;
@@ -160,9 +160,9 @@ impl Division<'_, '_> {
     /// Returns whether bent curves are one and the same curve around a box, written differently.
     fn one(&mut self, bent: &[CurveIndex], low: Point, high: Point) -> bool {
         let side = high[0] - low[0];
-        let places = [[0.5, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let test_points = [[0.5, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
         bent.len() == 1
-            || places.into_iter().all(|share| {
+            || test_points.into_iter().all(|share| {
                 let corner = [0, 1].map(|k| low[k] + share[k] * side);
                 let on = self.curves.foot(bent[0], corner, 2.0 * side);
                 bent[1..].iter().all(|other| {
@@ -290,10 +290,10 @@ impl Division<'_, '_> {
         }
         for (k, corner) in corners.iter().enumerate() {
             let next = (k + 1) % corners.len();
-            let (here, there) = (values[k] * sign, values[next] * sign);
+            let (value_here, value_next) = (values[k] * sign, values[next] * sign);
             // A corner on the curve at which the part ends is followed by the chord.
-            match (here >= 0.0, there >= 0.0) {
-                (true, _) if here == 0.0 && there < 0.0 => {
+            match (value_here >= 0.0, value_next >= 0.0) {
+                (true, _) if value_here == 0.0 && value_next < 0.0 => {
                     part.push(Corner { at: corner.at, curve: Some(curve) });
                 }
                 (true, true) => part.push(*corner),
@@ -305,7 +305,7 @@ impl Division<'_, '_> {
                     );
                     part.extend([*corner, Corner { at, curve: Some(curve) }]);
                 }
-                (false, true) if there > 0.0 => {
+                (false, true) if value_next > 0.0 => {
                     let at = self.crossing(
                         curve,
                         (corner.at, values[k]),
@@ -348,7 +348,7 @@ fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
 
 /// Inserts the corners of each polygon into the sides of the others on which they lie.
 fn joined(pieces: &mut [Piece], near: f64) {
-    let all: Vec<Point> =
+    let points: Vec<Point> =
         pieces.iter().flat_map(|piece| piece.corners.iter().map(|corner| corner.at)).collect();
     for piece in pieces {
         let mut corners = Vec::new();
@@ -356,7 +356,7 @@ fn joined(pieces: &mut [Piece], near: f64) {
             corners.push(*corner);
             let side = minus(piece.corners[(k + 1) % piece.corners.len()].at, corner.at);
             let length = norm(side);
-            let mut between: Vec<(f64, Point)> = all
+            let mut between: Vec<(f64, Point)> = points
                 .iter()
                 .filter_map(|p| {
                     let q = minus(*p, corner.at);

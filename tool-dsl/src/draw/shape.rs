@@ -6,7 +6,7 @@ use super::view::View;
 use crate::geometry::outline::{Point, dot, minus, norm};
 
 /// The chord tolerance of the outline that distances are measured from, in sheet units.
-const FLAT: f64 = 0.3;
+const CHORD_TOLERANCE: f64 = 0.3;
 
 /// An area of the sheet within closed loops of strokes.
 pub(super) struct Shape {
@@ -46,7 +46,8 @@ impl Shape {
         }
         let mut lines = Vec::new();
         for row in &loops {
-            let points: Vec<Point> = row.iter().flat_map(|stroke| stroke.points(FLAT)).collect();
+            let points: Vec<Point> =
+                row.iter().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)).collect();
             lines.extend((0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]));
         }
         Shape { loops, lines }
@@ -65,7 +66,7 @@ impl Shape {
     /// Returns the bounding box.
     pub(super) fn frame(&self) -> Frame {
         let mut frame = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for p in self.loops.iter().flatten().flat_map(|stroke| stroke.points(FLAT)) {
+        for p in self.loops.iter().flatten().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)) {
             for k in 0..2 {
                 frame[0][k] = frame[0][k].min(p[k]);
                 frame[1][k] = frame[1][k].max(p[k]);
@@ -77,17 +78,18 @@ impl Shape {
     /// Returns the area, in squared sheet units.
     pub(super) fn area(&self) -> f64 {
         let rows = self.loops.iter().map(|row| {
-            let points: Vec<Point> = row.iter().flat_map(|stroke| stroke.points(FLAT)).collect();
+            let points: Vec<Point> =
+                row.iter().flat_map(|stroke| stroke.points(CHORD_TOLERANCE)).collect();
             let next = |k: usize| points[(k + 1) % points.len()];
-            let twice = |k: usize| points[k][0] * next(k)[1] - points[k][1] * next(k)[0];
-            (0..points.len()).map(twice).sum::<f64>()
+            let double_area = |k: usize| points[k][0] * next(k)[1] - points[k][1] * next(k)[0];
+            (0..points.len()).map(double_area).sum::<f64>()
         });
         rows.sum::<f64>().abs() / 2.0
     }
 
     /// Returns the signed distance of a point from the outline, positive inside. Horizontal distances are multiplied by
     /// `across`.
-    pub(super) fn room(&self, p: Point, across: f64) -> f64 {
+    pub(super) fn clearance(&self, p: Point, across: f64) -> f64 {
         let scaled = |q: Point| [q[0] * across, q[1]];
         let mut nearest = f64::INFINITY;
         let mut inside = false;
@@ -112,41 +114,42 @@ impl Shape {
         // The distance from a cell's centre to its corner, relative to half its side.
         let corner = (1.0 + across * across).sqrt();
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
-        let mut best = (middle, self.room(middle, across));
-        let mut open: Vec<(f64, Point, f64)> = Vec::new();
+        let mut best = (middle, self.clearance(middle, across));
+        let mut queue: Vec<(f64, Point, f64)> = Vec::new();
         let [columns, rows] =
             [0, 1].map(|k| ((high[k] - low[k]) / (2.0 * half)).ceil().max(1.0) as usize);
         let cells = (0..columns * rows).map(|n| [n % columns, n / columns]);
-        let mut asked: Vec<(Point, f64)> = cells
+        let mut initial: Vec<(Point, f64)> = cells
             .map(|cell| ([0, 1].map(|k| low[k] + half * (2 * cell[k] + 1) as f64), half))
             .collect();
         for _ in 0..200 {
-            for (p, half) in asked.drain(..) {
-                let room = self.room(p, across);
-                if room > best.1 {
-                    best = (p, room);
+            for (p, half) in initial.drain(..) {
+                let clearance = self.clearance(p, across);
+                if clearance > best.1 {
+                    best = (p, clearance);
                 }
-                open.push((room + half * corner, p, half));
+                queue.push((clearance + half * corner, p, half));
             }
-            let Some(place) = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))
+            let Some(index) = (0..queue.len()).max_by(|a, b| queue[*a].0.total_cmp(&queue[*b].0))
             else {
                 break;
             };
-            let (most, p, half) = open.swap_remove(place);
-            if most <= best.1 + 0.5 {
+            let (upper_bound, p, half) = queue.swap_remove(index);
+            if upper_bound <= best.1 + 0.5 {
                 break;
             }
             let h = half / 2.0;
-            let ways = [[-h, -h], [h, -h], [-h, h], [h, h]];
-            asked.extend(ways.map(|[i, j]| ([p[0] + i, p[1] + j], h)));
+            let offsets = [[-h, -h], [h, -h], [-h, h], [h, h]];
+            initial.extend(offsets.map(|[i, j]| ([p[0] + i, p[1] + j], h)));
         }
         best
     }
 
     /// Returns whether a box lies entirely inside.
-    pub(super) fn holds(&self, [low, high]: Frame) -> bool {
+    pub(super) fn contains(&self, [low, high]: Frame) -> bool {
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
-        self.room(middle, 1.0) > 0.0 && !self.lines.iter().any(|line| crosses(*line, [low, high]))
+        self.clearance(middle, 1.0) > 0.0
+            && !self.lines.iter().any(|line| crosses(*line, [low, high]))
     }
 
     /// Returns the segments of hatch lines inside the shape. The lines have the equation `x + y = c`, with `c` in steps
@@ -173,24 +176,24 @@ impl Shape {
 
 /// Returns the distance of a point from a line segment.
 fn distance(p: Point, a: Point, b: Point) -> f64 {
-    let (way, q) = (minus(b, a), minus(p, a));
-    let share = (dot(q, way) / dot(way, way)).clamp(0.0, 1.0);
+    let (direction, q) = (minus(b, a), minus(p, a));
+    let share = (dot(q, direction) / dot(direction, direction)).clamp(0.0, 1.0);
     let share = if share.is_nan() { 0.0 } else { share };
-    norm([q[0] - share * way[0], q[1] - share * way[1]])
+    norm([q[0] - share * direction[0], q[1] - share * direction[1]])
 }
 
 /// Returns whether a line segment meets a box (Liang and Barsky 1984).
 fn crosses([a, b]: [Point; 2], [low, high]: Frame) -> bool {
-    let way = minus(b, a);
+    let direction = minus(b, a);
     let (mut enter, mut leave) = (0.0f64, 1.0f64);
     for k in 0..2 {
-        if way[k] == 0.0 {
+        if direction[k] == 0.0 {
             if a[k] < low[k] || a[k] > high[k] {
                 return false;
             }
             continue;
         }
-        let (u, v) = ((low[k] - a[k]) / way[k], (high[k] - a[k]) / way[k]);
+        let (u, v) = ((low[k] - a[k]) / direction[k], (high[k] - a[k]) / direction[k]);
         enter = enter.max(u.min(v));
         leave = leave.min(u.max(v));
     }

@@ -14,9 +14,9 @@ pub(super) enum Anchor {
 }
 
 /// Near-black, the default colour of text and lines.
-pub(super) const INK: &str = "#22272e";
+pub(super) const DEFAULT_COLOUR: &str = "#22272e";
 /// The colour of dimension lines and leaders.
-pub(super) const THIN: &str = "#6b7280";
+pub(super) const SECONDARY_COLOUR: &str = "#6b7280";
 
 /// The rendering of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,57 +73,57 @@ impl Sheet {
     }
 
     /// Draws a line of text, vertically centred at `at`. `halo` adds a translucent white background.
-    pub(super) fn text(&mut self, text: &str, at: Point, look: Look) {
-        let wide = width(text, look.size);
-        let left = match look.anchor {
+    pub(super) fn text(&mut self, text: &str, at: Point, style: Look) {
+        let wide = width(text, style.size);
+        let left = match style.anchor {
             Anchor::Left => at[0],
             Anchor::Middle => at[0] - wide / 2.0,
             Anchor::Right => at[0] - wide,
         };
-        let base = at[1] + look.size / 2.0;
-        self.reach([left - 2.0, base - look.size - 3.0]);
+        let base = at[1] + style.size / 2.0;
+        self.reach([left - 2.0, base - style.size - 3.0]);
         self.reach([left + wide + 2.0, base + 4.0]);
-        if look.halo {
+        if style.halo {
             let _ = write!(
                 self.halos,
                 "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
                 short(left - 2.5),
-                short(base - look.size - 2.5),
+                short(base - style.size - 2.5),
                 short(wide + 5.0),
-                short(look.size + 5.0),
+                short(style.size + 5.0),
             );
         }
         match self.lettering {
-            Lettering::Strokes => self.strokes(text, [left, base], look),
-            Lettering::Page => self.letters(text, [at[0], base], look),
+            Lettering::Strokes => self.strokes(text, [left, base], style),
+            Lettering::Page => self.letters(text, [at[0], base], style),
         }
     }
 
-    fn strokes(&mut self, text: &str, [x, y]: Point, look: Look) {
-        let colour = coloured("stroke", look.colour);
-        let bold = if look.bold { " stroke-width=\"2.3\"" } else { "" };
+    fn strokes(&mut self, text: &str, [x, y]: Point, style: Look) {
+        let colour = coloured("stroke", style.colour);
+        let bold = if style.bold { " stroke-width=\"2.3\"" } else { "" };
         let _ = write!(
             self.texts,
             "<path aria-label=\"{}\"{colour}{bold} transform=\"translate({} {})scale({})\" d=\"{}\"/>",
             escaped(text),
             short(x),
             short(y),
-            short(scale(look.size)),
+            short(scale(style.size)),
             strokes(text),
         );
     }
 
     /// Draws text in the page's font. Its width is unknown, so the text is anchored at the given end.
-    fn letters(&mut self, text: &str, [x, y]: Point, look: Look) {
-        let colour = coloured("fill", look.colour);
-        let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
-        let anchor = match look.anchor {
+    fn letters(&mut self, text: &str, [x, y]: Point, style: Look) {
+        let colour = coloured("fill", style.colour);
+        let bold = if style.bold { " font-weight=\"bold\"" } else { "" };
+        let anchor = match style.anchor {
             Anchor::Left => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::Right => " text-anchor=\"end\"",
         };
         // Capitals are about 0.72 of the font size.
-        let size = short(look.size / 0.72);
+        let size = short(style.size / 0.72);
         let _ = write!(
             self.texts,
             "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{colour}{bold}>{}</text>",
@@ -154,10 +154,10 @@ impl Sheet {
         let (wide, tall) = ((high[0] + MARGIN - x).ceil(), (high[1] + MARGIN - y).ceil());
         let letters = match self.lettering {
             Lettering::Strokes => format!(
-                "fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.6\" stroke-linecap=\"round\" \
+                "fill=\"none\" stroke=\"{DEFAULT_COLOUR}\" stroke-width=\"1.6\" stroke-linecap=\"round\" \
                  stroke-linejoin=\"round\""
             ),
-            Lettering::Page => format!("fill=\"{INK}\""),
+            Lettering::Page => format!("fill=\"{DEFAULT_COLOUR}\""),
         };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{wide}\" height=\"{tall}\" \
@@ -187,7 +187,7 @@ pub(super) struct Look {
 impl Look {
     /// Returns plain text of a size.
     pub(super) fn plain(size: f64, anchor: Anchor) -> Look {
-        Look { size, anchor, colour: INK, bold: false, halo: false }
+        Look { size, anchor, colour: DEFAULT_COLOUR, bold: false, halo: false }
     }
 }
 
@@ -220,11 +220,11 @@ pub(super) fn data<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> String 
 
 /// Returns the path data of polylines.
 pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> String {
-    let mut all = Vec::new();
+    let mut points = Vec::new();
     for row in rows {
-        all.extend(row.as_ref().windows(2).map(|pair| Stroke::line(pair[0], pair[1])));
+        points.extend(row.as_ref().windows(2).map(|pair| Stroke::line(pair[0], pair[1])));
     }
-    data(&all)
+    data(&points)
 }
 
 /// Formats a number with at most two decimals.
@@ -236,7 +236,7 @@ pub(super) fn short(value: f64) -> String {
 
 /// Returns a colour attribute, or nothing for the default colour.
 fn coloured(what: &str, colour: &str) -> String {
-    if colour == INK { String::new() } else { format!(" {what}=\"{colour}\"") }
+    if colour == DEFAULT_COLOUR { String::new() } else { format!(" {what}=\"{colour}\"") }
 }
 
 fn escaped(text: &str) -> String {

@@ -55,8 +55,8 @@ impl Stroke {
     /// Returns points along the stroke except the last, such that the chords deviate by at most `flat`.
     pub(super) fn points(&self, flat: f64) -> Vec<Point> {
         let Some((_, radius)) = self.circle else { return vec![self.from] };
-        let most = 2.0 * (1.0 - flat / radius).clamp(0.0, 1.0).acos();
-        let count = (self.turn().abs() / most).ceil().clamp(1.0, 64.0) as usize;
+        let max_angle = 2.0 * (1.0 - flat / radius).clamp(0.0, 1.0).acos();
+        let count = (self.turn().abs() / max_angle).ceil().clamp(1.0, 64.0) as usize;
         (0..count).map(|k| self.at(k as f64 / count as f64)).collect()
     }
 
@@ -88,9 +88,9 @@ impl Stroke {
 /// Returns the circle through three points, unless they are almost collinear.
 fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (u, v) = (minus(b, a), minus(c, a));
-    let twice = 2.0 * cross(u, v);
+    let double_cross = 2.0 * cross(u, v);
     let (uu, vv) = (dot(u, u), dot(v, v));
-    let q = [(v[1] * uu - u[1] * vv) / twice, (u[0] * vv - v[0] * uu) / twice];
+    let q = [(v[1] * uu - u[1] * vv) / double_cross, (u[0] * vv - v[0] * uu) / double_cross];
     let radius = norm(q);
     let flat = radius > 1e4 * norm(v).max(norm(u));
     (radius.is_finite() && !flat).then_some(([a[0] + q[0], a[1] + q[1]], radius))
@@ -105,16 +105,16 @@ pub(super) fn round(
     let last = row.len() - 1;
     let closed = row[0] == row[last];
     let at = |share: f64| {
-        let place = (share * last as f64).min(last as f64);
-        let k = (place.floor() as usize).min(last - 1);
-        Stroke::line(row[k], row[k + 1]).at(place - k as f64)
+        let position = (share * last as f64).min(last as f64);
+        let k = (position.floor() as usize).min(last - 1);
+        Stroke::line(row[k], row[k + 1]).at(position - k as f64)
     };
     // The last point of a closed circle equals the first, so it gives no information.
     let step = if closed { 0.2 } else { 0.25 };
     let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
     let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
-    let off = |p: &Point| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near;
-    if feet.iter().any(off) {
+    let is_off = |p: &Point| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near;
+    if feet.iter().any(is_off) {
         return None;
     }
     let arc = |from: Point, to: Point| Stroke { from, to, circle: Some((centre, radius)) };
@@ -127,30 +127,30 @@ pub(super) fn round(
     Some(ends.windows(2).map(|pair| arc(row[pair[0]], row[pair[1]])).collect())
 }
 
-/// Fits lines and arcs to a row of points, no farther than `seen` from any of them.
-pub(super) fn fitted(row: &[Point], seen: f64) -> Vec<Stroke> {
+/// Fits lines and arcs to a row of points, no farther than `tolerance` from any of them.
+pub(super) fn fitted(row: &[Point], tolerance: f64) -> Vec<Stroke> {
     let last = row.len() - 1;
     let line = Stroke::line(row[0], row[last]);
-    let way = minus(row[last], row[0]);
-    let length = norm(way);
-    let off = |p: &Point| cross(way, minus(*p, row[0])).abs() > seen * length;
-    if last == 1 || (length > 0.0 && !row.iter().any(off)) {
+    let chord = minus(row[last], row[0]);
+    let length = norm(chord);
+    let is_off = |p: &Point| cross(chord, minus(*p, row[0])).abs() > tolerance * length;
+    if last == 1 || (length > 0.0 && !row.iter().any(is_off)) {
         return vec![line];
     }
     if length > 0.0
         && let Some((centre, radius)) = circle([row[0], row[last / 2], row[last]])
     {
         let stroke = Stroke { circle: Some((centre, radius)), ..line };
-        let off = |p: Point| (norm(minus(p, centre)) - radius).abs() > seen;
+        let is_off = |p: Point| (norm(minus(p, centre)) - radius).abs() > tolerance;
         let middles = row.windows(2).map(|pair| Stroke::line(pair[0], pair[1]).at(0.5));
         let less_than_half = stroke.turn().abs() < 0.9 * PI
-            && norm(minus(stroke.at(0.5), row[last / 2])) < 0.5 * length + seen;
-        if less_than_half && !row.iter().copied().chain(middles).any(off) {
+            && norm(minus(stroke.at(0.5), row[last / 2])) < 0.5 * length + tolerance;
+        if less_than_half && !row.iter().copied().chain(middles).any(is_off) {
             return vec![stroke];
         }
     }
     let middle = last / 2;
-    let mut strokes = fitted(&row[..=middle], seen);
-    strokes.extend(fitted(&row[middle..], seen));
+    let mut strokes = fitted(&row[..=middle], tolerance);
+    strokes.extend(fitted(&row[middle..], tolerance));
     strokes
 }

@@ -6,11 +6,11 @@ use super::stroke::Stroke;
 use crate::geometry::outline::Point;
 
 /// The largest extent of the section on the sheet: full width and height, in sheet units.
-const ROOM: [f64; 2] = [330.0, 500.0];
+const MAX_SECTION_EXTENT: [f64; 2] = [330.0, 500.0];
 /// The height of a shortened section, as a multiple of its width.
-const SLIM: f64 = 4.8;
+const MAX_ASPECT_RATIO: f64 = 4.8;
 /// The minimum length of a shortened cylinder, as a multiple of the section's width.
-const LEAST: f64 = 0.7;
+const MIN_SHORTENED_LENGTH: f64 = 0.7;
 
 /// An interval of the axis that is left out.
 #[derive(Clone, Copy, Debug)]
@@ -57,13 +57,13 @@ impl View {
             })
             .collect();
         let cuts = cuts(&plain, length, 2.0 * radius);
-        let left = length - cuts.iter().map(|cut| cut.high - cut.low).sum::<f64>();
-        let scale = (ROOM[0] / (2.0 * radius)).min(ROOM[1] / left);
-        View { scale, low, cuts, half: radius * scale, height: left * scale }
+        let remaining = length - cuts.iter().map(|cut| cut.high - cut.low).sum::<f64>();
+        let scale = (MAX_SECTION_EXTENT[0] / (2.0 * radius)).min(MAX_SECTION_EXTENT[1] / remaining);
+        View { scale, low, cuts, half: radius * scale, height: remaining * scale }
     }
 
     /// Maps a point of the section to the right half of the sheet.
-    pub(super) fn place(&self, [d, z]: Point) -> Point {
+    pub(super) fn to_sheet(&self, [d, z]: Point) -> Point {
         let gone: f64 = self.cuts.iter().map(|cut| (z.min(cut.high) - cut.low).max(0.0)).sum();
         [d * self.scale, -(z - self.low - gone) * self.scale]
     }
@@ -81,7 +81,7 @@ impl View {
 
     /// Maps a stroke to the sheet.
     pub(super) fn stroke(&self, stroke: &Stroke) -> Stroke {
-        let (from, to) = (self.place(stroke.from), self.place(stroke.to));
+        let (from, to) = (self.to_sheet(stroke.from), self.to_sheet(stroke.to));
         let circle = stroke.circle.map(|(centre, radius)| {
             let [d, z] = [0, 1].map(|k| centre[k] - stroke.from[k]);
             ([from[0] + d * self.scale, from[1] - z * self.scale], radius * self.scale)
@@ -91,22 +91,23 @@ impl View {
 
     /// Returns the heights on the sheet at which a part of the axis is left out.
     pub(super) fn seams(&self) -> Vec<f64> {
-        self.cuts.iter().map(|cut| self.place([0.0, cut.low])[1]).collect()
+        self.cuts.iter().map(|cut| self.to_sheet([0.0, cut.low])[1]).collect()
     }
 }
 
-/// Returns the intervals to leave out of the plain cylinders, so that the whole is about `SLIM` widths long.
+/// Returns the intervals to leave out of the plain cylinders, so that the whole is about `MAX_ASPECT_RATIO` widths long.
 fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
-    let wanted = SLIM * width;
-    if length <= 1.15 * wanted {
+    let target_length = MAX_ASPECT_RATIO * width;
+    if length <= 1.15 * target_length {
         return Vec::new();
     }
     // The length kept of each cylinder is found by bisection.
-    let (mut least, mut most) = (LEAST * width, length);
-    let left = |keep: f64| length - plain.iter().map(|[a, b]| (b - a - keep).max(0.0)).sum::<f64>();
+    let (mut least, mut most) = (MIN_SHORTENED_LENGTH * width, length);
+    let remaining =
+        |keep: f64| length - plain.iter().map(|[a, b]| (b - a - keep).max(0.0)).sum::<f64>();
     for _ in 0..40 {
         let keep = least / 2.0 + most / 2.0;
-        if left(keep) > wanted { most = keep } else { least = keep }
+        if remaining(keep) > target_length { most = keep } else { least = keep }
     }
     plain
         .iter()

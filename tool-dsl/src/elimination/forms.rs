@@ -10,7 +10,7 @@ use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The monomial of the distance from the axis.
-const RADIUS: Monomial = [1, 0, 0, 0];
+const RADIUS_MONOMIAL: Monomial = [1, 0, 0, 0];
 
 /// A quantity that elimination treats as a separate variable.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,14 +42,14 @@ impl Form {
     }
 
     pub(super) fn plus(mut self, other: &Form, factor: &Number) -> Form {
-        let sum = |own: &Number, more: &Number| {
-            let more = factor * more;
+        let sum = |own: &Number, term: &Number| {
+            let term = factor * term;
             // A sum that cancels except for its last bits is 0.
-            if own.agrees(&-&more) { Number::int(0) } else { own + &more }
+            if own.agrees(&-&term) { Number::int(0) } else { own + &term }
         };
-        for (variable, more) in &other.factors {
+        for (variable, term) in &other.factors {
             let own = self.factors.entry(*variable).or_insert(Number::int(0));
-            *own = sum(own, more);
+            *own = sum(own, term);
         }
         self.constant = sum(&self.constant, &other.constant);
         self
@@ -69,23 +69,23 @@ pub(super) struct Variables<'m> {
     graph: &'m Graph,
     /// True in space. In the half plane regions meet in points, for which roots of several squares need no
     /// case distinction.
-    of_space: bool,
-    known: BTreeMap<Variable, usize>,
+    is_space: bool,
+    indices: BTreeMap<Variable, usize>,
 }
 
 impl<'m> Variables<'m> {
     pub(super) fn new(model: &'m Model) -> Variables<'m> {
-        let of_space = model.domain == Domain::Space;
-        Variables { graph: &model.graph, of_space, known: BTreeMap::new() }
+        let is_space = model.domain == Domain::Space;
+        Variables { graph: &model.graph, is_space, indices: BTreeMap::new() }
     }
 
     pub(super) fn count(&self) -> usize {
-        self.known.len()
+        self.indices.len()
     }
 
     pub(super) fn of(&mut self, variable: Variable) -> usize {
-        let next = self.known.len();
-        *self.known.entry(variable).or_insert(next)
+        let next = self.indices.len();
+        *self.indices.entry(variable).or_insert(next)
     }
 
     /// Returns an expression as a linear form, if it is one.
@@ -94,13 +94,15 @@ impl<'m> Variables<'m> {
         polynomials.of(self.graph, root);
         let polynomial = |id: &Id| polynomials.known(*id);
         // The terms of the form, each once, even if it is shared.
-        let (mut open, mut parts) = (vec![root], BTreeSet::new());
-        while let Some(id) = open.pop() {
+        let (mut pending, mut parts) = (vec![root], BTreeSet::new());
+        while let Some(id) = pending.pop() {
             if parts.insert(id) && polynomial(&id).is_none() {
                 match *self.graph.node(id) {
-                    Node::Neg(a) => open.push(a),
-                    Node::Add(a, b) | Node::Sub(a, b) => open.extend([a, b]),
-                    Node::Mul(factor, b) if self.graph.constant(factor).is_some() => open.push(b),
+                    Node::Neg(a) => pending.push(a),
+                    Node::Add(a, b) | Node::Sub(a, b) => pending.extend([a, b]),
+                    Node::Mul(factor, b) if self.graph.constant(factor).is_some() => {
+                        pending.push(b);
+                    }
                     Node::Sqrt(_) | Node::Abs(_) => {}
                     _ => return None,
                 }
@@ -126,7 +128,7 @@ impl<'m> Variables<'m> {
 
     /// Returns a comparison of squares as a comparison of absolute values. Where the sign of a squared node
     /// is known in the box, the node itself replaces its absolute value.
-    pub(super) fn compared(&mut self, value: Id, cell: Cell) -> Option<Form> {
+    pub(super) fn comparison_without_squares(&mut self, value: Id, cell: Cell) -> Option<Form> {
         let [a, b] = squares_compared(self.graph, value)?;
         let a = self.unsquared(&a, cell)?;
         Some(a.signed(&self.unsquared(&b, cell)?, true))
@@ -154,18 +156,21 @@ impl<'m> Variables<'m> {
     pub(super) fn projections<'f>(&mut self, forms: impl Iterator<Item = &'f Form>) -> Vec<Form> {
         let forms: Vec<&Form> = forms.collect();
         let mut facts = Vec::new();
-        for (root, at) in self.roots() {
+        for (root, index) in self.roots() {
             let Some(point) = self.centre(root) else { continue };
-            let minus = Form::variable(at).negated();
+            let negative = Form::variable(index).negated();
             for form in &forms {
                 let squares = form.factors.values().map(|factor| factor * factor);
                 let slope = squares.fold(Number::int(0), |sum, square| &sum + &square);
                 let terms = form.factors.iter().map(|(at, factor)| Some(factor * point.get(at)?));
-                let all = terms.chain([Some(form.constant.clone())]).collect::<Option<Vec<_>>>();
-                let Some((value, size)) = all.map(|terms| Number::sum(&terms)) else { continue };
-                let zero = value.to_f64().abs() <= ROUNDING * size;
-                if zero && slope.agrees(&Number::int(1)) {
-                    facts.extend([false, true].map(|sign| minus.clone().signed(form, sign)));
+                let is_complete =
+                    terms.chain([Some(form.constant.clone())]).collect::<Option<Vec<_>>>();
+                let Some((value, size)) = is_complete.map(|terms| Number::sum(&terms)) else {
+                    continue;
+                };
+                let vanishes = value.to_f64().abs() <= ROUNDING * size;
+                if vanishes && slope.agrees(&Number::int(1)) {
+                    facts.extend([false, true].map(|sign| negative.clone().signed(form, sign)));
                 }
             }
         }
@@ -173,25 +178,25 @@ impl<'m> Variables<'m> {
     }
 
     fn roots(&self) -> Vec<(Id, usize)> {
-        let root = |(variable, at): (&Variable, &usize)| match variable {
-            Variable::Root(root) => Some((*root, *at)),
+        let root = |(variable, index): (&Variable, &usize)| match variable {
+            Variable::Root(root) => Some((*root, *index)),
             _ => None,
         };
-        self.known.iter().filter_map(root).collect()
+        self.indices.iter().filter_map(root).collect()
     }
 
     /// Returns the point from which a root is the distance, by coordinate.
     fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, Number>> {
-        let (parts, all) = squares(self.graph, root);
+        let (parts, is_complete) = squares(self.graph, root);
         let mut point = BTreeMap::new();
         for part in parts {
             let form = self.form(part)?;
             let mut factors = form.factors.iter();
             let (variable, factor) = factors.next()?;
-            let alone = factors.next().is_none() && factor.abs() == Number::int(1);
-            point.insert(*variable, alone.then(|| &-&form.constant * factor)?);
+            let is_only = factors.next().is_none() && factor.abs() == Number::int(1);
+            point.insert(*variable, is_only.then(|| &-&form.constant * factor)?);
         }
-        all.then_some(point)
+        is_complete.then_some(point)
     }
 
     fn of_polynomial(&mut self, polynomial: &Polynomial) -> Form {
@@ -212,45 +217,50 @@ impl<'m> Variables<'m> {
     /// each term squared under it.
     pub(super) fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
         let (mut facts, mut choices) = (Vec::new(), Vec::new());
-        for (variable, at) in self.known.clone() {
-            let minus = Form::variable(at).negated();
+        for (variable, index) in self.indices.clone() {
+            let negative = Form::variable(index).negated();
             let mut parts = Vec::new();
             match variable {
                 Variable::Monomial(monomial) => {
-                    if monomial == RADIUS {
-                        let across = [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
-                        let known = across.iter().filter_map(|v| self.known.get(v).copied());
-                        parts.extend(known.map(Form::variable));
+                    if monomial == RADIUS_MONOMIAL {
+                        let coordinates =
+                            [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
+                        let indices =
+                            coordinates.iter().filter_map(|v| self.indices.get(v).copied());
+                        parts.extend(indices.map(Form::variable));
                     } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
                         continue;
                     }
                 }
                 Variable::Root(_) | Variable::Size(_) => {
-                    let (squares, all) = match variable {
+                    let (squares, is_complete) = match variable {
                         Variable::Root(root) => squares(self.graph, root),
                         Variable::Size(a) => (vec![a], true),
                         Variable::Monomial(_) => (Vec::new(), false),
                     };
                     let count = squares.len();
                     // Facts cover the existing variables only; forms with new ones are dropped.
-                    let variables = self.known.len();
+                    let variables = self.indices.len();
                     parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
                     parts.retain(|form| form.factors.keys().all(|v| *v < variables));
-                    self.known.retain(|_, at| *at < variables);
-                    if all && parts.len() == count && (count == 1 || self.of_space) {
+                    self.indices.retain(|_, at| *at < variables);
+                    if is_complete && parts.len() == count && (count == 1 || self.is_space) {
                         let side = |signs: usize| {
-                            parts.iter().enumerate().fold(Form::variable(at), |sum, (k, part)| {
-                                sum.signed(part, signs >> k & 1 != 0)
-                            })
+                            parts
+                                .iter()
+                                .enumerate()
+                                .fold(Form::variable(index), |sum, (k, part)| {
+                                    sum.signed(part, signs >> k & 1 != 0)
+                                })
                         };
-                        choices.push((at, (0..1 << count).map(side).collect()));
+                        choices.push((index, (0..1 << count).map(side).collect()));
                     }
                 }
             }
             for part in parts {
-                facts.extend([false, true].map(|sign| minus.clone().signed(&part, sign)));
+                facts.extend([false, true].map(|sign| negative.clone().signed(&part, sign)));
             }
-            facts.push(minus);
+            facts.push(negative);
         }
         (facts, choices)
     }
@@ -292,15 +302,15 @@ fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
         Node::Abs(part) => return (vec![part], true),
         _ => return (Vec::new(), false),
     };
-    let (mut open, mut parts, mut all) = (vec![sum], Vec::new(), true);
-    while let Some(id) = open.pop() {
+    let (mut pending, mut parts, mut is_complete) = (vec![sum], Vec::new(), true);
+    while let Some(id) = pending.pop() {
         match *graph.node(id) {
-            Node::Add(a, b) => open.extend([a, b]),
+            Node::Add(a, b) => pending.extend([a, b]),
             Node::Mul(a, b) if a == b => parts.push(a),
-            Node::Coord(Coord::Q) => all = false,
-            Node::Const(ref value) if !value.is_negative() => all = false,
+            Node::Coord(Coord::Q) => is_complete = false,
+            Node::Const(ref value) if !value.is_negative() => is_complete = false,
             _ => return (Vec::new(), false),
         }
     }
-    (parts, all)
+    (parts, is_complete)
 }

@@ -1,7 +1,7 @@
 //! Fourier–Motzkin elimination: the consequences of linear conditions for fewer variables.
 //!
 //! The algorithm chooses combinations in doubles and treats small values as rounding. A result is accepted
-//! only after the combination that led to it was repeated with 256 bits ([`Condition::exactly`]).
+//! only after the combination that led to it was repeated with 256 bits ([`Condition::evaluate_exactly`]).
 
 use crate::number::{self, Number};
 use std::collections::HashMap;
@@ -11,7 +11,7 @@ use std::rc::Rc;
 /// of the conditions.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// The largest number of conditions that elimination may produce.
-const CONDITIONS: usize = 600;
+const MAX_CONDITIONS: usize = 600;
 
 /// `Σ factor · variable + constant`, with 256 bits.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ struct Combined {
 }
 
 impl Condition {
-    pub(super) fn given(exact: &Rc<Exact>, strict: bool) -> Condition {
+    pub(super) fn from_exact(exact: &Rc<Exact>, strict: bool) -> Condition {
         Condition {
             factors: exact.factors.iter().map(Number::to_f64).collect(),
             constant: exact.constant.to_f64(),
@@ -84,15 +84,15 @@ impl Condition {
     /// Returns the coefficient of the `wanted` variable, the constant, and the rounding error of the
     /// constant, computed with 256 bits. Returns `None` if the condition has another variable (any variable,
     /// if none is `wanted`), or if its combination is unusable. The coefficient may be as small as rounding.
-    pub(super) fn exactly(&self, wanted: Option<usize>) -> Option<(Number, Number, f64)> {
+    pub(super) fn evaluate_exactly(&self, wanted: Option<usize>) -> Option<(Number, Number, f64)> {
         let Combined { exact, sizes, size } = &*combined(&self.origin, &mut HashMap::new());
         let mut factor = Number::int(0);
         for (variable, value) in exact.factors.iter().enumerate() {
-            let noise = number::ROUNDING * sizes[variable];
-            let is_noise = noise.is_finite() && value.to_f64().abs() <= noise;
+            let rounding_error = number::ROUNDING * sizes[variable];
+            let is_rounding = rounding_error.is_finite() && value.to_f64().abs() <= rounding_error;
             if Some(variable) == wanted {
                 factor = value.clone();
-            } else if !value.is_zero() && !is_noise {
+            } else if !value.is_zero() && !is_rounding {
                 return None;
             }
         }
@@ -100,11 +100,12 @@ impl Condition {
     }
 
     /// Returns whether the condition is false for all values of its variables, confirmed with 256 bits.
-    pub(super) fn is_absurd(&self) -> bool {
-        let least = if self.strict { -ROUNDING } else { 0.0 };
-        self.constant > least
-            && self.exactly(None).is_some_and(|(_, constant, noise)| {
-                constant.to_f64() >= if self.strict { -noise } else { 2.0 * noise }
+    pub(super) fn is_false(&self) -> bool {
+        let limit = if self.strict { -ROUNDING } else { 0.0 };
+        self.constant > limit
+            && self.evaluate_exactly(None).is_some_and(|(_, constant, rounding_error)| {
+                constant.to_f64()
+                    >= if self.strict { -rounding_error } else { 2.0 * rounding_error }
                     && (self.strict || !constant.is_zero())
             })
     }
@@ -127,15 +128,15 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     let (x, y) = (-&b.exact.factors[sum.variable], a.exact.factors[sum.variable].clone());
     // Rescaling keeps factors near 1 through repeated combination.
     let scale = Number::from_f64(x.to_f64().abs().max(y.to_f64().abs()).log2().floor().exp2());
-    let down = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
-    let (x, y) = (down(&x), down(&y));
+    let rescale = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
+    let (x, y) = (rescale(&x), rescale(&y));
     let mut exact = a.exact.combined(&x, &b.exact, &y);
     exact.factors[sum.variable] = Number::int(0);
-    let both = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
-    let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| both(*a, *b)).collect();
+    let combine = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
+    let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| combine(*a, *b)).collect();
     // Only positive multiples preserve the inequality. An infinite size marks the result as unusable.
-    let is_kept = !x.is_negative() && !y.is_negative();
-    let size = if is_kept { both(a.size, b.size) } else { f64::INFINITY };
+    let is_valid = !x.is_negative() && !y.is_negative();
+    let size = if is_valid { combine(a.size, b.size) } else { f64::INFINITY };
     let result = Rc::new(Combined { exact: Rc::new(exact), sizes, size });
     known.insert(Rc::as_ptr(sum), Rc::clone(&result));
     result
@@ -143,9 +144,9 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
 
 /// Rescales conditions to a unit of their own, a power of two near the largest constant, and returns that
 /// unit. The rounding tolerance therefore does not depend on the unit that a tool is written in.
-pub(super) fn in_own_unit(conditions: Vec<Condition>) -> (Vec<Condition>, f64) {
+pub(super) fn rescaled(conditions: Vec<Condition>) -> (Vec<Condition>, f64) {
     let mut conditions: Vec<Condition> = conditions.into_iter().map(scaled).collect();
-    let largest = conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
+    let largest = conditions.iter().fold(0f64, |largest, c| largest.max(c.constant.abs()));
     let unit = if largest > 0.0 { largest.log2().floor().exp2() } else { 1.0 };
     conditions.iter_mut().for_each(|condition| condition.constant /= unit);
     (conditions, unit)
@@ -159,26 +160,27 @@ pub(super) fn without(
 ) -> Option<Vec<Condition>> {
     while !variables.is_empty() {
         // A variable bounded from one side only is eliminated by dropping its conditions.
-        let loose = |variable: &usize| {
-            let any = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
-            !any(1.0) || !any(-1.0)
+        let is_one_sided = |variable: &usize| {
+            let has_sign = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
+            !has_sign(1.0) || !has_sign(-1.0)
         };
-        let (free, bounded): (Vec<usize>, Vec<usize>) = variables.into_iter().partition(loose);
+        let (free, bounded): (Vec<usize>, Vec<usize>) =
+            variables.into_iter().partition(is_one_sided);
         variables = bounded;
         if !free.is_empty() {
             conditions.retain(|c| free.iter().all(|variable| c.factors[*variable] == 0.0));
             continue;
         }
         let growth = |variable: usize| {
-            let with = |sign: f64| {
-                let bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
-                conditions.iter().filter(bound).count()
+            let count_with_sign = |sign: f64| {
+                let is_bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
+                conditions.iter().filter(is_bound).count()
             };
-            let (upper, lower) = (with(1.0), with(-1.0));
+            let (upper, lower) = (count_with_sign(1.0), count_with_sign(-1.0));
             (upper * lower).saturating_sub(upper + lower)
         };
-        let place = (0..variables.len()).min_by_key(|place| growth(variables[*place]))?;
-        conditions = eliminate(conditions, variables.swap_remove(place))?;
+        let index = (0..variables.len()).min_by_key(|index| growth(variables[*index]))?;
+        conditions = eliminate(conditions, variables.swap_remove(index))?;
     }
     Some(conditions)
 }
@@ -193,7 +195,7 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
             _ => rest.push(condition),
         }
     }
-    if rest.len() + upper.len() * lower.len() > CONDITIONS {
+    if rest.len() + upper.len() * lower.len() > MAX_CONDITIONS {
         return None;
     }
     for a in &upper {
@@ -213,26 +215,30 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
 
 /// Keeps only the tightest of the conditions that have the same factors.
 fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
-    let mut kept: Vec<Condition> = Vec::new();
+    let mut tightest_conditions: Vec<Condition> = Vec::new();
     for condition in conditions {
         let condition = scaled(condition);
-        let same = |other: &&mut Condition| {
+        let has_same_factors = |other: &&mut Condition| {
             other.factors.iter().zip(&condition.factors).all(|(a, b)| (a - b).abs() <= ROUNDING)
         };
-        match kept.iter_mut().find(same) {
+        match tightest_conditions.iter_mut().find(has_same_factors) {
             Some(other) => {
-                let above = condition.constant - other.constant;
+                let difference = condition.constant - other.constant;
                 // If two conditions differ by rounding only, the strict one is tighter.
-                let same = above.abs() <= ROUNDING * condition.constant.abs().max(1.0);
-                let stricter = condition.strict && !other.strict;
-                if if same && condition.strict != other.strict { stricter } else { above > 0.0 } {
+                let are_equal = difference.abs() <= ROUNDING * condition.constant.abs().max(1.0);
+                let is_stricter = condition.strict && !other.strict;
+                if if are_equal && condition.strict != other.strict {
+                    is_stricter
+                } else {
+                    difference > 0.0
+                } {
                     *other = condition;
                 }
             }
-            None => kept.push(condition),
+            None => tightest_conditions.push(condition),
         }
     }
-    kept
+    tightest_conditions
 }
 
 /// Scales a condition to a largest factor of 1 and sets residues of rounding to 0.

@@ -12,16 +12,16 @@ use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
 use forms::{Form, Variable, Variables, compares_roots};
-use fourier_motzkin::{Condition, Exact, ROUNDING, in_own_unit, scaled, without};
+use fourier_motzkin::{Condition, Exact, ROUNDING, rescaled, scaled, without};
 use std::rc::Rc;
 
 /// The largest number of combinations of choices.
-const CHOICES: usize = 8;
+const MAX_CHOICES: usize = 8;
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
     /// The linear form of each curve, followed by those of depths; `None` where there is none.
-    forms: Vec<Option<Known>>,
+    forms: Vec<Option<LinearForm>>,
     variables: usize,
     /// The variable of the coordinate along each axis of the domain.
     axes: [Option<usize>; 3],
@@ -32,7 +32,7 @@ pub(crate) struct Linear {
 }
 
 /// The linear form of a curve or a depth.
-struct Known {
+struct LinearForm {
     exact: Rc<Exact>,
     /// The conditions that it is not positive, and that it is not negative.
     sides: [Condition; 2],
@@ -41,13 +41,13 @@ struct Known {
     is_lost: bool,
 }
 
-impl Known {
-    fn new([exact, opposite]: [Rc<Exact>; 2]) -> Known {
-        let sides = [&exact, &opposite].map(|form| Condition::given(form, false));
+impl LinearForm {
+    fn new([exact, opposite]: [Rc<Exact>; 2]) -> LinearForm {
+        let sides = [&exact, &opposite].map(|form| Condition::from_exact(form, false));
         let sizes = || sides[0].factors.iter().map(|factor| factor.abs());
         let largest = sizes().fold(0.0, f64::max);
         let is_lost = sizes().any(|size| size != 0.0 && size < 1e3 * ROUNDING * largest);
-        Known { exact, sides, is_lost }
+        LinearForm { exact, sides, is_lost }
     }
 }
 
@@ -78,7 +78,7 @@ impl Linear {
             curves.chain(depths).map(|value| variables.form(value)).collect();
         if let Some(cell) = roots {
             for (form, curve) in forms.iter_mut().zip(&model.curves) {
-                if let Some(compared) = variables.compared(curve.value, cell) {
+                if let Some(compared) = variables.comparison_without_squares(curve.value, cell) {
                     *form = Some(compared);
                 }
             }
@@ -89,16 +89,17 @@ impl Linear {
         }
         let count = variables.count();
         let dense = |form: Form| {
-            let all = (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
-            Rc::new(Exact { factors: all.collect(), constant: form.constant })
+            let factors =
+                (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
+            Rc::new(Exact { factors: factors.collect(), constant: form.constant })
         };
-        let both = |form: Form| {
+        let with_opposite = |form: Form| {
             let opposite = Form::default().plus(&form, &Number::int(-1));
-            Known::new([form, opposite].map(dense))
+            LinearForm::new([form, opposite].map(dense))
         };
-        let condition = |form: Form| Condition::given(&dense(form), false);
+        let condition = |form: Form| Condition::from_exact(&dense(form), false);
         Linear {
-            forms: forms.into_iter().map(|form| form.map(both)).collect(),
+            forms: forms.into_iter().map(|form| form.map(with_opposite)).collect(),
             variables: count,
             axes,
             facts: facts.into_iter().map(condition).collect(),
@@ -110,7 +111,7 @@ impl Linear {
     }
 
     /// Returns a box that contains all points with these signs, according to the linear curves alone.
-    pub(crate) fn reach(&self, signs: &[Signs]) -> Cell {
+    pub(crate) fn bounding_box(&self, signs: &[Signs]) -> Cell {
         Cell {
             sides: self
                 .axes
@@ -119,31 +120,35 @@ impl Linear {
     }
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
-        let (conditions, unit) = in_own_unit(self.conditions(signs));
-        let largest = unit * conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
+        let (conditions, unit) = rescaled(self.conditions(signs));
+        let largest =
+            unit * conditions.iter().fold(0f64, |largest, c| largest.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
         let Some(conditions) = without(conditions, others) else { return ENTIRE };
         let mut range = ENTIRE;
         for condition in conditions.into_iter().map(scaled) {
-            let double = condition.factors[wanted];
-            let end = -unit * condition.constant / double;
-            let tighter = match double {
-                _ if double > ROUNDING => end < range.high,
-                _ if double < -ROUNDING => end > range.low,
+            let approximate_factor = condition.factors[wanted];
+            let end = -unit * condition.constant / approximate_factor;
+            let tighter = match approximate_factor {
+                _ if approximate_factor > ROUNDING => end < range.high,
+                _ if approximate_factor < -ROUNDING => end > range.low,
                 _ => false,
             };
             if !tighter {
                 continue;
             }
-            let Some((factor, constant, noise)) = condition.exactly(Some(wanted)) else { continue };
+            let Some((factor, constant, rounding_error)) = condition.evaluate_exactly(Some(wanted))
+            else {
+                continue;
+            };
             let Some(end) = (-&constant).over(&factor) else { continue };
-            let end = Interval::about(&end);
+            let end = Interval::enclosing(&end);
             // The slack keeps doubles that are computed from the range outside it.
             let size = largest + end.low.abs().max(end.high.abs());
-            let slack = noise / factor.to_f64().abs() + ROUNDING * size;
-            if double > 0.0 && !factor.is_negative() {
+            let slack = rounding_error / factor.to_f64().abs() + ROUNDING * size;
+            if approximate_factor > 0.0 && !factor.is_negative() {
                 range.high = range.high.min((end.high + slack).next_up());
-            } else if double < 0.0 && factor.is_negative() {
+            } else if approximate_factor < 0.0 && factor.is_negative() {
                 range.low = range.low.max((end.low - slack).next_down());
             }
         }
@@ -153,7 +158,7 @@ impl Linear {
     fn conditions(&self, signs: &[Signs]) -> Vec<Condition> {
         let mut conditions = self.facts.clone();
         for (form, sign) in self.forms.iter().zip(signs) {
-            let Some(Known { sides: [form, opposite], is_lost: false, .. }) = form else {
+            let Some(LinearForm { sides: [form, opposite], is_lost: false, .. }) = form else {
                 continue;
             };
             let mut add = |form: &Condition, strict: bool| {
@@ -175,25 +180,25 @@ impl Linear {
     }
 
     pub(crate) fn contradictory(&self, signs: &[Signs]) -> bool {
-        self.absurd(self.conditions(signs))
+        self.has_no_solution(self.conditions(signs))
     }
 
     /// Returns whether these signs contradict one another, if the linear part of the curves decides it. For
     /// straight lines elimination is complete.
-    pub(super) fn judged(&self, signs: &[Signs]) -> Option<bool> {
-        let rest = self.without_any(self.conditions(signs))?;
-        if rest.iter().any(Condition::is_absurd) {
+    pub(super) fn is_contradictory(&self, signs: &[Signs]) -> Option<bool> {
+        let rest = self.without_variables(self.conditions(signs))?;
+        if rest.iter().any(Condition::is_false) {
             return Some(true);
         }
-        let straight = |form: &Option<Known>| {
+        let is_straight = |form: &Option<LinearForm>| {
             form.as_ref().is_some_and(|form| {
                 let factors = &form.sides[0].factors;
-                let bent = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
-                !(0..self.variables).any(bent)
+                let is_nonlinear = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
+                !(0..self.variables).any(is_nonlinear)
             })
         };
-        let mut asked = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY);
-        asked.all(|(form, _)| straight(form)).then_some(false)
+        let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY);
+        constrained.all(|(form, _)| is_straight(form)).then_some(false)
     }
 
     /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
@@ -201,71 +206,77 @@ impl Linear {
         let mut conditions = self.conditions(signs);
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
         conditions.extend(depth.map(|depth| depth.sides[1].clone()));
-        self.absurd(conditions)
+        self.has_no_solution(conditions)
     }
 
     /// Returns whether one region is nowhere deeper than another, or than the outside, where curves have
     /// these signs.
     pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
         let zero = Number::int(0);
-        let nothing = Exact { factors: vec![zero.clone(); self.variables], constant: zero };
+        let zero_form = Exact { factors: vec![zero.clone(); self.variables], constant: zero };
         let form = |region: Option<usize>| match region {
             Some(region) => self.forms[signs.len() + region].as_ref().map(|form| &*form.exact),
-            None => Some(&nothing),
+            None => Some(&zero_form),
         };
         let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
         let deeper = b.combined(&Number::int(1), a, &Number::int(-1));
         let mut conditions = self.conditions(signs);
-        conditions.push(Condition::given(&Rc::new(deeper), true));
-        self.absurd(conditions)
+        conditions.push(Condition::from_exact(&Rc::new(deeper), true));
+        self.has_no_solution(conditions)
     }
 
     /// Returns whether no point satisfies the conditions, whichever alternative holds for each root in them.
-    fn absurd(&self, mut conditions: Vec<Condition>) -> bool {
+    fn has_no_solution(&self, mut conditions: Vec<Condition>) -> bool {
         // Facts about variables that nothing else mentions have no consequences.
-        let asked = conditions.split_off(self.facts.len());
+        let requested = conditions.split_off(self.facts.len());
         let mentioned: Vec<bool> = (0..self.variables)
             .map(|variable| {
                 let mentions = |condition: &Condition| condition.factors[variable] != 0.0;
-                self.axes.contains(&Some(variable)) || asked.iter().any(mentions)
+                self.axes.contains(&Some(variable)) || requested.iter().any(mentions)
             })
             .collect();
-        let known = |condition: &Condition| {
+        let is_relevant = |condition: &Condition| {
             let mut used = condition.factors.iter().zip(&mentioned);
             used.all(|(factor, mentioned)| *factor == 0.0 || *mentioned)
         };
-        conditions.retain(known);
-        conditions.extend(asked);
+        conditions.retain(is_relevant);
+        conditions.extend(requested);
         let mut count = 1;
         let choices: Vec<&Vec<Condition>> = (self.choices.iter())
-            .filter(|(root, choices)| mentioned[*root] && choices.iter().all(known))
+            .filter(|(root, choices)| mentioned[*root] && choices.iter().all(is_relevant))
             .map(|(_, choices)| choices)
             .take_while(|choices| {
                 count *= choices.len();
-                count <= CHOICES
+                count <= MAX_CHOICES
             })
             .collect();
-        self.none_keeps(conditions.clone())
-            || !choices.is_empty() && self.none_of(conditions, &choices)
+        self.is_unsatisfiable(conditions.clone())
+            || !choices.is_empty() && self.is_unsatisfiable_for_all(conditions, &choices)
     }
 
     /// Returns whether every combination of alternatives is contradictory.
-    fn none_of(&self, conditions: Vec<Condition>, choices: &[&Vec<Condition>]) -> bool {
-        let Some((first, rest)) = choices.split_first() else { return self.none_keeps(conditions) };
+    fn is_unsatisfiable_for_all(
+        &self,
+        conditions: Vec<Condition>,
+        choices: &[&Vec<Condition>],
+    ) -> bool {
+        let Some((first, rest)) = choices.split_first() else {
+            return self.is_unsatisfiable(conditions);
+        };
         first.iter().all(|choice| {
             let mut conditions = conditions.clone();
             conditions.push(choice.clone());
-            self.none_of(conditions, rest)
+            self.is_unsatisfiable_for_all(conditions, rest)
         })
     }
 
-    fn none_keeps(&self, conditions: Vec<Condition>) -> bool {
-        self.without_any(conditions).is_some_and(|rest| rest.iter().any(Condition::is_absurd))
+    fn is_unsatisfiable(&self, conditions: Vec<Condition>) -> bool {
+        self.without_variables(conditions).is_some_and(|rest| rest.iter().any(Condition::is_false))
     }
 
     /// Eliminates all variables from conditions, in their own unit.
-    fn without_any(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
-        without(in_own_unit(conditions).0, (0..self.variables).collect())
+    fn without_variables(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
+        without(rescaled(conditions).0, (0..self.variables).collect())
     }
 }
 
@@ -277,7 +288,7 @@ mod tests {
 
     /// `d < 1` and `d > 1 - 1e-13` hold in a thin ring, which doubles cannot distinguish from the empty set.
     #[test]
-    fn what_only_rounding_contradicts_is_no_contradiction() {
+    fn contradictions_within_rounding_are_ignored() {
         let ball = "hypot(d, z - 3) <= 3";
         let text = format!(
             "tool Ball {{ units mm; curve a = d - 1; curve b = d - 0.9999999999999;
@@ -287,9 +298,9 @@ mod tests {
         );
         let tool = compile(&Source::new("a.tool", text)).into_tool().expect("a tool");
         let curves = &tool.model.curves;
-        let named =
+        let curve_index =
             |name: &str| curves.iter().position(|curve| curve.name.as_deref() == Some(name));
-        let (a, b) = (named("a").expect("a curve"), named("b").expect("a curve"));
+        let (a, b) = (curve_index("a").expect("a curve"), curve_index("b").expect("a curve"));
         let linear = Linear::new(&tool.model);
         let contradictory = |of_a: Signs, of_b: Signs| {
             let mut signs = vec![ANY; curves.len()];

@@ -34,7 +34,7 @@ impl Writer<'_> {
         let needed = always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
         let mut lets = Tokens::default();
         self.lets(&mut lets, needed, &mut scope);
-        let bare = lets.is_empty();
+        let without_lets = lets.is_empty();
         code.add(lets);
         let Tree::Split { curve, strict, below, above } = tree else {
             if let Tree::Leaf(own) = tree {
@@ -63,7 +63,7 @@ impl Writer<'_> {
                 code.add(above);
             });
         }
-        bare
+        without_lets
     }
 
     /// Records, for each subtree, the nodes that every path down from it needs.

@@ -72,8 +72,8 @@ pub fn regions(tool: &CheckedTool) -> String {
         for (name, id) in evaluation {
             let _ = writeln!(text, "  {name} {}", expression(tool, id));
         }
-        let course = region.raw_direction.0.map(|part| expression(tool, part));
-        let _ = writeln!(text, "  direction ({})", course.join(", "));
+        let direction = region.raw_direction.0.map(|part| expression(tool, part));
+        let _ = writeln!(text, "  direction ({})", direction.join(", "));
     }
     text
 }

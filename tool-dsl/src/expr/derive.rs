@@ -45,14 +45,14 @@ fn rule(graph: &mut Graph, id: Id, by: Coord, known: &HashMap<Id, Id>) -> Id {
             graph.mul(two, slope)
         }
         Node::Mul(a, b) => {
-            let left = graph.mul(d(&a), b);
+            let first_term = graph.mul(d(&a), b);
             let right = graph.mul(a, d(&b));
-            graph.add(left, right)
+            graph.add(first_term, right)
         }
         // (a/b)' = (a' - (a/b) b') / b
         Node::Div(a, b) | Node::Quotient(a, b) => {
-            let whole = graph.quotient(a, b);
-            let down = graph.mul(whole, d(&b));
+            let quotient = graph.quotient(a, b);
+            let down = graph.mul(quotient, d(&b));
             let up = graph.sub(d(&a), down);
             graph.quotient(up, b)
         }

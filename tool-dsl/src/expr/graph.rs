@@ -33,14 +33,14 @@ impl Graph {
 
     /// Returns the nodes that some roots need, operands first.
     pub fn needed(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
-        let mut open: Vec<Id> = roots.into_iter().collect();
-        let mut wanted = BTreeSet::new();
-        while let Some(id) = open.pop() {
-            if wanted.insert(id) {
-                open.extend(self.node(id).operands());
+        let mut pending: Vec<Id> = roots.into_iter().collect();
+        let mut needed_ids = BTreeSet::new();
+        while let Some(id) = pending.pop() {
+            if needed_ids.insert(id) {
+                pending.extend(self.node(id).operands());
             }
         }
-        wanted.into_iter().collect()
+        needed_ids.into_iter().collect()
     }
 
     /// Returns the nodes whose squares a node is the sum of, if it visibly is such a sum. `None` in the list
@@ -384,13 +384,13 @@ impl Graph {
             _ => self.sqrt(base)?,
         };
         let mut square = base;
-        let mut left = halves / 2;
-        while left > 0 {
-            if left % 2 == 1 {
+        let mut remaining = halves / 2;
+        while remaining > 0 {
+            if remaining % 2 == 1 {
                 result = self.mul(result, square);
             }
-            left /= 2;
-            if left > 0 {
+            remaining /= 2;
+            if remaining > 0 {
                 square = self.mul(square, square);
             }
         }

@@ -32,7 +32,7 @@ impl Interval {
     }
 
     /// Encloses a constant: exactly if it is a double, else by the doubles around its nearest one.
-    pub(crate) fn about(value: &Number) -> Interval {
+    pub(crate) fn enclosing(value: &Number) -> Interval {
         let nearest = value.to_f64();
         // Most constants are doubles.
         if Number::from_f64(nearest).as_ref() == Some(value) {
@@ -239,7 +239,7 @@ impl<'g> Encloser<'g> {
             let mut order = graph.needed([root]);
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
-                    values[id.index()] = Interval::about(value);
+                    values[id.index()] = Interval::enclosing(value);
                     false
                 }
                 None => true,
@@ -311,7 +311,8 @@ impl<'g> Encloser<'g> {
 /// geometric middle, or at 0.
 pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
     let length = |axis: usize| cell.sides[axis].high - cell.sides[axis].low;
-    let longer = |most, axis| if length(axis) > length(most) { axis } else { most };
+    let longer =
+        |longest_axis, axis| if length(axis) > length(longest_axis) { axis } else { longest_axis };
     let axis = [0, 1].into_iter().fold(2, longer);
     let side = cell.sides[axis];
     let middle = middle(side);

@@ -26,7 +26,7 @@ pub(crate) fn monomial_of(coord: Coord) -> Monomial {
 pub struct Polynomial(BTreeMap<Monomial, Number>);
 
 /// The highest degree that is recognised.
-const DEGREE: u8 = 8;
+const MAX_DEGREE: u8 = 8;
 
 /// The polynomials of nodes, each computed once.
 #[derive(Default)]
@@ -35,14 +35,15 @@ pub(crate) struct Polynomials(HashMap<Id, Option<Polynomial>>);
 impl Polynomials {
     /// Returns the polynomial of a node, if it is one.
     pub(crate) fn of(&mut self, graph: &Graph, id: Id) -> Option<&Polynomial> {
-        let mut open = vec![id];
-        while let Some(id) = open.last().copied() {
-            let before = open.len();
-            open.extend(graph.node(id).operands().filter(|operand| !self.0.contains_key(operand)));
-            if open.len() == before {
+        let mut pending = vec![id];
+        while let Some(id) = pending.last().copied() {
+            let before = pending.len();
+            pending
+                .extend(graph.node(id).operands().filter(|operand| !self.0.contains_key(operand)));
+            if pending.len() == before {
                 let polynomial = Polynomial::node(graph.node(id), |operand| self.known(*operand));
                 self.0.insert(id, polynomial);
-                open.pop();
+                pending.pop();
             }
         }
         self.known(id)
@@ -57,9 +58,9 @@ impl Polynomials {
 impl Polynomial {
     /// Returns the polynomial of a node, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
-        let mut all = Polynomials::default();
-        all.of(graph, id);
-        all.0.remove(&id).flatten()
+        let mut polynomials = Polynomials::default();
+        polynomials.of(graph, id);
+        polynomials.0.remove(&id).flatten()
     }
 
     fn node<'p>(node: &Node, of: impl Fn(&Id) -> Option<&'p Polynomial>) -> Option<Polynomial> {
@@ -101,7 +102,7 @@ impl Polynomial {
                 for (sum, more) in monomial.iter_mut().zip(right) {
                     *sum += more;
                 }
-                if monomial.iter().sum::<u8>() > DEGREE {
+                if monomial.iter().sum::<u8>() > MAX_DEGREE {
                     return None;
                 }
                 product = product.plus(&Polynomial(BTreeMap::from([(monomial, a * b)])));
@@ -116,7 +117,7 @@ impl Polynomial {
     }
 
     /// Returns a constant polynomial.
-    pub(crate) fn constantly(value: &Number) -> Polynomial {
+    pub(crate) fn from_constant(value: &Number) -> Polynomial {
         Polynomial::zero().plus(&Polynomial(BTreeMap::from([([0; 4], value.clone())])))
     }
 
@@ -142,14 +143,14 @@ impl Polynomial {
     /// Returns whether this provably vanishes wherever `other` does: it is zero, a multiple of the other or
     /// of its square, or vanishes after substitution of the other, if that is linear.
     pub(crate) fn vanishes_on(&self, other: &Polynomial) -> bool {
-        if self.is_nothing() || self.ratio(other).is_some() || self.is_square_of(other) {
+        if self.is_zero() || self.ratio(other).is_some() || self.is_square_of(other) {
             return true;
         }
-        self.on_line(other).is_some_and(|left| left.0.is_empty())
+        self.on_line(other).is_some_and(|remainder| remainder.0.is_empty())
     }
 
     /// Returns whether this is the zero polynomial.
-    pub(crate) fn is_nothing(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
 
@@ -166,13 +167,13 @@ impl Polynomial {
         let steep =
             |(_, a): &(&Monomial, &Number), (_, b): &(&Monomial, &Number)| a.abs().cmp(&b.abs());
         let sloped = line.0.iter().filter(|(monomial, _)| degree(monomial) == 1);
-        let (leader, factor) = sloped.max_by(steep).filter(|_| linear)?;
-        let axis = leader.iter().position(|exponent| *exponent == 1)?;
+        let (leading, factor) = sloped.max_by(steep).filter(|_| linear)?;
+        let axis = leading.iter().position(|exponent| *exponent == 1)?;
         // leader = -(the rest) / factor
         let mut rest = line.clone();
-        rest.0.remove(leader);
+        rest.0.remove(leading);
         let rest = rest.scaled(&Number::int(-1).over(factor)?);
-        let mut left = Polynomial::zero();
+        let mut remainder = Polynomial::zero();
         for (monomial, value) in &self.0 {
             let mut others = *monomial;
             let power = std::mem::take(&mut others[axis]);
@@ -180,12 +181,12 @@ impl Polynomial {
             for _ in 0..power {
                 term = term.times(&rest)?;
             }
-            left = left.plus(&term);
+            remainder = remainder.plus(&term);
         }
         // A coefficient that nearly cancels is rounding error of the 256-bit constants.
-        let most = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
-        left.0.retain(|_, value| value.to_f64().abs() > most * ROUNDING);
-        Some(left)
+        let largest = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
+        remainder.0.retain(|_, value| value.to_f64().abs() > largest * ROUNDING);
+        Some(remainder)
     }
 
     /// Encloses the values over a box.
@@ -193,7 +194,7 @@ impl Polynomial {
         let bases = [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]];
         let term = |(monomial, value): (&Monomial, &Number)| {
             let powers = monomial.iter().zip(bases).map(|(exponent, base)| base.power(*exponent));
-            powers.fold(Interval::about(value), Interval::times)
+            powers.fold(Interval::enclosing(value), Interval::times)
         };
         self.0.iter().map(term).fold(ZERO, Interval::plus)
     }
@@ -210,21 +211,21 @@ impl Polynomial {
         let [dd, dz, zz] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(|m| self.factor(m));
         let exact = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]];
         let [of_d, of_both, of_z] = exact.map(|monomial| self.exact_factor(monomial));
-        let bent = &(&Number::int(4) * &(&of_d * &of_z)) - &(&of_both * &of_both);
+        let discriminant = &(&Number::int(4) * &(&of_d * &of_z)) - &(&of_both * &of_both);
         let sizes = dd * dd + dz * dz + zz * zz;
-        if dd + zz == 0.0 || bent.to_f64() < -ROUNDING * sizes || dd * zz < 0.0 {
+        if dd + zz == 0.0 || discriminant.to_f64() < -ROUNDING * sizes || dd * zz < 0.0 {
             return None;
         }
-        let left = self.on_line(line)?;
+        let remainder = self.on_line(line)?;
         let mut factors = [Number::int(0), Number::int(0), Number::int(0)];
-        for (monomial, value) in &left.0 {
+        for (monomial, value) in &remainder.0 {
             factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
         }
         let [c, b, a] = factors;
         // At most one root: b² ≤ 4 a c, up to the 256 bits of constants.
         let (square, four) = (&b * &b, &Number::int(4) * &(&a * &c));
-        let apart = (&square - &four).to_f64();
-        if apart > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
+        let difference = (&square - &four).to_f64();
+        if difference > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
             return None;
         }
         // Nearest to the line, the conic decreases toward the side of the other sign.
@@ -236,12 +237,12 @@ impl Polynomial {
         } else {
             (lowest, -(rest + line_d * lowest) / line_z)
         };
-        let way = [
+        let direction = [
             2.0 * dd * d + dz * z + self.factor([1, 0, 0, 0]),
             dz * d + 2.0 * zz * z + self.factor([0, 0, 0, 1]),
         ];
-        let rise = way[0] * line_d + way[1] * line_z;
-        let scale = (way[0].abs() + way[1].abs()) * (line_d.abs() + line_z.abs());
+        let rise = direction[0] * line_d + direction[1] * line_z;
+        let scale = (direction[0].abs() + direction[1].abs()) * (line_d.abs() + line_z.abs());
         let positive = dd + zz > 0.0;
         (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
     }
@@ -337,9 +338,9 @@ impl Polynomial {
             return None;
         }
         let leads = (self.0.first_key_value()?.1, other.0.first_key_value()?.1);
-        let about = leads.0.to_f64() / leads.1.to_f64();
+        let ratio = leads.0.to_f64() / leads.1.to_f64();
         let near = |(a, b): (&Number, &Number)| {
-            let (a, b) = (a.to_f64(), b.to_f64() * about);
+            let (a, b) = (a.to_f64(), b.to_f64() * ratio);
             (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
         };
         // A comparison of doubles rejects most curves cheaply.

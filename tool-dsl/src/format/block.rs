@@ -1,7 +1,7 @@
 //! Statements, their blocks, and the comments around them.
 
 use super::token::{Kind, Token};
-use super::{STEP, WIDTH, line};
+use super::{INDENT_WIDTH, LINE_WIDTH, line};
 
 /// An element of a block, on lines of its own.
 pub(super) enum Node<'t> {
@@ -23,16 +23,16 @@ pub(super) struct Statement<'t> {
     /// The tokens up to its `;` or `{`.
     code: &'t [Token<'t>],
     /// Comments after that on the same line.
-    beside: &'t [Token<'t>],
+    trailing_comments: &'t [Token<'t>],
     body: Option<Body<'t>>,
 }
 
 struct Body<'t> {
     nodes: Vec<Node<'t>>,
     /// Its `}`, or nothing if the text ends before.
-    close: &'static str,
+    closing_brace: &'static str,
     /// Comments after its `}` on the same line.
-    beside: &'t [Token<'t>],
+    trailing_comments: &'t [Token<'t>],
     /// True if it was written on one line and may stay there.
     one_line: bool,
 }
@@ -56,7 +56,7 @@ impl<'t> Reader<'t> {
             }
             let blank = next.newlines > 1 && !nodes.is_empty();
             let run = self.comments();
-            if run.iter().any(|comment| comment.kind == Kind::Ending) || self.ends_behind(run) {
+            if run.iter().any(|comment| comment.kind == Kind::Ending) || self.ends_line(run) {
                 self.at += run.len();
                 nodes.push(Node::Comments(Comments { blank, run }));
             } else {
@@ -76,18 +76,18 @@ impl<'t> Reader<'t> {
     }
 
     /// Returns whether there are comments that end their line, except for a `}` after them.
-    fn ends_behind(&self, run: &[Token<'_>]) -> bool {
-        let behind = self.tokens.get(self.at + run.len());
-        !run.is_empty() && behind.is_none_or(|token| token.newlines > 0 || token.is("}"))
+    fn ends_line(&self, run: &[Token<'_>]) -> bool {
+        let next = self.tokens.get(self.at + run.len());
+        !run.is_empty() && next.is_none_or(|token| token.newlines > 0 || token.is("}"))
     }
 
     /// Consumes the comments on the same line as the last token.
-    fn beside(&mut self) -> &'t [Token<'t>] {
+    fn trailing_comments(&mut self) -> &'t [Token<'t>] {
         let run = match self.tokens.get(self.at) {
             Some(next) if next.newlines == 0 => self.comments(),
             _ => &[],
         };
-        let run = if self.ends_behind(run) { run } else { &[] };
+        let run = if self.ends_line(run) { run } else { &[] };
         self.at += run.len();
         run
     }
@@ -109,24 +109,24 @@ impl<'t> Reader<'t> {
             }
         }
         let code = &self.tokens[start..self.at];
-        let beside = self.beside();
-        let body = opens.then(|| self.body(code, beside));
-        Statement { blank, code, beside, body }
+        let trailing_comments = self.trailing_comments();
+        let body = opens.then(|| self.body(code, trailing_comments));
+        Statement { blank, code, trailing_comments, body }
     }
 
-    fn body(&mut self, head: &[Token<'_>], beside: &[Token<'_>]) -> Body<'t> {
+    fn body(&mut self, head: &[Token<'_>], trailing_comments: &[Token<'_>]) -> Body<'t> {
         let start = self.at;
         let nodes = self.nodes(true);
-        let close = if self.at < self.tokens.len() { "}" } else { "" };
-        self.at += close.len();
+        let closing_brace = if self.at < self.tokens.len() { "}" } else { "" };
+        self.at += closing_brace.len();
         let inside = &self.tokens[start..self.at];
         let plain = |token: &Token<'_>| token.newlines == 0 && !token.is_comment();
         let one_line = head.first().is_some_and(|word| word.is("region"))
             && nodes.len() == 1
-            && !close.is_empty()
-            && beside.is_empty()
+            && !closing_brace.is_empty()
+            && trailing_comments.is_empty()
             && inside.iter().all(plain);
-        Body { nodes, close, beside: self.beside(), one_line }
+        Body { nodes, closing_brace, trailing_comments: self.trailing_comments(), one_line }
     }
 }
 
@@ -155,24 +155,24 @@ fn write_at(nodes: &[Node<'_>], indent: usize, page: &mut String) {
 impl Statement<'_> {
     fn write(&self, indent: usize, page: &mut String) {
         if let Some(line) = self.on_one_line()
-            && indent + line.chars().count() <= WIDTH
+            && indent + line.chars().count() <= LINE_WIDTH
         {
             page.extend(std::iter::repeat_n(' ', indent));
             page.push_str(&line);
         } else {
             line::write(self.code, indent, page);
-            beside(self.beside, page);
+            trailing_comments(self.trailing_comments, page);
             if let Some(body) = &self.body {
-                if !(body.nodes.is_empty() && self.beside.is_empty()) {
+                if !(body.nodes.is_empty() && self.trailing_comments.is_empty()) {
                     page.push('\n');
-                    write_at(&body.nodes, indent + STEP, page);
+                    write_at(&body.nodes, indent + INDENT_WIDTH, page);
                     page.extend(std::iter::repeat_n(' ', indent));
                 }
-                page.push_str(body.close);
+                page.push_str(body.closing_brace);
             }
         }
         if let Some(body) = &self.body {
-            beside(body.beside, page);
+            trailing_comments(body.trailing_comments, page);
         }
     }
 
@@ -187,7 +187,7 @@ impl Statement<'_> {
     }
 }
 
-fn beside(comments: &[Token<'_>], page: &mut String) {
+fn trailing_comments(comments: &[Token<'_>], page: &mut String) {
     for comment in comments {
         page.push(' ');
         page.push_str(comment.text);

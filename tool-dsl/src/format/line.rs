@@ -1,13 +1,13 @@
 //! One statement: its spaces, and its line breaks if it is too long.
 
 use super::token::{Kind, Token};
-use super::{STEP, WIDTH};
+use super::{INDENT_WIDTH, LINE_WIDTH};
 use std::iter::repeat_n;
 
 /// Keywords before which a line may be broken.
-const PARTS: [&str; 7] = ["allow", "as", "at", "center", "radius", "where", "with"];
+const BREAKABLE_KEYWORDS: [&str; 7] = ["allow", "as", "at", "center", "radius", "where", "with"];
 /// The number of ranks of breaks within one bracket. Those of an inner bracket are all higher.
-const RANKS: usize = 5;
+const RANKS_PER_BRACKET: usize = 5;
 
 /// A token with its layout in a statement.
 struct Piece<'t> {
@@ -51,16 +51,16 @@ pub(super) fn joined(tokens: &[Token<'_>]) -> String {
 pub(super) fn write(tokens: &[Token<'_>], indent: usize, page: &mut String) {
     let mut pieces = pieces(tokens);
     let width: usize = pieces.iter().map(Piece::width).sum();
-    if indent + width > WIDTH || pieces.iter().any(|piece| piece.begins) {
+    if indent + width > LINE_WIDTH || pieces.iter().any(|piece| piece.begins) {
         part(&mut pieces);
     }
-    let (mut own, mut hang) = (indent, indent + STEP);
+    let (mut own, mut hang) = (indent, indent + INDENT_WIDTH);
     let mut rest = pieces.as_slice();
     while let Some(first) = rest.first() {
         let behind = rest.iter().skip(1).position(|piece| piece.begins);
         let (segment, others) = rest.split_at(behind.map_or(rest.len(), |at| at + 1));
         if first.is_where() {
-            hang = indent + 2 * STEP;
+            hang = indent + 2 * INDENT_WIDTH;
         }
         fill(segment, if first.is_brace() { indent } else { own }, hang, page);
         if !others.is_empty() {
@@ -99,7 +99,7 @@ fn fill(mut rest: &[Piece<'_>], own: usize, hang: usize, page: &mut String) {
                 }
             }
             column += piece.width();
-            fits &= column <= WIDTH;
+            fits &= column <= LINE_WIDTH;
             if !fits && best.is_some() {
                 break;
             }
@@ -139,7 +139,9 @@ fn pieces<'t>(tokens: &[Token<'t>]) -> Vec<Piece<'t>> {
             text: token.text,
             kind: token.kind,
             space: before.is_some_and(|before| space(before, token)),
-            rank: before.and_then(|before| rank(before, token)).map(|rank| depth * RANKS + rank),
+            rank: before
+                .and_then(|before| rank(before, token))
+                .map(|rank| depth * RANKS_PER_BRACKET + rank),
             begins,
         });
         if token.is("(") {
@@ -172,7 +174,7 @@ fn rank(before: &Token<'_>, token: &Token<'_>) -> Option<usize> {
         return None;
     }
     match (token.kind, token.text) {
-        (Kind::Word, word) if PARTS.contains(&word) => return Some(0),
+        (Kind::Word, word) if BREAKABLE_KEYWORDS.contains(&word) => return Some(0),
         (Kind::Mark, "<=" | ">=" | "<" | ">" | "==" | "!=") => return Some(1),
         (Kind::Mark, "+" | "-") => return Some(2),
         (Kind::Mark, "*" | "/") => return Some(4),

@@ -23,9 +23,9 @@ use crate::source::Source;
 use crate::syntax;
 
 /// The number of columns in a line. Comments at its end may extend further.
-const WIDTH: usize = 100;
+const LINE_WIDTH: usize = 100;
 /// The number of columns per level of indentation.
-const STEP: usize = 4;
+const INDENT_WIDTH: usize = 4;
 
 /// Formats a tool's text.
 ///

@@ -8,9 +8,9 @@ use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Every construct of the language, including those that the grammar does not know yet.
-const WHOLE: &str = include_str!("whole.tool");
+const EVERY_CONSTRUCT: &str = include_str!("whole.tool");
 
-fn laid(text: &str) -> String {
+fn formatted(text: &str) -> String {
     layout(text).expect("tokens")
 }
 
@@ -54,8 +54,8 @@ fn tree(text: &str) -> String {
 
 /// Formats a text and checks the invariants of every layout.
 fn sound(text: &str) -> String {
-    let once = laid(text);
-    assert_eq!(laid(&once), once, "not idempotent:\n{text}");
+    let once = formatted(text);
+    assert_eq!(formatted(&once), once, "not idempotent:\n{text}");
     assert_eq!(content(&once), content(text), "the content changed:\n{text}\n{once}");
     assert!(once.ends_with('\n') && !once.contains("\n\n\n"), "{once}");
     let spaced = |line: &str| line.ends_with(' ') || line.ends_with('\t');
@@ -86,10 +86,10 @@ fn tool_files() -> Vec<PathBuf> {
 }
 
 #[test]
-fn the_whole_language_is_laid_out() {
-    assert_eq!(sound(WHOLE), WHOLE);
+fn every_construct_is_formatted() {
+    assert_eq!(sound(EVERY_CONSTRUCT), EVERY_CONSTRUCT);
     // As little space as possible, and a line per token.
-    let (code, _) = content(WHOLE);
+    let (code, _) = content(EVERY_CONSTRUCT);
     let without_comments: String = sound(&code.join(" ")).split_whitespace().collect();
     assert_eq!(sound(&code.join("\n")).split_whitespace().collect::<String>(), without_comments);
 }
@@ -110,7 +110,7 @@ fn every_tool_keeps_its_meaning() {
 }
 
 #[test]
-fn the_library_stands_as_it_is_formatted() {
+fn the_library_is_formatted() {
     for file in
         tool_files().iter().filter(|file| file.components().any(|c| c.as_os_str() == "tools"))
     {
@@ -121,7 +121,7 @@ fn the_library_stands_as_it_is_formatted() {
 
 /// The examples on the language page are formatted.
 #[test]
-fn the_page_stands_as_it_is_formatted() {
+fn the_examples_of_the_language_page_are_formatted() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
     let page = std::fs::read_to_string(page).expect("the page on the language");
     let mut count = 0;
@@ -146,7 +146,7 @@ fn statement(text: &str) -> String {
 }
 
 #[test]
-fn operators_are_spaced_as_they_bind() {
+fn operators_are_spaced_by_precedence() {
     let one = |text: &str| statement(text).trim_end().to_owned();
     assert_eq!(one("let a=- b *( c+-d )/2 ^ - e-  - f;"), "let a = -b*(c + -d)/2^-e - -f;");
     assert_eq!(one("let a = min ( 1mm,-2 , hypot(-3,4) );"), "let a = min(1mm, -2, hypot(-3, 4));");
@@ -177,7 +177,7 @@ fn blank_lines_collapse() {
 }
 
 #[test]
-fn comments_stay_where_they_are() {
+fn comments_keep_their_positions() {
     let text = "/* head */ tool T /* name */ { // behind the brace
         units mm; // behind /* no block
         /* before */ let a /* in */ = /* = */ 1; /* behind */
@@ -270,8 +270,8 @@ fn long_statements_are_broken() {
             format!("region a as b cutting where {} {{ depth: 1; }}", conditions.join(",")),
             format!("region a where {} <= 0 {{ depth: 1; }}", names.join("+")),
         ] {
-            let laid = statement(&text);
-            assert!(laid.lines().all(|line| line.len() + 4 <= 100), "{laid}");
+            let formatted = statement(&text);
+            assert!(formatted.lines().all(|line| line.len() + 4 <= 100), "{formatted}");
         }
     }
 }
@@ -298,7 +298,7 @@ fn between() -> impl Strategy<Value = &'static str> {
 }
 
 /// Joins tokens with gaps before them. Words and numbers keep at least one space between them.
-fn spread(code: &[String], gaps: &[&str]) -> String {
+fn spaced(code: &[String], gaps: &[&str]) -> String {
     let glues = |text: &str| text.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '"');
     let mut text = String::new();
     for (token, gap) in code.iter().zip(gaps.iter().cycle()) {
@@ -315,10 +315,10 @@ proptest! {
     /// With any gaps between the tokens, formatting keeps the content and is idempotent.
     #[test]
     fn any_spacing_is_sound(gaps in prop::collection::vec(between(), 600)) {
-        let (code, _) = content(WHOLE);
-        let spread = spread(&code, &gaps);
-        let laid = sound(&spread);
-        prop_assert_eq!(rust_tokens(&code.join(" ")), rust_tokens(&laid.replace("///", "//")));
+        let (code, _) = content(EVERY_CONSTRUCT);
+        let spaced = spaced(&code, &gaps);
+        let formatted = sound(&spaced);
+        prop_assert_eq!(rust_tokens(&code.join(" ")), rust_tokens(&formatted.replace("///", "//")));
     }
 
     /// The existing tools keep their meaning, however they are spaced.
@@ -329,26 +329,26 @@ proptest! {
     ) {
         let text = std::fs::read_to_string(&file).expect("a readable file");
         let (code, _) = content(&text);
-        let spread = spread(&code, &gaps);
-        if let Ok(formatted) = format(&Source::new("t.tool", spread.clone())) {
-            prop_assert_eq!(&formatted, &sound(&spread));
+        let spaced = spaced(&code, &gaps);
+        if let Ok(formatted) = format(&Source::new("t.tool", spaced.clone())) {
+            prop_assert_eq!(&formatted, &sound(&spaced));
             prop_assert_eq!(tree(&formatted), tree(&text), "{}", file.display());
         }
     }
 
     /// Spaces alone matter only where a region is on one line.
     #[test]
-    fn line_ends_decide_nothing(gaps in prop::collection::vec(prop::sample::select(vec!["\n", "  \n", "\n\t"]), 600)) {
-        let (code, _) = content(WHOLE);
-        let spread = spread(&code, &gaps);
-        prop_assert_eq!(laid(&spread), laid(&code.join("\n")));
+    fn line_breaks_do_not_affect_the_result(gaps in prop::collection::vec(prop::sample::select(vec!["\n", "  \n", "\n\t"]), 600)) {
+        let (code, _) = content(EVERY_CONSTRUCT);
+        let spaced = spaced(&code, &gaps);
+        prop_assert_eq!(formatted(&spaced), formatted(&code.join("\n")));
     }
 
     /// The formatter accepts any text, valid or not, and loses nothing of it.
     #[test]
-    fn no_text_is_too_strange(text in "([a-z{}();,:=+*^/. \n\"-]|/\\*|\\*/|//|bsp|where|region|[0-9]){0,60}") {
+    fn arbitrary_text_does_not_panic(text in "([a-z{}();,:=+*^/. \n\"-]|/\\*|\\*/|//|bsp|where|region|[0-9]){0,60}") {
         let all = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
-        prop_assert_eq!(all(&laid(&text)), all(&text));
+        prop_assert_eq!(all(&formatted(&text)), all(&text));
     }
 }
 
@@ -361,9 +361,9 @@ fn errors_of_syntax_are_reported() {
 }
 
 #[test]
-fn lines_end_as_they_did() {
+fn line_endings_are_kept() {
     let text = "tool T { // a \r\n\r\n\r\nunits mm; /* b\r\n c */\r\n}";
-    let laid = sound(&text.replace("\r\n", "\n")).replace('\n', "\r\n");
-    assert_eq!(layout(text).expect("tokens"), laid);
-    assert_eq!(layout(&laid).expect("tokens"), laid);
+    let formatted = sound(&text.replace("\r\n", "\n")).replace('\n', "\r\n");
+    assert_eq!(layout(text).expect("tokens"), formatted);
+    assert_eq!(layout(&formatted).expect("tokens"), formatted);
 }

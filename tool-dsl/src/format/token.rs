@@ -40,7 +40,8 @@ impl Token<'_> {
 }
 
 /// Keywords that are not directly followed by a name, a point or a value; all others are.
-const COMPLETE: [&str; 7] = ["arc", "away", "concave", "cutting", "line", "nearest", "regions"];
+const KEYWORDS_WITHOUT_OPERAND: [&str; 7] =
+    ["arc", "away", "concave", "cutting", "line", "nearest", "regions"];
 
 /// The last token, which determines the kind of the next. An operand never follows an operand, so a name that
 /// does is a keyword.
@@ -90,7 +91,7 @@ fn name(written: &str, last: Last) -> (Kind, Last) {
         Last::DirectionColon => ["away", "toward"].contains(&written),
     };
     match is_word {
-        true if COMPLETE.contains(&written) => (Kind::Word, Last::Operand),
+        true if KEYWORDS_WITHOUT_OPERAND.contains(&written) => (Kind::Word, Last::Operand),
         true => (Kind::Word, Last::Operator),
         false => (Kind::Value, Last::Operand),
     }

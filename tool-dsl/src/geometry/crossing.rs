@@ -3,7 +3,7 @@
 use super::outline::{Point, Segment, cross, dot, doubles, minus, norm};
 
 /// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.
-pub(crate) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+pub(crate) fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
     let candidates = match (&a.circle, &b.circle) {
         (None, None) => line_line(a, b),
         (None, Some(_)) => line_circle(a, b),
@@ -12,16 +12,16 @@ pub(crate) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Poin
     };
     let size = [&a.from, &a.to, &b.from, &b.to]
         .into_iter()
-        .map(|place| norm(doubles(place)))
+        .map(|point| norm(doubles(point)))
         .fold(0.0, f64::max);
     let slack = 1e-9 * size;
-    let on = |s: &Segment, p: Point| {
+    let is_on = |s: &Segment, p: Point| {
         s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
     };
     let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
     candidates.into_iter().chain(ends).find(|p| {
         let shared = neighbours && norm(minus(*p, doubles(&b.from))) <= 2.0 * slack;
-        !shared && on(a, *p) && on(b, *p)
+        !shared && is_on(a, *p) && is_on(b, *p)
     })
 }
 
@@ -39,13 +39,13 @@ fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
 fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
     let Some(circle) = &arc.circle else { return Vec::new() };
     let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
-    let along = line.tangent(false);
+    let direction = line.tangent(false);
     let from = minus(doubles(&line.from), centre);
-    let foot = -dot(along, from);
-    let off = cross(along, from);
-    let half = (radius * radius - off * off).max(0.0).sqrt();
-    [foot - half, foot + half]
-        .map(|t| [centre[0] + from[0] + t * along[0], centre[1] + from[1] + t * along[1]])
+    let foot = -dot(direction, from);
+    let distance = cross(direction, from);
+    let half_chord = (radius * radius - distance * distance).max(0.0).sqrt();
+    [foot - half_chord, foot + half_chord]
+        .map(|t| [centre[0] + from[0] + t * direction[0], centre[1] + from[1] + t * direction[1]])
         .to_vec()
 }
 
@@ -54,14 +54,14 @@ fn circle_circle(a: &Segment, b: &Segment) -> Vec<Point> {
     let (p, q) = (doubles(&ca.centre), doubles(&cb.centre));
     let (r, s) = (ca.radius.to_f64(), cb.radius.to_f64());
     let between = minus(q, p);
-    let apart = norm(between);
-    if apart == 0.0 {
+    let distance = norm(between);
+    if distance == 0.0 {
         return Vec::new();
     }
-    let along = (apart * apart + r * r - s * s) / (2.0 * apart);
-    let half = (r * r - along * along).max(0.0).sqrt();
-    let way = [between[0] / apart, between[1] / apart];
-    [half, -half]
-        .map(|h| [p[0] + along * way[0] - h * way[1], p[1] + along * way[1] + h * way[0]])
+    let along = (distance * distance + r * r - s * s) / (2.0 * distance);
+    let half_chord = (r * r - along * along).max(0.0).sqrt();
+    let unit = [between[0] / distance, between[1] / distance];
+    [half_chord, -half_chord]
+        .map(|h| [p[0] + along * unit[0] - h * unit[1], p[1] + along * unit[1] + h * unit[0]])
         .to_vec()
 }

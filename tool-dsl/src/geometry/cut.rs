@@ -1,16 +1,16 @@
 //! Polygons of the section with possibly curved edges, and their division by curves.
 
 use super::outline::{Point, cross, dot, minus, norm};
-use super::shape::{CurveFunction, ON, between};
+use super::shape::{CurveFunction, ON_CURVE_FRACTION, between};
 use crate::formula::CurveIndex;
 
 /// The distance below which points coincide, relative to the size of the section.
-pub(crate) const NEAR: f64 = 1e-9;
+pub(crate) const COINCIDENCE_FRACTION: f64 = 1e-9;
 /// The largest distance of a curve from its chord, in chord lengths. A point farther away belongs to another
 /// branch.
-const BULGE: f64 = 0.15;
+const MAX_SAGITTA_IN_CHORDS: f64 = 0.15;
 /// The step, in chord lengths, of the differences that locate an extremum of a curve's value.
-const NARROW: f64 = 1e-3;
+const DIFFERENCE_STEP_IN_CHORDS: f64 = 1e-3;
 
 /// The shape of a polygon's edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ impl Piece {
 
     /// Returns the centre and half the sides of a box that certainly contains the piece, with the bulge of
     /// its edges.
-    pub(crate) fn about(&self) -> [Point; 2] {
+    pub(crate) fn bounding_box(&self) -> [Point; 2] {
         let [low, high] = self.vertices.iter().fold(
             [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
             |[low, high], p| {
@@ -86,7 +86,7 @@ impl Piece {
             },
         );
         let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
-        let bulge = 2.0 * BULGE * (half[0] + half[1]);
+        let bulge = 2.0 * MAX_SAGITTA_IN_CHORDS * (half[0] + half[1]);
         [between(low, high, 0.5), [half[0] + bulge, half[1] + bulge]]
     }
 
@@ -108,17 +108,17 @@ impl Piece {
     /// Returns whether it is so thin that it may lie between a curve and its chord.
     pub(crate) fn is_sliver(&self) -> bool {
         let first = self.vertices[0];
-        let long = self.vertices.iter().map(|p| norm(minus(*p, first))).fold(0.0, f64::max);
-        self.area() < 0.05 * long * long
+        let length = self.vertices.iter().map(|p| norm(minus(*p, first))).fold(0.0, f64::max);
+        self.area() < 0.05 * length * length
     }
 
     /// Returns whether a point lies on an edge, or may lie on the curve that an edge is a chord of.
     pub(crate) fn has_on_edge(&self, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
-        let close = NEAR * size;
-        let on = |[a, b]: [Point; 2], edge: Edge| {
-            let bulge = BULGE * norm(minus(b, a)) + close;
+        let tolerance = COINCIDENCE_FRACTION * size;
+        let is_on = |[a, b]: [Point; 2], edge: Edge| {
+            let bulge = MAX_SAGITTA_IN_CHORDS * norm(minus(b, a)) + tolerance;
             match edge {
-                Edge::Straight => is_along(p, [a, b], close),
+                Edge::Straight => is_along(p, [a, b], tolerance),
                 Edge::Along(curve) => {
                     shapes[curve].side(p, size) == 0 && is_along(p, [a, b], bulge)
                 }
@@ -126,7 +126,7 @@ impl Piece {
             }
         };
         let count = self.vertices.len();
-        (0..count).any(|k| on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
+        (0..count).any(|k| is_on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
     }
 
     /// Returns twice its area.
@@ -154,7 +154,9 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let mut add = |p: Point, side: i8| corners.push((p, side, edge));
             if sides[k] * sides[next] < 0 {
                 add(self.crossing(a, b, edge), 0);
-            } else if let Some((top, side)) = self.detour([a, b], [sides[k], sides[next]], edge) {
+            } else if let Some((top, side)) =
+                self.farthest_crossing([a, b], [sides[k], sides[next]], edge)
+            {
                 if sides[k] != 0 {
                     add(self.crossing(a, top, edge), 0);
                 }
@@ -169,78 +171,89 @@ impl<'a, 'g> Cutter<'a, 'g> {
 
     /// Returns the point at which an edge reaches farthest onto a side that neither end is on, with that
     /// side.
-    fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2], edge: Edge) -> Option<(Point, i8)> {
+    fn farthest_crossing(
+        &self,
+        [a, b]: [Point; 2],
+        sides: [i8; 2],
+        edge: Edge,
+    ) -> Option<(Point, i8)> {
         let shape = self.shape();
-        let there = |top: Point| {
+        let on_other_side = |top: Point| {
             let side = shape.side(top, self.size);
             (side != 0 && !sides.contains(&side)).then_some((top, side))
         };
         let other = match edge {
-            Edge::Straight => return there(between(a, b, self.turn(a, b)?)),
+            Edge::Straight => return on_other_side(between(a, b, self.extremum(a, b)?)),
             Edge::Along(other) if other != self.curve => other,
             Edge::Along(_) | Edge::Chord => return None,
         };
         // A curve deviates from its chord and may therefore reach across.
         let along = Cutter { curve: other, ..*self };
         let chord = norm(minus(b, a));
-        let near = |p: Point| {
-            let at = shape.at(p);
-            at.value.abs() <= BULGE * chord * norm(at.gradient)
+        let is_near = |p: Point| {
+            let value_at = shape.at(p);
+            value_at.value.abs() <= MAX_SAGITTA_IN_CHORDS * chord * norm(value_at.gradient)
         };
-        if near(a) && near(b) {
-            let parts = [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7];
-            return parts.into_iter().find_map(|part| there(along.bend(a, b, part)?));
+        if is_near(a) && is_near(b) {
+            let fractions = [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7];
+            return fractions.into_iter().find_map(|part| on_other_side(along.bend(a, b, part)?));
         }
         // The edge may begin on the curve and leave to one side while its chord leaves to the other.
-        if let Some(found) = self.leaves([a, b], sides, other) {
+        if let Some(found) = self.leaving_point([a, b], sides, other) {
             return Some(found);
         }
         // A narrow curve may cross the edge twice, far from both ends.
-        let mut part = self.turn(a, b)?;
+        let mut part = self.extremum(a, b)?;
         let top = between(a, b, part);
-        if there(top).is_none() && !near(top) {
+        if on_other_side(top).is_none() && !is_near(top) {
             return None;
         }
         for _ in 0..6 {
-            let values = [part - NARROW, part, part + NARROW]
-                .map(|part| along.bend(a, b, part).map_or(f64::NAN, |p| shape.value(p)));
-            let [before, here, after] = values;
-            let step = NARROW / 2.0 * (before - after) / (before - 2.0 * here + after);
+            let values = [part - DIFFERENCE_STEP_IN_CHORDS, part, part + DIFFERENCE_STEP_IN_CHORDS]
+                .map(|fraction| along.bend(a, b, fraction).map_or(f64::NAN, |p| shape.value(p)));
+            let [previous_value, value, next_value] = values;
+            let step = DIFFERENCE_STEP_IN_CHORDS / 2.0 * (previous_value - next_value)
+                / (previous_value - 2.0 * value + next_value);
             if !step.is_finite() {
                 return None;
             }
             part = (part + step).clamp(0.0, 1.0);
         }
-        there(along.bend(a, b, part)?)
+        on_other_side(along.bend(a, b, part)?)
     }
 
     /// Returns a point at which an edge along `other` lies on the opposite side from its far end, if the edge
     /// begins on the cutting curve and leaves toward that side.
-    fn leaves(&self, ends: [Point; 2], sides: [i8; 2], other: CurveIndex) -> Option<(Point, i8)> {
-        let (from, far) = match sides {
-            [0, far] if far != 0 => (0, far),
-            [far, 0] if far != 0 => (1, far),
+    fn leaving_point(
+        &self,
+        ends: [Point; 2],
+        sides: [i8; 2],
+        other: CurveIndex,
+    ) -> Option<(Point, i8)> {
+        let (from, far_side) = match sides {
+            [0, far_side] if far_side != 0 => (0, far_side),
+            [far_side, 0] if far_side != 0 => (1, far_side),
             _ => return None,
         };
         let (a, b) = (ends[from], ends[1 - from]);
         let (own, along) = (self.shape().at(a).gradient, self.shapes[other].at(a).gradient);
         let (way, chord) = ([-along[1], along[0]], minus(b, a));
         let slope = dot(own, way) * dot(way, chord).signum();
-        if slope * f64::from(far) >= -ON * norm(own) * norm(along) {
+        if slope * f64::from(far_side) >= -ON_CURVE_FRACTION * norm(own) * norm(along) {
             return None;
         }
         let edge = Cutter { curve: other, ..*self };
         (1..40).find_map(|halvings| {
             let top = edge.bend(a, b, 0.5f64.powi(halvings))?;
-            (self.shape().side(top, self.size) == -far).then_some((top, -far))
+            (self.shape().side(top, self.size) == -far_side).then_some((top, -far_side))
         })
     }
 
     /// Returns the parameter of the extremum of the curve's value between two points, if there is one.
-    fn turn(&self, a: Point, b: Point) -> Option<f64> {
-        let [_, slope, bend] = self.shape().course(a, b);
-        let turn = -slope / (2.0 * bend);
-        (turn > 0.0 && turn < 1.0).then_some(turn)
+    fn extremum(&self, a: Point, b: Point) -> Option<f64> {
+        let [_, slope, bend] = self.shape().quadratic_along(a, b);
+        let extremum = -slope / (2.0 * bend);
+        (extremum > 0.0 && extremum < 1.0).then_some(extremum)
     }
 
     /// Returns the vertices and edges of the part on one side.
@@ -252,11 +265,11 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let start = corners.iter().position(|corner| corner.1 == -side)?;
         for k in 1..=count {
             let (p, own, edge) = corners[(start + k) % count];
-            let [before, after] = [k - 1, k + 1].map(|k| corners[(start + k) % count].1);
+            let [previous_side, next_side] = [k - 1, k + 1].map(|k| corners[(start + k) % count].1);
             // A vertex that only touches the curve does not belong to this side.
-            if own == side || (own == 0 && (before == side || after == side)) {
+            if own == side || (own == 0 && (previous_side == side || next_side == side)) {
                 vertices.push(p);
-                edges.push(if own == 0 && after != side { along } else { edge });
+                edges.push(if own == 0 && next_side != side { along } else { edge });
             }
         }
         if along != Edge::Straight && is_thin(&vertices, self.size) {
@@ -277,17 +290,19 @@ impl<'a, 'g> Cutter<'a, 'g> {
         for _ in 0..8 {
             let (own, other) = (shape.at(p), self.shapes[other].at(p));
             let ([a, b], [c, d]) = (own.gradient, other.gradient);
-            let det = a * d - b * c;
-            let step =
-                [(own.value * d - other.value * b) / det, (other.value * a - own.value * c) / det];
+            let determinant = a * d - b * c;
+            let step = [
+                (own.value * d - other.value * b) / determinant,
+                (other.value * a - own.value * c) / determinant,
+            ];
             p = minus(p, step);
             if norm(step) <= 1e-17 * self.size {
                 break;
             }
         }
-        let (way, chord) = (minus(b, a), norm(minus(b, a)));
-        let part = dot(minus(p, a), way) / (chord * chord);
-        if norm(minus(p, on_chord)) < BULGE * chord && (0.0..=1.0).contains(&part) {
+        let (edge_vector, chord) = (minus(b, a), norm(minus(b, a)));
+        let part = dot(minus(p, a), edge_vector) / (chord * chord);
+        if norm(minus(p, on_chord)) < MAX_SAGITTA_IN_CHORDS * chord && (0.0..=1.0).contains(&part) {
             return p;
         }
         // Newton's method found another crossing of the two curves. Where they hardly cross at all, the point
@@ -297,8 +312,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let below = shape.below(a);
         for _ in 0..50 {
             let middle = (low + high) / 2.0;
-            let Some(here) = along.bend(a, b, middle) else { return on_chord };
-            if shape.below(here) == below { low = middle } else { high = middle }
+            let Some(value) = along.bend(a, b, middle) else { return on_chord };
+            if shape.below(value) == below { low = middle } else { high = middle }
         }
         along.bend(a, b, low).unwrap_or(on_chord)
     }
@@ -306,56 +321,56 @@ impl<'a, 'g> Cutter<'a, 'g> {
     /// Returns the point of the curve on the normal of a chord at a parameter of it.
     fn bend(&self, a: Point, b: Point, part: f64) -> Option<Point> {
         let shape = self.shape();
-        let across = [-(b[1] - a[1]), b[0] - a[0]];
+        let normal = [-(b[1] - a[1]), b[0] - a[0]];
         let from = between(a, b, part);
-        let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
+        let point_at = |s: f64| [from[0] + s * normal[0], from[1] + s * normal[1]];
         if matches!(shape, CurveFunction::Conic { .. }) {
-            let [v0, slope, bend] = shape.course(from, at(1.0));
+            let [v0, slope, bend] = shape.quadratic_along(from, point_at(1.0));
             // The root nearer to the chord, in the form that does not cancel.
             let root = (slope * slope - 4.0 * bend * v0).sqrt();
             let s = -2.0 * v0 / (slope + root.copysign(slope));
-            return (s.abs() < 4.0 * BULGE).then_some(at(s));
+            return (s.abs() < 4.0 * MAX_SAGITTA_IN_CHORDS).then_some(point_at(s));
         }
         // Secant steps along the chord's normal.
         let (mut s0, mut s1) = (0.0, 0.05);
-        let (mut v0, mut v1) = (shape.value(at(s0)), shape.value(at(s1)));
+        let (mut v0, mut v1) = (shape.value(point_at(s0)), shape.value(point_at(s1)));
         for _ in 0..12 {
             if v1 == v0 {
                 break;
             }
             let next = s1 - v1 * (s1 - s0) / (v1 - v0);
             (s0, v0) = (s1, v1);
-            (s1, v1) = (next, shape.value(at(next)));
+            (s1, v1) = (next, shape.value(point_at(next)));
         }
-        (s1.abs() < 4.0 * BULGE).then_some(at(s1))
+        (s1.abs() < 4.0 * MAX_SAGITTA_IN_CHORDS).then_some(point_at(s1))
     }
 }
 
 /// Returns whether a point is within this distance of the line segment between two others.
-pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], close: f64) -> bool {
-    let (way, off) = (minus(b, a), minus(p, a));
-    let length = norm(way);
-    let along = (way[0] * off[0] + way[1] * off[1]) / length;
-    cross(way, off).abs() / length < close && (0.0..=length).contains(&along)
+pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], tolerance: f64) -> bool {
+    let (chord_vector, off) = (minus(b, a), minus(p, a));
+    let length = norm(chord_vector);
+    let along = (chord_vector[0] * off[0] + chord_vector[1] * off[1]) / length;
+    cross(chord_vector, off).abs() / length < tolerance && (0.0..=length).contains(&along)
 }
 
 /// Returns whether all vertices lie on one line, up to rounding.
 fn is_thin(vertices: &[Point], size: f64) -> bool {
     let Some(&first) = vertices.first() else { return true };
-    let far = |a: Point| {
+    let farthest_from = |a: Point| {
         let (mut most, mut farthest) = (0.0, a);
         for b in vertices {
-            let away = minus(*b, a);
-            let square = away[0] * away[0] + away[1] * away[1];
+            let offset = minus(*b, a);
+            let square = offset[0] * offset[0] + offset[1] * offset[1];
             if square > most {
                 (most, farthest) = (square, *b);
             }
         }
         farthest
     };
-    let last = far(first);
-    let way = minus(last, far(last));
+    let last = farthest_from(first);
+    let extent = minus(last, farthest_from(last));
     // Points that coincide have no direction, and are thin.
-    let least = ON * size * norm(way);
-    !vertices.iter().any(|p| cross(way, minus(*p, last)).abs() > least)
+    let min_width = ON_CURVE_FRACTION * size * norm(extent);
+    !vertices.iter().any(|p| cross(extent, minus(*p, last)).abs() > min_width)
 }

@@ -12,7 +12,7 @@ pub(crate) type ExactPoint = [Number; 2];
 pub(crate) type Point = [f64; 2];
 
 /// The sine of the angle below which two directions count as tangent.
-pub(crate) const TANGENT: f64 = 1e-9;
+pub(crate) const TANGENT_SINE: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ struct Flat {
     from: Point,
     to: Point,
     /// The unit direction of travel of a line.
-    along: Point,
+    direction: Point,
     /// The centre, radius and convexity of an arc.
     circle: Option<(Point, f64, bool)>,
 }
@@ -51,12 +51,12 @@ impl Flat {
         let [from, to] = [from, to].map(doubles);
         let circle =
             circle.map(|circle| (doubles(&circle.centre), circle.radius.to_f64(), circle.convex));
-        Flat { from, to, along: unit(minus(to, from)), circle }
+        Flat { from, to, direction: unit(minus(to, from)), circle }
     }
 }
 
-pub(crate) fn doubles(place: &ExactPoint) -> Point {
-    [place[0].to_f64(), place[1].to_f64()]
+pub(crate) fn doubles(point: &ExactPoint) -> Point {
+    [point[0].to_f64(), point[1].to_f64()]
 }
 
 pub(crate) fn minus(a: Point, b: Point) -> Point {
@@ -138,7 +138,7 @@ impl Segment {
     /// Returns the unit normal into the material at a point of the segment's line or circle.
     pub(crate) fn inward(&self, p: Point) -> Point {
         match self.flat.circle {
-            None => [-self.flat.along[1], self.flat.along[0]],
+            None => [-self.flat.direction[1], self.flat.direction[0]],
             Some((centre, _, convex)) => {
                 unit(if convex { minus(centre, p) } else { minus(p, centre) })
             }
@@ -147,7 +147,7 @@ impl Segment {
 
     /// Returns the unit direction of travel at its start or end.
     pub(crate) fn tangent(&self, at_end: bool) -> Point {
-        let Some((centre, _, convex)) = self.flat.circle else { return self.flat.along };
+        let Some((centre, _, convex)) = self.flat.circle else { return self.flat.direction };
         let out = unit(minus(self.ends()[usize::from(at_end)], centre));
         if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
     }
@@ -156,7 +156,7 @@ impl Segment {
     /// material's side.
     pub(crate) fn signed(&self, p: Point) -> f64 {
         match self.flat.circle {
-            None => cross(self.flat.along, minus(p, self.flat.from)),
+            None => cross(self.flat.direction, minus(p, self.flat.from)),
             Some((centre, radius, convex)) => {
                 let out = norm(minus(p, centre));
                 if convex { radius - out } else { out - radius }
@@ -165,7 +165,7 @@ impl Segment {
     }
 
     /// Returns the distance of a point from the segment.
-    pub(crate) fn away(&self, p: Point) -> f64 {
+    pub(crate) fn distance_to(&self, p: Point) -> f64 {
         let [before, after] = self.sector(p);
         let [from, to] = self.ends().map(|end| norm(minus(p, end)));
         if before < 0.0 || after < 0.0 { from.min(to) } else { self.signed(p).abs() }
@@ -176,7 +176,9 @@ impl Segment {
     pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
         let [from, to] = self.ends();
         match self.flat.circle {
-            None => [dot(self.flat.along, minus(p, from)), dot(self.flat.along, minus(to, p))],
+            None => {
+                [dot(self.flat.direction, minus(p, from)), dot(self.flat.direction, minus(to, p))]
+            }
             Some((centre, radius, convex)) => {
                 let (a, b, q) = (minus(from, centre), minus(to, centre), minus(p, centre));
                 let sides = [cross(a, q) / radius, cross(q, b) / radius];
@@ -213,15 +215,15 @@ impl Segment {
                 Some([linear(graph, [tx, tz], &self.from)?, linear(graph, back, &self.to)?])
             }
             Some(circle) => {
-                let radial = |place: &ExactPoint| -> Option<[Number; 2]> {
-                    let [d, z] = [0, 1].map(|k| &place[k] - &circle.centre[k]);
+                let radial = |point: &ExactPoint| -> Option<[Number; 2]> {
+                    let [d, z] = [0, 1].map(|k| &point[k] - &circle.centre[k]);
                     Some([d.over(&circle.radius)?, z.over(&circle.radius)?])
                 };
                 let ([ad, az], [bd, bz]) = (radial(&self.from)?, radial(&self.to)?);
                 // cross(a, q) = a_d q_z - a_z q_d
                 let (first, last) = ([-&az, ad], [bz, -&bd]);
-                let turn = |way: [Number; 2]| {
-                    if circle.convex { way } else { way.map(|part| -&part) }
+                let turn = |direction: [Number; 2]| {
+                    if circle.convex { direction } else { direction.map(|part| -&part) }
                 };
                 Some([
                     linear(graph, turn(first), &circle.centre)?,
@@ -244,23 +246,24 @@ pub(crate) fn unit_between(from: &ExactPoint, to: &ExactPoint) -> Option<[Number
     Some([d.over(&length)?, z.over(&length)?])
 }
 
-/// Returns `way · (p - from)`, computed from the difference, so that its rounding error is proportional to
+/// Returns `direction · (p - from)`, computed from the difference, so that its rounding error is proportional to
 /// the distance from `from`.
-pub(crate) fn anchored(graph: &mut Graph, way: [Number; 2], from: &ExactPoint) -> Id {
+pub(crate) fn anchored(graph: &mut Graph, direction: [Number; 2], from: &ExactPoint) -> Id {
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let [from_d, from_z] = from.clone().map(|part| graph.number(part));
-    let [off_d, off_z] = [graph.sub(d, from_d), graph.sub(z, from_z)];
-    let [way_d, way_z] = way.map(|part| graph.number(part));
-    let [d, z] = [graph.mul(way_d, off_d), graph.mul(way_z, off_z)];
+    let [offset_d, offset_z] = [graph.sub(d, from_d), graph.sub(z, from_z)];
+    let [way_d, way_z] = direction.map(|part| graph.number(part));
+    let [d, z] = [graph.mul(way_d, offset_d), graph.mul(way_z, offset_z)];
     graph.add(d, z)
 }
 
 /// Returns the same with its constants combined.
-pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &ExactPoint) -> Option<Id> {
-    let constant = -&(&(&way[0] * &from[0]) + &(&way[1] * &from[1]));
+pub(crate) fn linear(graph: &mut Graph, direction: [Number; 2], from: &ExactPoint) -> Option<Id> {
+    let constant = -&(&(&direction[0] * &from[0]) + &(&direction[1] * &from[1]));
     // A value that cancels in 256 bits is 0.
-    let tidy = |value: Number| if value.to_f64().abs() < 1e-60 { Number::int(0) } else { value };
-    let [wd, wz] = way.map(tidy);
+    let without_residue =
+        |value: Number| if value.to_f64().abs() < 1e-60 { Number::int(0) } else { value };
+    let [wd, wz] = direction.map(without_residue);
     let (d, z) = (graph.coord(Coord::D), graph.coord(Coord::Z));
     let (wd, wz, constant) = (graph.number(wd), graph.number(wz), graph.number(constant));
     let (d, z) = (graph.mul(wd, d), graph.mul(wz, z));
@@ -269,30 +272,30 @@ pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &ExactPoint) -> 
 }
 
 /// Returns the squared distance from a point.
-pub(crate) fn squared(graph: &mut Graph, place: &ExactPoint) -> Id {
-    let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+pub(crate) fn squared_distance(graph: &mut Graph, point: &ExactPoint) -> Id {
+    let coordinates = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let squares = [0, 1].map(|k| {
-        let there = graph.number(place[k].clone());
-        let part = graph.sub(here[k], there);
+        let constant = graph.number(point[k].clone());
+        let part = graph.sub(coordinates[k], constant);
         graph.mul(part, part)
     });
     graph.add(squares[0], squares[1])
 }
 
 /// Returns the distance from a point.
-pub(crate) fn distance(graph: &mut Graph, place: &ExactPoint) -> Option<Id> {
-    let square = squared(graph, place);
+pub(crate) fn distance(graph: &mut Graph, point: &ExactPoint) -> Option<Id> {
+    let square = squared_distance(graph, point);
     graph.sqrt(square)
 }
 
 /// Returns the sine of the turn from one direction to the next: positive to the left, 0 if they are tangent.
 pub(crate) fn turn(incoming: Point, outgoing: Point) -> f64 {
     let sine = cross(incoming, outgoing);
-    if sine.abs() < TANGENT && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
+    if sine.abs() < TANGENT_SINE && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
 }
 
 /// Returns points along a segment, including its ends.
-pub(crate) fn along(segment: &Segment) -> Vec<Point> {
+pub(crate) fn sample_points(segment: &Segment) -> Vec<Point> {
     let [from, to] = segment.ends();
     let Some((centre, ..)) = segment.flat.circle else { return vec![from, to] };
     let (a, angle) = (minus(from, centre), segment.angles()[1]);
@@ -310,26 +313,26 @@ pub(crate) fn along(segment: &Segment) -> Vec<Point> {
 }
 
 /// Returns points on a segment, each with the unit normal into the material.
-pub(crate) fn stations(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
+pub(crate) fn points_with_normals(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
     let [from, to] = segment.ends();
     let [start, turn] = segment.angles();
     (0..count)
         .map(|k| {
-            let part = (k as f64 + 0.5) / count as f64;
-            let at = match segment.flat.circle {
-                None => [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])),
+            let fraction = (k as f64 + 0.5) / count as f64;
+            let point = match segment.flat.circle {
+                None => [0, 1].map(|axis| from[axis] + fraction * (to[axis] - from[axis])),
                 Some((centre, radius, _)) => {
-                    let (sin, cos) = (start + part * turn).sin_cos();
+                    let (sin, cos) = (start + fraction * turn).sin_cos();
                     [centre[0] + radius * cos, centre[1] + radius * sin]
                 }
             };
-            [at, segment.inward(at)]
+            [point, segment.inward(point)]
         })
         .collect()
 }
 
 /// Returns the bounding box of an outline from its ends and the extreme points of its arcs.
-pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
+pub(crate) fn bounding_box(outline: &[Segment]) -> [Point; 2] {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let mut widen = |p: Point| {
         for k in 0..2 {
@@ -340,8 +343,8 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     for segment in outline {
         segment.ends().into_iter().for_each(&mut widen);
         if let Some((centre, radius, _)) = segment.flat.circle {
-            for way in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
-                let p = [centre[0] + radius * way[0], centre[1] + radius * way[1]];
+            for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                let p = [centre[0] + radius * direction[0], centre[1] + radius * direction[1]];
                 if segment.sector(p).iter().all(|side| *side >= 0.0) {
                     widen(p);
                 }
@@ -353,13 +356,13 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
 
 /// Returns the location of the segment that is nearest to a point.
 pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
-    let nearest = outline.iter().min_by(|a, b| a.away(p).total_cmp(&b.away(p)));
+    let nearest = outline.iter().min_by(|a, b| a.distance_to(p).total_cmp(&b.distance_to(p)));
     nearest.map(|segment| segment.span)
 }
 
 /// Returns the largest radius of an outline between two heights, rounded up unless it is that of an end.
 pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
-    let up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);
+    let rounded_up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);
     let mut widest = 0.0f64;
     for segment in outline {
         for [d, z] in segment.ends() {
@@ -372,25 +375,26 @@ pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
             None => {
                 for z in [low, high] {
                     if (z0.min(z1)..=z0.max(z1)).contains(&z) && z0 != z1 {
-                        widest = widest.max(up(d0 + (d1 - d0) * ((z - z0) / (z1 - z0))));
+                        widest = widest.max(rounded_up(d0 + (d1 - d0) * ((z - z0) / (z1 - z0))));
                     }
                 }
             }
             Some((centre, radius, _)) => {
-                let half = |z: f64| (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
-                let mut offer = |z: f64, d: f64| {
+                let half_chord =
+                    |z: f64| (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
+                let mut include_point = |z: f64, d: f64| {
                     if segment.sector([d, z]).iter().all(|side| *side >= -1e-12 * radius) {
-                        widest = widest.max(up(d));
+                        widest = widest.max(rounded_up(d));
                     }
                 };
                 for z in [low, high] {
                     if (z - centre[1]).abs() <= radius {
-                        offer(z, centre[0] + half(z));
-                        offer(z, centre[0] - half(z));
+                        include_point(z, centre[0] + half_chord(z));
+                        include_point(z, centre[0] - half_chord(z));
                     }
                 }
                 if (low..=high).contains(&centre[1]) {
-                    offer(centre[1], centre[0] + radius);
+                    include_point(centre[1], centre[0] + radius);
                 }
             }
         }

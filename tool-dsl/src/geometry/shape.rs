@@ -6,7 +6,7 @@ use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
 
 /// The distance below which a point lies on a curve, relative to the section's size.
-pub(crate) const ON: f64 = 1e-10;
+pub(crate) const ON_CURVE_FRACTION: f64 = 1e-10;
 /// The rounding error of a polynomial's value, relative to the sum of the absolute values of its terms.
 const ROUNDING: f64 = 2e-14;
 
@@ -75,7 +75,7 @@ impl<'g> CurveFunction<'g> {
                     evaluator.set(At::meridian(d, z));
                     evaluator.get(*id)
                 };
-                let here = value(p[0], p[1]);
+                let value_here = value(p[0], p[1]);
                 let step = 1e-6 * (norm(p) + 1e-3);
                 let gradient = [0, 1].map(|k| {
                     let (mut a, mut b) = (p, p);
@@ -83,7 +83,7 @@ impl<'g> CurveFunction<'g> {
                     b[k] += step;
                     (value(b[0], b[1]) - value(a[0], a[1])) / (2.0 * step)
                 });
-                Value { value: here, gradient, terms: norm(p) * norm(gradient) }
+                Value { value: value_here, gradient, terms: norm(p) * norm(gradient) }
             }
         }
     }
@@ -92,7 +92,9 @@ impl<'g> CurveFunction<'g> {
     /// tolerance.
     pub(crate) fn side(&self, p: Point, size: f64) -> i8 {
         let Value { value, gradient, terms } = self.at(p);
-        if value.abs() <= ON * size * norm(gradient) || value.abs() <= ROUNDING * terms {
+        if value.abs() <= ON_CURVE_FRACTION * size * norm(gradient)
+            || value.abs() <= ROUNDING * terms
+        {
             return 0;
         }
         if value < 0.0 { -1 } else { 1 }
@@ -117,9 +119,9 @@ impl<'g> CurveFunction<'g> {
         let CurveFunction::Conic { factors: c, .. } = self else { return 0 };
         let Value { value, gradient: [a, b], terms } = self.at(middle);
         let [u, v] = half;
-        let most = a.abs() * u + b.abs() * v;
-        let most = most + c[3].abs() * u * u + c[4].abs() * u * v + c[5].abs() * v * v;
-        if value.abs() <= 1.001 * most + 2.0 * ROUNDING * terms {
+        let max_change = a.abs() * u + b.abs() * v;
+        let max_change = max_change + c[3].abs() * u * u + c[4].abs() * u * v + c[5].abs() * v * v;
+        if value.abs() <= 1.001 * max_change + 2.0 * ROUNDING * terms {
             return 0;
         }
         if value < 0.0 { -1 } else { 1 }
@@ -127,7 +129,7 @@ impl<'g> CurveFunction<'g> {
 
     /// Returns the coefficients of `v0 + slope t + bend t²`, the value along the segment between two points
     /// for t from 0 to 1. They are exact for a conic and approximate for other curves.
-    pub(crate) fn course(&self, a: Point, b: Point) -> [f64; 3] {
+    pub(crate) fn quadratic_along(&self, a: Point, b: Point) -> [f64; 3] {
         let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
         [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
     }
@@ -135,7 +137,7 @@ impl<'g> CurveFunction<'g> {
     /// Returns the parameter of the zero between two points on different sides.
     pub(crate) fn zero_between(&self, a: Point, b: Point) -> f64 {
         if matches!(self, CurveFunction::Conic { .. }) {
-            let [v0, slope, bend] = self.course(a, b);
+            let [v0, slope, bend] = self.quadratic_along(a, b);
             let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
             let q = -(slope + root.copysign(slope)) / 2.0;
             if let Some(t) = [v0 / q, q / bend].into_iter().find(|t| (0.0..=1.0).contains(t)) {
@@ -161,8 +163,8 @@ pub(crate) fn between(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }
 
-fn add(factors: &mut [f64; 6], more: &[(usize, f64)]) {
-    for (place, value) in more {
-        factors[*place] += value;
+fn add(factors: &mut [f64; 6], terms: &[(usize, f64)]) {
+    for (index, value) in terms {
+        factors[*index] += value;
     }
 }

@@ -60,10 +60,10 @@ impl Tape {
         registers: &mut Vec<Lanes>,
         results: &mut [Lanes],
     ) {
-        let wanted = results.len().min(self.outputs.len());
-        let Some((_, end)) = self.outputs[..wanted].last() else { return };
+        let output_count = results.len().min(self.outputs.len());
+        let Some((_, end)) = self.outputs[..output_count].last() else { return };
         self.reserve(registers);
-        let count = whole(count);
+        let count = padded_lanes(count);
         for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);
             if let Some(result) = rest.first_mut() {
@@ -77,7 +77,7 @@ impl Tape {
 }
 
 /// Rounds up to a number of lanes that fills vectors.
-pub(super) fn whole(count: usize) -> usize {
+pub(super) fn padded_lanes(count: usize) -> usize {
     count.next_multiple_of(8).min(BLOCK)
 }
 

@@ -1,6 +1,6 @@
 //! Evaluation of the plan for one point at a time.
 
-use super::tape::{perform as block, whole};
+use super::tape::{padded_lanes, perform as block};
 use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot};
 use crate::checked::CheckedTool;
 use crate::expr::{Coord, Id};
@@ -118,7 +118,7 @@ pub struct Registers {
     done: Vec<u32>,
     now: u32,
     /// Forks of the plan still to visit, with the lanes that reach them.
-    open: Vec<(usize, u64)>,
+    pending: Vec<(usize, u64)>,
 }
 
 impl PlanWalk {
@@ -155,7 +155,7 @@ impl PlanWalk {
     pub fn reserve_block(&self, registers: &mut Registers) {
         registers.start(self.operations.len());
         // The walk visits each fork at most once per block.
-        registers.open.reserve(self.forks.len());
+        registers.pending.reserve(self.forks.len());
     }
 
     /// Writes the first `results.len()` outputs at a point. Outside, only the owner is meaningful. The point
@@ -183,7 +183,7 @@ impl PlanWalk {
         let Some((first, rest)) = results.split_first_mut() else { return };
         *first = V::of(owner.map_or(-1.0, |owner| owner as f64));
         let Some(owner) = owner else { return };
-        self.felt_in(owner, point, length, scratch, rest);
+        self.evaluate_region(owner, point, length, scratch, rest);
     }
 
     /// Visits every possible owner, with its depth, of a point whose coordinates are known to lie between
@@ -197,8 +197,8 @@ impl PlanWalk {
         mut visit: impl FnMut(Option<(usize, V)>, Option<(V, bool)>),
     ) {
         scratch.start(self.operations.len());
-        let mut open = vec![(0, None)];
-        while let Some((at, test)) = open.pop() {
+        let mut pending = vec![(0, None)];
+        while let Some((at, test)) = pending.pop() {
             match &self.forks[at] {
                 PlanNode::Owner(owner) => {
                     let depth = |owner: usize| &self.regions[owner][0];
@@ -210,11 +210,11 @@ impl PlanWalk {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
                     match below(value, *strict) {
                         [true, true] => {
-                            open.push((*above, test.or(Some((value, false)))));
-                            open.push((at + 1, test.or(Some((value, true)))));
+                            pending.push((*above, test.or(Some((value, false)))));
+                            pending.push((at + 1, test.or(Some((value, true)))));
                         }
-                        [true, false] => open.push((at + 1, test)),
-                        [false, _] => open.push((*above, test)),
+                        [true, false] => pending.push((at + 1, test)),
+                        [false, _] => pending.push((*above, test)),
                     }
                 }
             }
@@ -233,16 +233,16 @@ impl PlanWalk {
         owners: &mut Lanes,
     ) {
         registers.start(self.operations.len());
-        let lanes = whole(count);
-        let Registers { values, done, now, open } = registers;
-        open.clear();
-        open.push((0, u64::MAX >> (64 - lanes)));
-        while let Some((at, here)) = open.pop() {
+        let lanes = padded_lanes(count);
+        let Registers { values, done, now, pending } = registers;
+        pending.clear();
+        pending.push((0, u64::MAX >> (64 - lanes)));
+        while let Some((at, lane_mask)) = pending.pop() {
             match &self.forks[at] {
                 PlanNode::Owner(owner) => {
                     let owner = owner.map_or(-1.0, |owner| owner as f64);
                     for (lane, result) in owners[..lanes].iter_mut().enumerate() {
-                        if here >> lane & 1 == 1 {
+                        if lane_mask >> lane & 1 == 1 {
                             *result = owner;
                         }
                     }
@@ -263,9 +263,11 @@ impl PlanWalk {
                         let is = if *strict { *value < 0.0 } else { *value <= 0.0 };
                         below |= u64::from(is) << lane;
                     }
-                    for (place, lanes) in [(*above, here & !below), (at + 1, here & below)] {
+                    for (place, lanes) in
+                        [(*above, lane_mask & !below), (at + 1, lane_mask & below)]
+                    {
                         if lanes != 0 {
-                            open.push((place, lanes));
+                            pending.push((place, lanes));
                         }
                     }
                 }
@@ -284,10 +286,10 @@ impl PlanWalk {
         results: &mut [f64],
     ) {
         scratch.start(self.operations.len());
-        self.felt_in(owner, point, length, scratch, results);
+        self.evaluate_region(owner, point, length, scratch, results);
     }
 
-    fn felt_in<V: Value>(
+    fn evaluate_region<V: Value>(
         &self,
         owner: usize,
         point: [V; 3],

@@ -13,23 +13,23 @@ pub(super) enum Fault {
 
 impl Fault {
     /// Returns the first operation, from the operands up, whose result is not finite.
-    pub(super) fn of(graph: &Graph, at: &Evaluator<'_>, mut id: Id) -> Fault {
-        let finite = |id: &Id| at.get(*id).is_finite();
+    pub(super) fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
+        let is_finite = |id: &Id| evaluator.get(*id).is_finite();
         loop {
             let node = graph.node(id);
             let operands: Vec<Id> = match *node {
                 Node::Select { low, high, then, other } => {
-                    let [low, high] = [low, high].map(|id| at.get(id));
+                    let [low, high] = [low, high].map(|id| evaluator.get(id));
                     vec![if low <= high { then } else { other }]
                 }
                 _ => node.operands().collect(),
             };
-            match operands.iter().find(|id| !finite(id)) {
+            match operands.iter().find(|id| !is_finite(id)) {
                 Some(operand) => id = *operand,
                 None => {
                     return match *node {
                         Node::Sqrt(_) => Fault::Root,
-                        Node::Div(_, by) if at.get(by) == 0.0 => Fault::Quotient,
+                        Node::Div(_, by) if evaluator.get(by) == 0.0 => Fault::Quotient,
                         _ => Fault::Size,
                     };
                 }

@@ -6,34 +6,37 @@ use super::{Linter, norm};
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
 use crate::expr::Id;
-use crate::geometry::outline::{Point, Segment, stations};
+use crate::geometry::outline::{Point, Segment, points_with_normals};
 use crate::source::Span;
 
 /// The number of points along a segment of a profile.
-const STATIONS: usize = 8;
+const POINTS_PER_SEGMENT: usize = 8;
 /// The number of steps between points on the axis.
-const ON_AXIS: i32 = 200;
+const AXIS_STEPS: i32 = 200;
 /// The distances inside the surface at which values are compared, in sizes of the tool.
-const NEAR: f64 = 1e-10;
-const FAR: f64 = 1e-5;
+const NEAR_SURFACE_FRACTION: f64 = 1e-10;
+const INSIDE_FRACTION: f64 = 1e-5;
 /// The ratio of the values near the surface and farther in from which a value is reported to grow without
 /// bound. For `1/sqrt(depth)` it is 316, and for a logarithm 2.
-const GROWN: f64 = 100.0;
+const MIN_GROWTH_RATIO: f64 = 100.0;
 /// The ratio by which such a value must also exceed those at all samples, so that a value that passes through
 /// 0 is not reported.
-const BEYOND: f64 = 1000.0;
+const MIN_RATIO_TO_SAMPLES: f64 = 1000.0;
 
 /// Returns points on an outline, in the half plane's coordinates, each with a vector into the material: along
 /// its segments and at the corners between them.
-pub(super) fn beside(outline: &[Segment]) -> Vec<[Point; 2]> {
-    let each: Vec<Vec<[Point; 2]>> =
-        outline.iter().map(|segment| stations(segment, STATIONS)).collect();
-    let corners = outline.iter().zip(each.windows(2)).filter_map(|(segment, beside)| {
-        let [[_, one], [_, other]] = [beside[0].last()?, beside[1].first()?];
-        Some([segment.ends()[1], [one[0] + other[0], one[1] + other[1]]])
-    });
+pub(super) fn inward_directions(outline: &[Segment]) -> Vec<[Point; 2]> {
+    let points_by_segment: Vec<Vec<[Point; 2]>> =
+        outline.iter().map(|segment| points_with_normals(segment, POINTS_PER_SEGMENT)).collect();
+    let corners = outline.iter().zip(points_by_segment.windows(2)).filter_map(
+        |(segment, inward_directions)| {
+            let [[_, one], [_, other]] =
+                [inward_directions[0].last()?, inward_directions[1].first()?];
+            Some([segment.ends()[1], [one[0] + other[0], one[1] + other[1]]])
+        },
+    );
     let corners: Vec<[Point; 2]> = corners.collect();
-    each.into_iter().flatten().chain(corners).collect()
+    points_by_segment.into_iter().flatten().chain(corners).collect()
 }
 
 impl Linter<'_> {
@@ -56,25 +59,29 @@ impl Linter<'_> {
     }
 
     /// Reports laws that have no value just inside a point of the surface, or that grow without bound toward
-    /// it. `way` points into the material and has any nonzero length.
-    pub(super) fn toward_surface(&mut self, at: [f64; 3], way: [f64; 3]) {
-        let length = norm(way);
-        let inside = |part: f64| [0, 1, 2].map(|k| at[k] + way[k] / length * part * self.size);
-        let [near, far] = [NEAR, FAR].map(inside);
+    /// it. `inward` points into the material and has any nonzero length.
+    pub(super) fn check_toward_surface(&mut self, surface_point: [f64; 3], inward: [f64; 3]) {
+        let length = norm(inward);
+        let inside = |fraction: f64| {
+            [0, 1, 2].map(|k| surface_point[k] + inward[k] / length * fraction * self.size)
+        };
+        let [near, far] = [NEAR_SURFACE_FRACTION, INSIDE_FRACTION].map(inside);
         let Some(owner) = self.owner(near) else { return };
-        self.without_value(owner, near);
+        self.report_missing_values(owner, near);
         let values = self.laws(owner).map(|(_, id, _)| self.evaluator.get(id).abs());
         if self.owner(far) != Some(owner) {
             return;
         }
         for (law, (quantity, id, span)) in self.laws(owner).into_iter().enumerate() {
             let (near, far) = (values[law], self.evaluator.get(id).abs());
-            if near > GROWN * far && near > BEYOND * self.largest[owner][law] {
+            if near > MIN_GROWTH_RATIO * far
+                && near > MIN_RATIO_TO_SAMPLES * self.largest[owner][law]
+            {
                 let kind = CheckKind::GrowsUnbounded {
                     quantity,
                     region: self.model.regions[owner].name.clone(),
                     value: FormattedNumber(near),
-                    place: self.place(at),
+                    place: self.format_point(surface_point),
                 };
                 self.report(Diagnostic::new(span, kind));
             }
@@ -83,27 +90,28 @@ impl Linter<'_> {
 
     /// Reports laws that have no value on the axis.
     pub(super) fn on_axis(&mut self, extent: &Extent) {
-        for step in 0..=ON_AXIS {
-            let part = f64::from(step) / f64::from(ON_AXIS);
-            let point = [0.0, 0.0, extent.low + part * (extent.high - extent.low)];
+        for step in 0..=AXIS_STEPS {
+            let fraction = f64::from(step) / f64::from(AXIS_STEPS);
+            let point = [0.0, 0.0, extent.low + fraction * (extent.high - extent.low)];
             if let Some(owner) = self.owner(point) {
-                self.without_value(owner, point);
+                self.report_missing_values(owner, point);
             }
         }
     }
 
     /// Reports laws that have no value at the current point.
-    fn without_value(&mut self, owner: usize, point: [f64; 3]) {
+    fn report_missing_values(&mut self, owner: usize, point: [f64; 3]) {
         for (quantity, id, span) in self.laws(owner) {
             if !self.evaluator.get(id).is_finite() {
-                let diagnostic = self.no_number(owner, (quantity, id, span), self.place(point));
+                let diagnostic =
+                    self.not_finite(owner, (quantity, id, span), self.format_point(point));
                 self.report(diagnostic);
             }
         }
     }
 
     /// Returns the diagnostic of a law that is not a finite number at the current point.
-    pub(super) fn no_number(
+    pub(super) fn not_finite(
         &self,
         owner: usize,
         (quantity, id, span): (&'static str, Id, Span),
@@ -123,7 +131,7 @@ mod tests {
 
     /// Returns the messages for tools with a law: a profile with it as magnitude, one with it as niceness,
     /// and one of regions written by hand.
-    fn said(law: &str) -> [Vec<String>; 3] {
+    fn messages(law: &str) -> [Vec<String>; 3] {
         let profile = "profile { start (0, 0); line to (2, 0) as face cutting; arc to (3, 1) center (2, 1) as corner
                        cutting; line to (3, 20) as flute cutting; line to (0, 20) as top; }";
         let by_hand = "d <= 3, 0 <= z <= 3 { depth: min(z, 3 - d, 3 - z)";
@@ -140,23 +148,23 @@ mod tests {
     }
 
     #[test]
-    fn laws_that_have_no_value_at_the_surface_are_reported() {
+    fn laws_without_a_value_at_the_surface_are_reported() {
         let unbounded = "grows without bound toward the surface";
-        for (law, words) in [
+        for (law, expected) in [
             ("1/depth", unbounded),
             ("1/sqrt(depth)", unbounded),
             ("1/z", unbounded),
             ("sqrt(depth - 0.001)", "square root of a negative number"),
             ("1/d", "division by zero at (0, "),
         ] {
-            for said in said(law) {
-                assert!(said.iter().any(|message| message.contains(words)), "{law}: {said:?}");
+            for said in messages(law) {
+                assert!(said.iter().any(|message| message.contains(expected)), "{law}: {said:?}");
             }
         }
     }
 
     #[test]
-    fn laws_that_are_steep_or_vanish_at_the_surface_are_not() {
+    fn laws_that_are_steep_or_vanish_at_the_surface_are_accepted() {
         for law in [
             "1/(depth + 0.001)",
             "5*sqrt(depth)",
@@ -165,7 +173,7 @@ mod tests {
             "1/(1 + d)",
             "1000000*depth",
         ] {
-            assert_eq!(said(law).concat(), Vec::<String>::new(), "{law}");
+            assert_eq!(messages(law).concat(), Vec::<String>::new(), "{law}");
         }
     }
 }

@@ -17,32 +17,32 @@ use crate::source::Span;
 use fault::Fault;
 
 /// The number of sample points.
-const POINTS: usize = 12_000;
+const SAMPLES: usize = 12_000;
 /// The number of segments from the inside to the outside along which the surface is sought.
-const CROSSINGS: usize = 1_500;
+const SURFACE_SEGMENTS: usize = 1_500;
 /// The number of columns in which the tool's end is sought, and of steps in each.
 const COLUMNS: i32 = 100;
 /// The number of passes, each with columns ten times closer than the last.
-const FINER: usize = 4;
+const REFINEMENT_PASSES: usize = 4;
 /// The height of the strip, relative to the tool's size, in which a tool's end is also sought just above its
 /// bounding box's lower side.
-const STRIP: f64 = 0.01;
+const STRIP_FRACTION: f64 = 0.01;
 /// The relative size below which lengths are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns diagnostics for curves that are undefined somewhere around the origin, for a tool whose extent is
 /// not known yet.
-pub(crate) fn undefined(model: &Model) -> Vec<Diagnostic> {
+pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     for power in -20..=20 {
         let size = 2f64.powi(power);
-        let around = Extent::of(model.domain.whole(size), size);
-        let mut look = Linter::new(model, &around);
-        for point in spread(model.domain, &around, 50, 0.0) {
-            look.go(point);
-            look.undefined_curves(point);
+        let extent = Extent::of(model.domain.whole(size), size);
+        let mut linter = Linter::new(model, &extent);
+        for point in spread(model.domain, &extent, 50, 0.0) {
+            linter.set_point(point);
+            linter.report_undefined_curves(point);
         }
-        diagnostics = look.found;
+        diagnostics = linter.found;
         if !diagnostics.is_empty() {
             break;
         }
@@ -52,51 +52,51 @@ pub(crate) fn undefined(model: &Model) -> Vec<Diagnostic> {
 
 /// Returns all diagnostics of a tool, at most one per location and severity.
 pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
-    let mut look = Linter::new(model, extent);
+    let mut linter = Linter::new(model, extent);
     if let Some(section) = &model.section {
         // A profile's regions are known to be correct; only the quantities written in the file need checks.
-        look.tip(extent.low, extent);
+        linter.check_tip(extent.low, extent);
         for cell in section.inner.cells(1) {
             for (p, _) in &cell.samples {
                 let point = [p[0], 0.0, p[1]];
-                if let Some(owner) = look.owner(point) {
-                    look.evaluation(owner, point);
+                if let Some(owner) = linter.owner(point) {
+                    linter.check_evaluation(owner, point);
                 }
             }
         }
-        for beside in laws::beside(&section.outline) {
-            let [at, way] = beside.map(|[d, z]| [d, 0.0, z]);
-            look.toward_surface(at, way);
+        for inside_directions in laws::inward_directions(&section.outline) {
+            let [at, direction] = inside_directions.map(|[d, z]| [d, 0.0, z]);
+            linter.check_toward_surface(at, direction);
         }
-        look.on_axis(extent);
-        return look.found;
+        linter.on_axis(extent);
+        return linter.found;
     }
-    look.scale(extent);
+    linter.measure_curves(extent);
     let mut inside = Vec::new();
     let mut outside = Vec::new();
-    for point in spread(model.domain, extent, POINTS, 0.02) {
-        match look.point(point) {
+    for point in spread(model.domain, extent, SAMPLES, 0.02) {
+        match linter.point(point) {
             Some(_) => inside.push(point),
             None => outside.push(point),
         }
     }
     // Where conditions have no value, the tool's end is unknown.
-    if model.domain == Domain::HalfPlane && !look.undefined {
-        let found = look.end(extent);
-        let end = if look.reaches(extent, found) { extent.low } else { found };
-        look.tip(end, extent);
+    if model.domain == Domain::HalfPlane && !linter.undefined {
+        let lowest = linter.lowest_inside(extent);
+        let end = if linter.reaches_lower_side(extent, lowest) { extent.low } else { lowest };
+        linter.check_tip(end, extent);
     }
-    look.idle_regions();
-    if !any_error(&look.found) {
+    linter.report_idle_regions();
+    if !any_error(&linter.found) {
         let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
-        for (a, b) in pairs.take(if outside.is_empty() { 0 } else { CROSSINGS }) {
-            look.crossing(*a, *b);
+        for (a, b) in pairs.take(if outside.is_empty() { 0 } else { SURFACE_SEGMENTS }) {
+            linter.check_crossing(*a, *b);
         }
         if model.domain == Domain::HalfPlane {
-            look.on_axis(extent);
+            linter.on_axis(extent);
         }
     }
-    look.found
+    linter.found
 }
 
 struct Linter<'m> {
@@ -104,10 +104,10 @@ struct Linter<'m> {
     size: f64,
     evaluator: Evaluator<'m>,
     found: Vec<Diagnostic>,
-    wins: Vec<usize>,
+    owned_points: Vec<usize>,
     holds: Vec<usize>,
     /// The owners of points that satisfy this region's conditions too.
-    beaten: Vec<Vec<usize>>,
+    owners_instead: Vec<Vec<usize>>,
     /// True if a curve is undefined somewhere.
     undefined: bool,
     /// The largest absolute value of each curve.
@@ -133,9 +133,9 @@ impl<'m> Linter<'m> {
             size: extent.scale(),
             evaluator: Evaluator::new(&model.graph, roots),
             found: Vec::new(),
-            wins: vec![0; model.regions.len()],
+            owned_points: vec![0; model.regions.len()],
             holds: vec![0; model.regions.len()],
-            beaten: vec![Vec::new(); model.regions.len()],
+            owners_instead: vec![Vec::new(); model.regions.len()],
             undefined: false,
             scales: vec![0.0; model.curves.len()],
             largest: vec![[0.0; 2]; model.regions.len()],
@@ -143,9 +143,9 @@ impl<'m> Linter<'m> {
     }
 
     /// Measures the largest absolute values of the curves.
-    fn scale(&mut self, extent: &Extent) {
+    fn measure_curves(&mut self, extent: &Extent) {
         for point in spread(self.model.domain, extent, 500, 0.02) {
-            self.go(point);
+            self.set_point(point);
             for curve in 0..self.scales.len() {
                 let size = self.value(curve).abs();
                 if size.is_finite() {
@@ -156,14 +156,14 @@ impl<'m> Linter<'m> {
     }
 
     /// Selects a point.
-    fn go(&mut self, [x, y, z]: [f64; 3]) {
+    fn set_point(&mut self, [x, y, z]: [f64; 3]) {
         self.evaluator.set(At::point(x, y, z));
     }
 
-    fn place(&self, [x, y, z]: [f64; 3]) -> String {
+    fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         // A coordinate that is rounding relative to the tool's size is shown as 0.
-        let tidy = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
-        self.model.domain.shown([x, y, self.model.frame.to_file(z)].map(tidy))
+        let without_rounding = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
+        self.model.domain.shown([x, y, self.model.frame.to_file(z)].map(without_rounding))
     }
 
     /// Reports at most one diagnostic per location and severity.
@@ -182,52 +182,56 @@ impl<'m> Linter<'m> {
     }
 
     fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
-        self.go(point);
+        self.set_point(point);
         let value = |curve: CurveIndex| self.value(curve);
         self.model.regions.iter().position(|region| region.inside.holds(&value))
     }
 
     /// Returns the lowest z found inside.
-    fn end(&mut self, extent: &Extent) -> f64 {
-        let mut end = (f64::INFINITY, 0.0);
+    fn lowest_inside(&mut self, extent: &Extent) -> f64 {
+        let mut lowest = (f64::INFINITY, 0.0);
         let steps = (extent.high - extent.low) / f64::from(COLUMNS);
         let at = |step: i32| extent.low + steps * f64::from(step);
         // The first pass covers all columns; the others refine around the one that extends farthest.
         let mut width = extent.radius / f64::from(COLUMNS);
         let mut columns = 0..=COLUMNS;
         let mut from = 0.0;
-        for _ in 0..FINER {
+        for _ in 0..REFINEMENT_PASSES {
             for column in columns {
                 let d: f64 = from + width * f64::from(column);
                 let point = |z: f64| [d.max(0.0), 0.0, z];
                 let inside = (0..=COLUMNS).find(|step| self.owner(point(at(*step))).is_some());
                 let Some(step) = inside else { continue };
-                let (mut good, mut bad) = (at(step), at(step - 1));
+                let (mut inside_z, mut outside_z) = (at(step), at(step - 1));
                 for _ in 0..50 {
-                    let middle = good / 2.0 + bad / 2.0;
-                    if self.owner(point(middle)).is_some() { good = middle } else { bad = middle }
+                    let middle = inside_z / 2.0 + outside_z / 2.0;
+                    if self.owner(point(middle)).is_some() {
+                        inside_z = middle;
+                    } else {
+                        outside_z = middle;
+                    }
                 }
-                if good < end.0 {
-                    end = (good, d);
+                if inside_z < lowest.0 {
+                    lowest = (inside_z, d);
                 }
             }
-            from = end.1;
+            from = lowest.1;
             width /= 10.0;
             columns = -10..=10;
         }
-        end.0
+        lowest.0
     }
 
     /// Returns whether some part that is too small for the columns extends well below the lowest point found,
     /// near the lower side of the bounding box.
-    fn reaches(&mut self, extent: &Extent, found: f64) -> bool {
-        let lowest = Extent { high: extent.low + STRIP * self.size, ..*extent };
-        extent.low < found - STRIP * self.size
-            && spread(self.model.domain, &lowest, POINTS, 0.0).any(|p| self.owner(p).is_some())
+    fn reaches_lower_side(&mut self, extent: &Extent, found: f64) -> bool {
+        let lowest = Extent { high: extent.low + STRIP_FRACTION * self.size, ..*extent };
+        extent.low < found - STRIP_FRACTION * self.size
+            && spread(self.model.domain, &lowest, SAMPLES, 0.0).any(|p| self.owner(p).is_some())
     }
 
     /// Reports a tool whose end is not its tip, at z = 0.
-    fn tip(&mut self, end: f64, extent: &Extent) {
+    fn check_tip(&mut self, end: f64, extent: &Extent) {
         if end.is_finite() && end.abs() > 1e-6 * self.size {
             self.found.push(off_tip(&self.model.frame, [end, extent.high]));
         }
@@ -236,71 +240,79 @@ impl<'m> Linter<'m> {
     /// Checks one point, and returns its owner.
     fn point(&mut self, point: [f64; 3]) -> Option<usize> {
         let owner = self.owner(point);
-        self.undefined_curves(point);
+        self.report_undefined_curves(point);
         let value = |curve: CurveIndex| self.value(curve);
         let claims: Vec<usize> = (0..self.model.regions.len())
             .filter(|r| self.model.regions[*r].inside.holds(&value))
             .collect();
-        let deep = |r: usize| inner(&self.model.regions[r].inside, &value, &self.scales);
+        let is_well_inside =
+            |r: usize| holds_with_margin(&self.model.regions[r].inside, &value, &self.scales);
         let overlap = match claims.as_slice() {
-            [first, second, ..] if deep(*first) && deep(*second) => Some((*first, *second)),
+            [first, second, ..] if is_well_inside(*first) && is_well_inside(*second) => {
+                Some((*first, *second))
+            }
             _ => None,
         };
         for claim in &claims {
             self.holds[*claim] += 1;
-            let by = owner.filter(|owner| owner != claim && !self.beaten[*claim].contains(owner));
-            self.beaten[*claim].extend(by);
+            let by = owner
+                .filter(|owner| owner != claim && !self.owners_instead[*claim].contains(owner));
+            self.owners_instead[*claim].extend(by);
         }
         if let Some((first, second)) = overlap {
             let (a, b) = (&self.model.regions[first], &self.model.regions[second]);
-            let diagnostic = overlapping(&a.name, (&b.name, b.span), self.place(point), a.span);
+            let diagnostic =
+                overlapping(&a.name, (&b.name, b.span), self.format_point(point), a.span);
             self.report(diagnostic);
         }
         let owner = owner?;
-        self.wins[owner] += 1;
-        self.evaluation(owner, point);
+        self.owned_points[owner] += 1;
+        self.check_evaluation(owner, point);
         Some(owner)
     }
 
     /// Reports invalid values at a point.
-    fn evaluation(&mut self, owner: usize, point: [f64; 3]) {
+    fn check_evaluation(&mut self, owner: usize, point: [f64; 3]) {
         let region = &self.model.regions[owner];
         self.measure(owner);
-        let (name, place) = (&region.name, self.place(point));
+        let (name, location) = (&region.name, self.format_point(point));
         let get = |id: Id| self.evaluator.get(id);
-        let said = region.law_spans;
-        let sayings = [
-            ("depth", region.depth, said.depth, self.size * ROUNDING),
-            ("magnitude", region.magnitude, said.magnitude, ROUNDING),
-            ("niceness", region.niceness, said.niceness, f64::INFINITY),
+        let spans = region.law_spans;
+        let laws = [
+            ("depth", region.depth, spans.depth, self.size * ROUNDING),
+            ("magnitude", region.magnitude, spans.magnitude, ROUNDING),
+            ("niceness", region.niceness, spans.niceness, f64::INFINITY),
         ];
-        for (quantity, id, span, slack) in sayings {
+        for (quantity, id, span, slack) in laws {
             let value = get(id);
             let diagnostic = if !value.is_finite() {
-                self.no_number(owner, (quantity, id, span), place)
+                self.not_finite(owner, (quantity, id, span), location)
             } else if value < -slack {
                 let (region, value) = (name.clone(), FormattedNumber(value));
-                Diagnostic::new(span, CheckKind::Negative { quantity, region, value, place })
+                Diagnostic::new(
+                    span,
+                    CheckKind::Negative { quantity, region, value, place: location },
+                )
             } else {
                 continue;
             };
             return self.report(diagnostic);
         }
-        let course = region.raw_direction.0.map(get);
-        if !course.into_iter().all(f64::is_finite) || course == [0.0; 3] {
-            let kind = CheckKind::DirectionVanishes { region: name.clone(), place };
+        let direction = region.raw_direction.0.map(get);
+        if !direction.into_iter().all(f64::is_finite) || direction == [0.0; 3] {
+            let kind = CheckKind::DirectionVanishes { region: name.clone(), place: location };
             return self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
         let [x, y, z] = region.direction.map(get);
-        let off = (x.hypot(y).hypot(z) - 1.0).abs();
-        if off.is_nan() || off > 1e-9 {
-            let kind = CheckKind::DirectionTooLong { region: name.clone(), place };
+        let length_error = (x.hypot(y).hypot(z) - 1.0).abs();
+        if length_error.is_nan() || length_error > 1e-9 {
+            let kind = CheckKind::DirectionTooLong { region: name.clone(), place: location };
             self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
     }
 
     /// Reports curves that have no value, and therefore no side, at a point.
-    fn undefined_curves(&mut self, point: [f64; 3]) {
+    fn report_undefined_curves(&mut self, point: [f64; 3]) {
         for curve in 0..self.model.curves.len() {
             if self.value(curve).is_finite() {
                 continue;
@@ -312,7 +324,7 @@ impl<'m> Linter<'m> {
                 None => Subject::Condition,
             };
             let fault = Fault::of(&self.model.graph, &self.evaluator, *value);
-            let kind = fault.kind(self.place(point), subject);
+            let kind = fault.kind(self.format_point(point), subject);
             self.report(Diagnostic::new(self.reader_of(curve), kind));
         }
     }
@@ -323,14 +335,16 @@ impl<'m> Linter<'m> {
         self.model.regions.iter().find(reads).map_or(self.model.name_span, |region| region.span)
     }
 
-    fn idle_regions(&mut self) {
+    fn report_idle_regions(&mut self) {
         for (index, region) in self.model.regions.iter().enumerate() {
-            if self.wins[index] > 0 {
+            if self.owned_points[index] > 0 {
                 continue;
             }
-            let by: Vec<&Region> =
-                self.beaten[index].iter().map(|other| &self.model.regions[*other]).collect();
-            let diagnostic = match by.as_slice() {
+            let winners: Vec<&Region> = self.owners_instead[index]
+                .iter()
+                .map(|other| &self.model.regions[*other])
+                .collect();
+            let diagnostic = match winners.as_slice() {
                 [first, more @ ..] if self.holds[index] > 2 => {
                     // This error replaces the reports of its overlaps.
                     self.found.retain(|diagnostic| diagnostic.span != region.span);
@@ -338,7 +352,7 @@ impl<'m> Linter<'m> {
                 }
                 _ => {
                     let kind =
-                        CheckKind::NoPointSeen { region: region.name.clone(), points: POINTS };
+                        CheckKind::NoPointSeen { region: region.name.clone(), points: SAMPLES };
                     Diagnostic::new(region.span, kind)
                 }
             };
@@ -347,38 +361,44 @@ impl<'m> Linter<'m> {
     }
 
     /// Checks that depth is 0 where the segment from an inside point to an outside point meets the surface.
-    fn crossing(&mut self, inside: [f64; 3], outside: [f64; 3]) {
-        let (mut good, mut bad) = (0.0, 1.0);
+    fn check_crossing(&mut self, inside: [f64; 3], outside: [f64; 3]) {
+        let (mut inside_fraction, mut outside_fraction) = (0.0, 1.0);
         let at = |t: f64| [0, 1, 2].map(|k| inside[k] + (outside[k] - inside[k]) * t);
         for _ in 0..50 {
-            let middle = (good + bad) / 2.0;
-            if self.owner(at(middle)).is_some() { good = middle } else { bad = middle }
+            let middle = (inside_fraction + outside_fraction) / 2.0;
+            if self.owner(at(middle)).is_some() {
+                inside_fraction = middle;
+            } else {
+                outside_fraction = middle;
+            }
         }
-        let point = at(good);
+        let point = at(inside_fraction);
         let Some(owner) = self.owner(point) else { return };
         let region = &self.model.regions[owner];
         let depth = self.evaluator.get(region.depth);
         if depth.abs() > 1e-6 * self.size {
-            let diagnostic = deep_on_the_surface(region, depth, self.place(point));
+            let diagnostic = deep_on_surface(region, depth, self.format_point(point));
             self.report(diagnostic);
             return;
         }
-        let away = [0, 1, 2].map(|k| outside[k] - inside[k]);
-        let way = norm(away) / self.size;
+        let outward = [0, 1, 2].map(|k| outside[k] - inside[k]);
+        let relative_length = norm(outward) / self.size;
         let mut slope = |step: f64| {
-            let behind = at((good - step / way).max(0.0));
-            let same = self.owner(behind) == Some(owner);
-            same.then(|| self.evaluator.get(region.depth) / (step * self.size))
+            let inner_point = at((inside_fraction - step / relative_length).max(0.0));
+            let is_same_owner = self.owner(inner_point) == Some(owner);
+            is_same_owner.then(|| self.evaluator.get(region.depth) / (step * self.size))
         };
         // The slope of a root grows a hundredfold here; a finite one does not.
         if let (Some(near), Some(far)) = (slope(1e-10), slope(1e-6))
             && near > 10.0 * far.max(100.0)
         {
-            let kind =
-                CheckKind::SteepDepth { region: region.name.clone(), place: self.place(point) };
+            let kind = CheckKind::SteepDepth {
+                region: region.name.clone(),
+                place: self.format_point(point),
+            };
             self.report(Diagnostic::new(region.law_spans.depth, kind));
         }
-        self.toward_surface(point, away.map(|part| -part));
+        self.check_toward_surface(point, outward.map(|part| -part));
     }
 }
 
@@ -387,13 +407,20 @@ fn norm([x, y, z]: [f64; 3]) -> f64 {
 }
 
 /// Returns the error for a nonzero depth on the surface.
-pub(crate) fn deep_on_the_surface(region: &Region, depth: f64, place: String) -> Diagnostic {
+pub(crate) fn deep_on_surface(region: &Region, depth: f64, location: String) -> Diagnostic {
     let (name, depth) = (region.name.clone(), FormattedNumber(depth));
-    Diagnostic::new(region.law_spans.depth, CheckKind::DeepOnSurface { region: name, depth, place })
+    Diagnostic::new(
+        region.law_spans.depth,
+        CheckKind::DeepOnSurface { region: name, depth, place: location },
+    )
 }
 
 /// Returns whether a formula holds with a margin, relative to each curve's largest values.
-fn inner(formula: &Formula, value: &impl Fn(CurveIndex) -> f64, scales: &[f64]) -> bool {
+fn holds_with_margin(
+    formula: &Formula,
+    value: &impl Fn(CurveIndex) -> f64,
+    scales: &[f64],
+) -> bool {
     formula.holds(&|curve| {
         let value = value(curve);
         // A value near 0 is on no side.
@@ -401,12 +428,12 @@ fn inner(formula: &Formula, value: &impl Fn(CurveIndex) -> f64, scales: &[f64]) 
     })
 }
 
-fn mentions(formula: &Formula, wanted: CurveIndex) -> bool {
+fn mentions(formula: &Formula, sought: CurveIndex) -> bool {
     match formula {
         Formula::Const(_) => false,
-        Formula::Atom { curve, .. } => *curve == wanted,
+        Formula::Atom { curve, .. } => *curve == sought,
         Formula::All(parts) | Formula::Any(parts) => {
-            parts.iter().any(|part| mentions(part, wanted))
+            parts.iter().any(|part| mentions(part, sought))
         }
     }
 }

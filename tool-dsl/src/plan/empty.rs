@@ -9,8 +9,8 @@ use crate::formula::{ANY, Signs};
 use crate::model::Model;
 
 /// The largest number of boxes in one proof, in the half plane and in space.
-const BOXES: usize = 96;
-const BOXES_OF_SPACE: usize = 400;
+const MAX_BOXES_IN_HALF_PLANE: usize = 96;
+const MAX_BOXES_IN_SPACE: usize = 400;
 
 /// A prover that combinations of signs are impossible.
 pub(crate) struct EmptinessProver<'m> {
@@ -29,28 +29,28 @@ impl<'m> EmptinessProver<'m> {
     }
 
     /// Returns whether provably no point has these signs.
-    pub(super) fn proved(&mut self, signs: &[Signs]) -> bool {
-        self.linear.judged(signs).unwrap_or_else(|| self.uncovered(signs))
+    pub(super) fn is_empty(&mut self, signs: &[Signs]) -> bool {
+        self.linear.is_contradictory(signs).unwrap_or_else(|| self.is_excluded_by_boxes(signs))
     }
 
     /// Returns whether no box of a cover of the domain can have the signs.
-    fn uncovered(&mut self, signs: &[Signs]) -> bool {
-        let mut open = vec![self.domain.whole(2f64.powi(300))];
-        let mut left = match self.domain {
-            Domain::HalfPlane => BOXES,
-            Domain::Space => BOXES_OF_SPACE,
+    fn is_excluded_by_boxes(&mut self, signs: &[Signs]) -> bool {
+        let mut pending = vec![self.domain.whole(2f64.powi(300))];
+        let mut boxes_left = match self.domain {
+            Domain::HalfPlane => MAX_BOXES_IN_HALF_PLANE,
+            Domain::Space => MAX_BOXES_IN_SPACE,
         };
-        while let Some(cell) = open.pop() {
+        while let Some(cell) = pending.pop() {
             self.prover.set(cell);
-            let mut asked = signs.iter().enumerate().filter(|(_, wanted)| **wanted != ANY);
-            if asked.any(|(curve, wanted)| self.prover.sign(curve) & wanted == 0) {
+            let mut constrained = signs.iter().enumerate().filter(|(_, allowed)| **allowed != ANY);
+            if constrained.any(|(curve, allowed)| self.prover.sign(curve) & allowed == 0) {
                 continue;
             }
-            if left == 0 {
+            if boxes_left == 0 {
                 return false;
             }
-            left -= 1;
-            open.extend(halves(cell));
+            boxes_left -= 1;
+            pending.extend(halves(cell));
         }
         true
     }

@@ -23,7 +23,7 @@ use crate::number::Number;
 use signs::by_signs;
 
 /// The largest number of tests in one tree.
-const LARGEST: usize = 20_000;
+const MAX_TESTS: usize = 20_000;
 
 /// A binary decision tree over the signs of curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,29 +66,31 @@ impl<L: Clone + PartialEq> Tree<L> {
     }
 
     /// Simplifies the tree, given that a test of the curve `known` holds or fails.
-    fn knowing(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree<L> {
+    fn simplified(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree<L> {
         match self {
             Tree::Leaf(_) => self.clone(),
             Tree::Split { curve, strict, below, above } if *curve == known => {
                 match (holds, strictly, *strict) {
                     // c < 0 implies c ≤ 0; if c ≤ 0 fails, so does c < 0.
-                    (true, true, _) | (true, false, false) => below.knowing(known, strictly, holds),
+                    (true, true, _) | (true, false, false) => {
+                        below.simplified(known, strictly, holds)
+                    }
                     (false, false, _) | (false, true, true) => {
-                        above.knowing(known, strictly, holds)
+                        above.simplified(known, strictly, holds)
                     }
                     _ => Tree::split(
                         *curve,
                         *strict,
-                        below.knowing(known, strictly, holds),
-                        above.knowing(known, strictly, holds),
+                        below.simplified(known, strictly, holds),
+                        above.simplified(known, strictly, holds),
                     ),
                 }
             }
             Tree::Split { curve, strict, below, above } => Tree::split(
                 *curve,
                 *strict,
-                below.knowing(known, strictly, holds),
-                above.knowing(known, strictly, holds),
+                below.simplified(known, strictly, holds),
+                above.simplified(known, strictly, holds),
             ),
         }
     }
@@ -139,7 +141,7 @@ pub struct PlannedTool {
 /// Plans the splits of a tool.
 ///
 /// # Errors
-/// If a tree would have more than [`LARGEST`] tests, or a profile's cells cannot be separated.
+/// If a tree would have more than [`MAX_TESTS`] tests, or a profile's cells cannot be separated.
 pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
     let plan = trees(&mut model, &extent)?;
     Ok(PlannedTool { model, extent, plan })
@@ -149,11 +151,12 @@ fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
     let (owner, outside) = match &model.section {
         Some(section) => {
             let (owner, outside) = section::trees(model, section)?;
-            let far = section::claims_far(model, section, &owner);
-            let owner = if far { boxed(model, extent, owner) } else { owner };
-            (owner, within_reach(model, extent, outside))
+            let is_owned_far_outside = section::has_owner_far_outside(model, section, &owner);
+            let owner =
+                if is_owned_far_outside { limited_to_box(model, extent, owner) } else { owner };
+            (owner, limited_outside(model, extent, outside))
         }
-        None => (by_signs(model, extent)?, Tree::Leaf(beside(model, extent))),
+        None => (by_signs(model, extent)?, Tree::Leaf(distance_to_box(model, extent))),
     };
     // Both trees have the same tests, so `inside` agrees with `owner` to the last bit.
     let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
@@ -162,7 +165,11 @@ fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
 }
 
 /// Returns a tree that tests the section's box first, since curves may recur beyond it.
-fn boxed(model: &mut Model, extent: &Extent, tree: Tree<Option<usize>>) -> Tree<Option<usize>> {
+fn limited_to_box(
+    model: &mut Model,
+    extent: &Extent,
+    tree: Tree<Option<usize>>,
+) -> Tree<Option<usize>> {
     let graph = &mut model.graph;
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let [radius, low, high] = [extent.radius, extent.low, extent.high].map(|value| {
@@ -176,60 +183,60 @@ fn boxed(model: &mut Model, extent: &Extent, tree: Tree<Option<usize>>) -> Tree<
             model.curves.push(Curve { name: None, value });
             model.curves.len() - 1
         });
-        Tree::split(curve, false, tree.knowing(curve, false, true), Tree::Leaf(None))
+        Tree::split(curve, false, tree.simplified(curve, false, true), Tree::Leaf(None))
     })
 }
 
 /// The distance up to which the division of the outside is used, in sizes of the tool from the middle of its
 /// axis.
-const DIVIDED: f64 = 48.0;
+const OUTSIDE_RANGE_IN_SIZES: f64 = 48.0;
 
-/// Returns a tree of the distances to the nearest feature up to [`DIVIDED`] sizes, and of the distance to the
-/// cylinder farther out.
-fn within_reach(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
-    let bound = beside(model, extent);
+/// Returns a tree of the distances to the nearest feature up to [`OUTSIDE_RANGE_IN_SIZES`] sizes,
+/// and of the distance to the cylinder farther out.
+fn limited_outside(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
+    let bound = distance_to_box(model, extent);
     let graph = &mut model.graph;
     let number = |value: f64| Number::from_f64(value).unwrap_or_else(|| Number::int(0));
     let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
-    let reach = DIVIDED * height.hypot(extent.radius);
+    let limit = OUTSIDE_RANGE_IN_SIZES * height.hypot(extent.radius);
     let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
-    let (middle, reach) = (graph.number(number(middle)), graph.number(number(reach * reach)));
+    let (middle, limit) = (graph.number(number(middle)), graph.number(number(limit * limit)));
     let up = graph.sub(z, middle);
     let up = graph.mul(up, up);
-    let away = graph.add(q, up);
-    let value = graph.sub(away, reach);
+    let squared_distance = graph.add(q, up);
+    let value = graph.sub(squared_distance, limit);
     model.curves.push(Curve { name: None, value });
     Tree::split(model.curves.len() - 1, false, tree, Tree::Leaf(bound))
 }
 
 /// Returns the distance to the box around the solid; for a tool, to its cylinder.
-fn beside(model: &mut Model, extent: &Extent) -> Id {
+fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
     let graph = &mut model.graph;
     let zero = graph.int(0);
     let mut square = zero;
     for (coord, axis, _) in model.domain.coordinates().iter().rev() {
-        let here = graph.coord(*coord);
+        let coordinate = graph.coord(*coord);
         let side = extent.cell().sides[*axis];
         let [low, high] = [side.low, side.high].map(|value| {
             let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
             graph.number(number)
         });
-        let mut beyond = graph.sub(here, high);
+        let mut excess = graph.sub(coordinate, high);
         // The half plane has no points beyond the axis.
         if *coord != Coord::D {
-            let below = graph.sub(low, here);
-            beyond = graph.max(below, beyond);
+            let below = graph.sub(low, coordinate);
+            excess = graph.max(below, excess);
         }
-        let beyond = graph.max(zero, beyond);
-        let more = graph.mul(beyond, beyond);
-        square = graph.add(square, more);
+        let excess = graph.max(zero, excess);
+        let square_of_excess = graph.mul(excess, excess);
+        square = graph.add(square, square_of_excess);
     }
     graph.sqrt(square).unwrap_or(zero)
 }
 
 /// Returns the error for a tree that exceeds its limit.
 fn too_large(model: &Model) -> Diagnostic {
-    Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: LARGEST })
+    Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: MAX_TESTS })
 }
 
 /// Returns the cost of evaluating each curve, in additions.

@@ -1,15 +1,15 @@
 //! Points of the section with known owners, and the information that curves give about them.
 
 use super::bits;
-use super::section::PRICE;
+use super::section::BITS_PER_ADDITION;
 use crate::formula::CurveIndex;
 use crate::geometry::outline::Point;
 use crate::geometry::shape::CurveFunction;
 
 /// The least cost, in additions, of a side on which several owners remain.
-const TEST: f64 = 8.0;
+const MIN_SIDE_COST: f64 = 8.0;
 /// The penalty, in bits, for each owner that remains on both sides. Without it, trees grow by half.
-const TORN: f64 = 0.2;
+const SHARED_OWNER_PENALTY_BITS: f64 = 0.2;
 
 /// All samples, in words of up to 64 with the same owner.
 pub(super) struct Samples {
@@ -45,7 +45,7 @@ impl Samples {
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].2.map_or(0, |owner| owner + 1)).collect();
         Samples {
-            count: owners.iter().max().map_or(1, |most| most + 1),
+            count: owners.iter().max().map_or(1, |largest| largest + 1),
             weights: runs.iter().map(|run| run.iter().map(|sample| sample.1).collect()).collect(),
             below: shapes.iter().map(below).collect(),
             owners,
@@ -60,9 +60,9 @@ impl Samples {
     }
 
     /// Returns the samples below a curve, and those above.
-    pub(super) fn divided(&self, few: &SampleSubset, curve: CurveIndex) -> [SampleSubset; 2] {
+    pub(super) fn divided(&self, subset: &SampleSubset, curve: CurveIndex) -> [SampleSubset; 2] {
         let mut sides = [SampleSubset::default(), SampleSubset::default()];
-        for word in &few.0 {
+        for word in &subset.0 {
             for (side, (bits, weight)) in self.sides(*word, curve).into_iter().enumerate() {
                 if bits != 0 {
                     sides[side].0.push((word.0, bits, weight));
@@ -94,21 +94,21 @@ impl Samples {
     }
 
     /// Returns the entropy of the owner of a sample, in bits.
-    pub(super) fn uncertain(&self, few: &SampleSubset) -> f64 {
+    pub(super) fn entropy(&self, subset: &SampleSubset) -> f64 {
         let mut counts = vec![0.0; self.count];
-        for (word, _, weight) in &few.0 {
+        for (word, _, weight) in &subset.0 {
             counts[self.owners[*word]] += weight;
         }
-        let all: f64 = counts.iter().sum();
-        counts.iter().map(|count| bits(*count, all)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
+        let total: f64 = counts.iter().sum();
+        counts.iter().map(|count| bits(*count, total)).sum::<f64>() / total.max(f64::MIN_POSITIVE)
     }
 
-    /// Returns the information, in bits, that a curve's side gives about the owners of some samples whose
-    /// entropy is `uncertain`, less the cost of the tests that remain.
-    pub(super) fn gain(&self, few: &SampleSubset, uncertain: f64, curve: CurveIndex) -> f64 {
+    /// Returns the information, in bits, that a curve's side gives about the owners of some samples of the
+    /// given `entropy`, less the cost of the tests that remain.
+    pub(super) fn gain(&self, subset: &SampleSubset, entropy: f64, curve: CurveIndex) -> f64 {
         let mut counts = vec![[0.0; 2]; self.count];
         let mut totals = [0.0; 2];
-        for word in &few.0 {
+        for word in &subset.0 {
             let count = &mut counts[self.owners[word.0]];
             for (side, (_, weight)) in self.sides(*word, curve).into_iter().enumerate() {
                 count[side] += weight;
@@ -116,21 +116,22 @@ impl Samples {
             }
         }
         if totals[0] == 0.0 || totals[1] == 0.0 {
-            return -PRICE * TEST;
+            return -BITS_PER_ADDITION * MIN_SIDE_COST;
         }
-        let (mut owners, mut torn, mut left) = ([0, 0], 0.0, 0.0);
+        let (mut owners, mut penalty, mut remaining_bits) = ([0, 0], 0.0, 0.0);
         for count in counts {
             for side in [0, 1] {
                 if count[side] > 0.0 {
                     owners[side] += 1;
-                    left += bits(count[side], totals[side]);
+                    remaining_bits += bits(count[side], totals[side]);
                 }
             }
             if count[0] > 0.0 && count[1] > 0.0 {
-                torn += TORN;
+                penalty += SHARED_OWNER_PENALTY_BITS;
             }
         }
-        let open = owners.map(|owners| if owners > 1 { PRICE * TEST } else { 0.0 });
-        uncertain - left / (totals[0] + totals[1]) - open[0] - open[1] - torn
+        let side_cost =
+            owners.map(|owners| if owners > 1 { BITS_PER_ADDITION * MIN_SIDE_COST } else { 0.0 });
+        entropy - remaining_bits / (totals[0] + totals[1]) - side_cost[0] - side_cost[1] - penalty
     }
 }

@@ -4,7 +4,7 @@
 use super::corners::{Corner, corners};
 use super::roots::Zeros;
 use super::samples::{SampleSubset, Samples};
-use super::{LARGEST, Tree, costs};
+use super::{MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
@@ -18,60 +18,61 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 /// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
-const CHORDS: [u32; 3] = [8, 40, 200];
+const CHORDS_PER_EDGE: [u32; 3] = [8, 40, 200];
 
 /// The number of curves that may be passed over because their zeros belong to both sides.
-const DOUBLES: usize = 6;
+const MAX_SKIPPED_CURVES: usize = 6;
 
 pub(super) type Owners = Tree<Option<usize>>;
 
 /// The information, in bits, that must justify one addition.
-pub(super) const PRICE: f64 = 0.01;
+pub(super) const BITS_PER_ADDITION: f64 = 0.01;
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
-const AGAIN: f64 = 0.3;
+const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 /// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
-    let mut tried = try_trees(model, section, CHORDS[0]);
-    for chords in &CHORDS[1..] {
-        if tried.is_err() {
-            tried = try_trees(model, section, *chords);
+    let mut result = try_trees(model, section, CHORDS_PER_EDGE[0]);
+    for chords in &CHORDS_PER_EDGE[1..] {
+        if result.is_err() {
+            result = try_trees(model, section, *chords);
         }
     }
-    tried
+    result
 }
 
 /// Returns whether a tree has an owner far outside, where there was no piece. The test uses points all
 /// around, and points in thin strips along the lines and normals of the outline.
-pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> bool {
+pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Owners) -> bool {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
-    let [low, high] = outline::reach(&section.outline).map(|end| end[1]);
+    let [low, high] = outline::bounding_box(&section.outline).map(|end| end[1]);
     let middle = low / 2.0 + high / 2.0;
-    let claims =
+    let is_owned =
         |p: Point| p[0] >= 0.0 && tree.at(&|curve| shapes[curve].value([p[0], p[1]])).is_some();
-    let reaches = || (1..16).map(|k| size * 8f64.powi(k));
-    let around = reaches().any(|reach| {
+    let distances = || (1..16).map(|k| size * 8f64.powi(k));
+    let any_around = distances().any(|distance| {
         (0..=128).any(|k| {
             let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
-            claims([reach * cos, middle + reach * sin])
+            is_owned([distance * cos, middle + distance * sin])
         })
     });
-    let beside = || {
+    let any_in_strips = || {
         section.outline.iter().any(|segment| {
             let [from, to] = segment.ends();
-            let way = minus(to, from).map(|part| part / norm(minus(to, from)));
+            let direction = minus(to, from).map(|part| part / norm(minus(to, from)));
             [from, to].into_iter().any(|end| {
-                [way, [-way[1], way[0]]].into_iter().any(|way| {
-                    reaches().chain(reaches().map(|reach| -reach)).any(|reach| {
-                        [-0.01, -1e-5, 1e-5, 0.01].into_iter().any(|off| {
-                            let across = [-way[1] * off * size, way[0] * off * size];
-                            claims([0, 1].map(|k| end[k] + reach * way[k] + across[k]))
+                [direction, [-direction[1], direction[0]]].into_iter().any(|direction| {
+                    distances().chain(distances().map(|distance| -distance)).any(|distance| {
+                        [-0.01, -1e-5, 1e-5, 0.01].into_iter().any(|offset| {
+                            let across =
+                                [-direction[1] * offset * size, direction[0] * offset * size];
+                            is_owned([0, 1].map(|k| end[k] + distance * direction[k] + across[k]))
                         })
                     })
                 })
             })
         })
     };
-    around || beside()
+    any_around || any_in_strips()
 }
 
 fn try_trees(
@@ -81,56 +82,59 @@ fn try_trees(
 ) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
-    let whole = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
+    let whole_piece = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
 
-    let mut all = PlanInput::default();
+    let mut inner_input = PlanInput::default();
     for cell in &inner {
         match &section.over {
-            None => all.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part))),
+            None => inner_input
+                .add(cell, [whole_piece(cell, Some(cell.part))], |_| Some(Some(cell.part))),
             Some(over) => {
-                let pieces = overlay::divided(whole(cell, None), &over.conditions, &shapes, size);
+                let pieces =
+                    overlay::divided(whole_piece(cell, None), &over.conditions, &shapes, size);
                 let owned = pieces.into_iter().filter_map(|(piece, holding)| {
                     let owner = over.region(cell.part, *holding.first()?)?;
                     Some(Piece { owner: Some(owner), ..piece })
                 });
-                all.add(cell, owned, |p| over.owner(cell.part, p, &shapes, size).map(Some));
+                inner_input.add(cell, owned, |p| over.owner(cell.part, p, &shapes, size).map(Some));
             }
         }
     }
     for cell in &outer {
-        all.add(cell, [whole(cell, None)], |_| Some(None));
+        inner_input.add(cell, [whole_piece(cell, None)], |_| Some(None));
     }
     let inside = model.regions.iter().map(|region| &region.inside).collect();
-    let owners = plan(model, &shapes, size, all, inside)?;
+    let owners = plan(model, &shapes, size, inner_input, inside)?;
     // A sliver between a curve and its chord may have been given to the wrong owner.
     let owner = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
     let part = |region: usize| match &section.over {
         Some(over) => over.regions[region].0,
         None => region,
     };
-    if let Some(p) = section.inner.misplaced(|p, _| owner(p).map(part)) {
-        return Err(inseparable(model, p));
+    if let Some(p) = section.inner.wrongly_assigned_point(|p, _| owner(p).map(part)) {
+        return Err(inseparable_owners(model, p));
     }
 
     let mut outside = PlanInput::default();
     for cell in &outer {
-        outside.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part)));
+        outside.add(cell, [whole_piece(cell, Some(cell.part))], |_| Some(Some(cell.part)));
     }
     // Rounding may move a point of the surface just below it, so the same features continue there.
     for (piece, cell) in section.inner.shell(chords) {
-        let Some(part) = section.outer.part_of(section.outer.pieces() - 1 - piece) else {
+        let Some(part) = section.outer.part_of(section.outer.segment_count() - 1 - piece) else {
             continue;
         };
-        outside.add(&cell, [whole(&cell, Some(part))], |_| None);
+        outside.add(&cell, [whole_piece(&cell, Some(part))], |_| None);
     }
-    let beside = section.outside.iter().map(|part| &part.beside).collect();
-    let outside = plan(model, &shapes, size, outside, beside)?;
+    let neighbour_conditions = section.outside.iter().map(|part| &part.beside).collect();
+    let outside = plan(model, &shapes, size, outside, neighbour_conditions)?;
     let part_at = |p: Point| *outside.at(&|curve| shapes[curve].value(p));
     let is_free = |p, distance| distance <= ROUNDING * size || owner(p).is_none();
-    if let Some(p) =
-        section.outer.misplaced(|p, distance| part_at(p).filter(|_| is_free(p, distance)))
+    if let Some(p) = section
+        .outer
+        .wrongly_assigned_point(|p, distance| part_at(p).filter(|_| is_free(p, distance)))
     {
-        return Err(inseparable(model, p));
+        return Err(inseparable_owners(model, p));
     }
     let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
     let outside = outside.map(&clearance);
@@ -179,11 +183,11 @@ impl Over {
         shapes: &[CurveFunction<'_>],
         size: f64,
     ) -> Option<usize> {
-        let near = Cell::new(false);
+        let on_border = Cell::new(false);
         let holds = |sign: i8| {
             let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
                 0 => {
-                    near.set(true);
+                    on_border.set(true);
                     f64::from(sign)
                 }
                 _ => shapes[curve].value(p),
@@ -192,7 +196,7 @@ impl Over {
         };
         let low = holds(-1)?;
         // Away from every curve that was evaluated, the sign does not matter.
-        let high = if near.get() { holds(1)? } else { low };
+        let high = if on_border.get() { holds(1)? } else { low };
         if low == high { self.region(part, low) } else { None }
     }
 }
@@ -205,15 +209,15 @@ fn plan<'m>(
     model: &'m Model,
     shapes: &'m [CurveFunction<'m>],
     size: f64,
-    ground: PlanInput,
+    input: PlanInput,
     inside: Vec<&'m Formula>,
 ) -> Result<Owners, Diagnostic> {
-    let samples = Samples::new(&ground.samples, shapes);
+    let samples = Samples::new(&input.samples, shapes);
     let all = samples.all();
-    let about = |piece: &Rc<Piece>| (Rc::clone(piece), piece.about());
-    let whole: Vec<_> = ground.pieces.iter().map(about).collect();
-    let corners = corners(ground.corners, &whole, (shapes, size));
-    let every = (0..corners.len()).collect();
+    let with_bounding_box = |piece: &Rc<Piece>| (Rc::clone(piece), piece.bounding_box());
+    let whole_pieces: Vec<_> = input.pieces.iter().map(with_bounding_box).collect();
+    let corners = corners(input.corners, &whole_pieces, (shapes, size));
+    let all_corners = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
         shapes,
@@ -222,16 +226,16 @@ fn plan<'m>(
         corners,
         inside,
         used: vec![false; model.curves.len()],
-        whole,
+        whole_pieces,
         sides: vec![Vec::new(); model.curves.len()],
         size,
         tests: 0,
     };
-    let open = (0..model.curves.len()).collect();
-    let tree = planner.tree(&ground.pieces, (all, every), open)?;
-    for (p, owner) in ground.witnesses {
+    let candidates = (0..model.curves.len()).collect();
+    let tree = planner.tree(&input.pieces, (all, all_corners), candidates)?;
+    for (p, owner) in input.witnesses {
         if *tree.at(&|curve| shapes[curve].value(p)) != owner {
-            return Err(inseparable(model, p));
+            return Err(inseparable_owners(model, p));
         }
     }
     Ok(tree)
@@ -246,7 +250,7 @@ pub(super) struct Planner<'m> {
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
     /// The pieces before any cut, each with its bounding box.
-    whole: Vec<(Rc<Piece>, [Point; 2])>,
+    whole_pieces: Vec<(Rc<Piece>, [Point; 2])>,
     /// For each curve that was tried, the side of each whole piece.
     sides: Vec<Vec<Option<Side>>>,
     pub(super) size: f64,
@@ -272,33 +276,34 @@ impl Planner<'_> {
         &mut self,
         pieces: &[Rc<Piece>],
         (samples, corners): (SampleSubset, Vec<usize>),
-        mut open: Vec<CurveIndex>,
+        mut candidates: Vec<CurveIndex>,
     ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
             return Ok(self.leaf(first, pieces, &corners));
         }
-        let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut open) else {
-            return Ok(self.leaf(self.settle(pieces), pieces, &corners));
+        let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut candidates) else {
+            return Ok(self.leaf(self.largest_owner(pieces), pieces, &corners));
         };
         self.used[curve] = true;
         self.tests += 1;
-        if self.tests > LARGEST {
+        if self.tests > MAX_TESTS {
             return Err(super::too_large(self.model));
         }
-        open.retain(|other| *other != curve);
+        candidates.retain(|other| *other != curve);
         let [low, high] = self.samples.divided(&samples, curve);
-        let on = match zeros {
-            Zeros::Both => Some(self.touching(curve, &halves, &corners, &open)?),
+        let on_curve = match zeros {
+            Zeros::Both => Some(self.zero_set_tree(curve, &halves, &corners, &candidates)?),
             _ => None,
         };
-        let [here, there] = [-1, 1].map(|side| self.corners_on(side, curve, &corners));
-        let below = self.tree(&halves.below, (low, here), open.clone())?;
-        let above = self.tree(&halves.above, (high, there), open)?;
-        Ok(match on {
-            Some(on) if on == above => Tree::split(curve, true, below, above),
-            Some(on) if on != below => {
-                let below = Tree::split(curve, true, below, on);
+        let [corners_below, corners_above] =
+            [-1, 1].map(|side| self.corners_on(side, curve, &corners));
+        let below = self.tree(&halves.below, (low, corners_below), candidates.clone())?;
+        let above = self.tree(&halves.above, (high, corners_above), candidates)?;
+        Ok(match on_curve {
+            Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
+            Some(on_curve) if on_curve != below => {
+                let below = Tree::split(curve, true, below, on_curve);
                 Tree::split(curve, false, below, above)
             }
             _ => Tree::split(curve, zeros == Zeros::Above, below, above),
@@ -311,27 +316,27 @@ impl Planner<'_> {
         &mut self,
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
-        open: &mut Vec<CurveIndex>,
+        candidates: &mut Vec<CurveIndex>,
     ) -> Option<(CurveIndex, Halves, Zeros)> {
-        let uncertain = self.samples.uncertain(samples);
-        let mut ranked: Vec<(f64, CurveIndex)> = open
+        let uncertain = self.samples.entropy(samples);
+        let mut ranked: Vec<(f64, CurveIndex)> = candidates
             .iter()
             .map(|curve| {
-                let again = if self.used[*curve] { AGAIN } else { 1.0 };
+                let cost_factor = if self.used[*curve] { REPEATED_TEST_COST_FACTOR } else { 1.0 };
                 let gain = self.samples.gain(samples, uncertain, *curve);
-                (gain - PRICE * again * self.costs[*curve], *curve)
+                (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed = |curve: CurveIndex| self.model.first.iter().position(|f| *f == curve);
+        let listed_rank = |curve: CurveIndex| self.model.first.iter().position(|f| *f == curve);
         ranked.sort_by(|a, b| {
-            let order = |curve| listed(curve).unwrap_or(usize::MAX);
+            let order = |curve| listed_rank(curve).unwrap_or(usize::MAX);
             order(a.1).cmp(&order(b.1)).then(b.0.total_cmp(&a.0))
         });
-        let (mut fallback, mut double, mut doubles) = (None, None, 0);
+        let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
             if halves.below.is_empty() || halves.above.is_empty() {
-                open.retain(|other| *other != curve);
+                candidates.retain(|other| *other != curve);
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
@@ -341,8 +346,8 @@ impl Planner<'_> {
                 owners.dedup();
                 owners.len()
             };
-            let all = owners(pieces);
-            if owners(&halves.below) == all && owners(&halves.above) == all {
+            let owner_count = owners(pieces);
+            if owners(&halves.below) == owner_count && owners(&halves.above) == owner_count {
                 fallback = fallback.or(Some((curve, halves, Zeros::Below)));
                 continue;
             }
@@ -351,9 +356,9 @@ impl Planner<'_> {
             if zeros != Zeros::Both {
                 return Some((curve, halves, zeros));
             }
-            double.get_or_insert((curve, halves, zeros));
-            doubles += 1;
-            if doubles > DOUBLES {
+            with_double_zeros.get_or_insert((curve, halves, zeros));
+            skipped_count += 1;
+            if skipped_count > MAX_SKIPPED_CURVES {
                 break;
             }
         }
@@ -361,15 +366,15 @@ impl Planner<'_> {
             let zeros = self.zeros(curve, &halves);
             (curve, halves, zeros)
         });
-        double.or(fallback)
+        with_double_zeros.or(fallback)
     }
 
     /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
     /// curve and its chord.
-    fn settle(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
-        let true_ones: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
-        let rest = if true_ones.is_empty() { pieces.iter().collect() } else { true_ones };
-        let largest = rest.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+    fn largest_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
+        let true_pieces: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
+        let candidates = if true_pieces.is_empty() { pieces.iter().collect() } else { true_pieces };
+        let largest = candidates.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
         largest.and_then(|piece| piece.owner)
     }
 
@@ -385,11 +390,11 @@ impl Planner<'_> {
 
     fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
-        let (whole, shape) = (&self.whole, &self.shapes[curve]);
+        let (whole_piece, shape) = (&self.whole_pieces, &self.shapes[curve]);
         let sides = &mut self.sides[curve];
-        sides.resize(whole.len(), None);
+        sides.resize(whole_piece.len(), None);
         let side = |origin: usize| {
-            let (piece, [middle, half]) = &whole[origin];
+            let (piece, [middle, half]) = &whole_piece[origin];
             match shape.side_of_box(*middle, *half) {
                 -1 => return Side::Below,
                 1 => return Side::Above,
@@ -422,7 +427,7 @@ impl Planner<'_> {
     }
 }
 
-fn inseparable(model: &Model, [d, z]: Point) -> Diagnostic {
+fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
     let outline = model.section.iter().flat_map(|section| &section.outline);
     let outline: Vec<_> = outline.cloned().collect();
     let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);

@@ -1,7 +1,7 @@
 //! The plan of regions written by hand. Only their conditions are known, and splits decide them by signs.
 
 use super::empty::EmptinessProver;
-use super::{LARGEST, Tree, bits, costs, too_large};
+use super::{MAX_TESTS, Tree, bits, costs, too_large};
 use crate::bound::{Extent, spread};
 use crate::diagnostic::Diagnostic;
 use crate::expr::value::{At, Evaluator};
@@ -14,16 +14,16 @@ use crate::model::Model;
 /// If the tree would have more than [`LARGEST`] tests.
 pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Diagnostic> {
     let samples = samples(model, extent);
-    let all: Vec<u32> = (0..samples.len() as u32).collect();
+    let all_samples: Vec<u32> = (0..samples.len() as u32).collect();
     let costs = costs(model);
     let mut planner = Planner {
         model,
         samples: &samples,
         costs: &costs,
-        void: EmptinessProver::new(model),
+        emptiness: EmptinessProver::new(model),
         tests: 0,
     };
-    planner.tree(vec![ANY; model.curves.len()], &all)
+    planner.tree(vec![ANY; model.curves.len()], &all_samples)
 }
 
 /// A sample point: its side of each curve, and its owner.
@@ -56,7 +56,7 @@ struct Planner<'m> {
     model: &'m Model,
     samples: &'m [Sample],
     costs: &'m [f64],
-    void: EmptinessProver<'m>,
+    emptiness: EmptinessProver<'m>,
     tests: usize,
 }
 
@@ -74,34 +74,34 @@ impl Planner<'_> {
             }
             let (curve, strict) = self.choose(&signs, &possible, samples);
             let (below, above) = sides(signs[curve], strict);
-            let of = |side: Signs| -> Vec<u32> {
+            let samples_on_side = |side: Signs| -> Vec<u32> {
                 samples
                     .iter()
                     .copied()
                     .filter(|s| self.samples[*s as usize].signs[curve] & side != 0)
                     .collect()
             };
-            let (low, high) = (of(below), of(above));
+            let (low, high) = (samples_on_side(below), samples_on_side(above));
             // A side that provably has no point needs no test.
-            let with = |side| {
+            let with_side = |side| {
                 let mut signs = signs.clone();
                 signs[curve] = side;
                 signs
             };
-            if low.is_empty() && self.void.proved(&with(below)) {
+            if low.is_empty() && self.emptiness.is_empty(&with_side(below)) {
                 signs[curve] = above;
                 continue;
             }
-            if high.is_empty() && self.void.proved(&with(above)) {
+            if high.is_empty() && self.emptiness.is_empty(&with_side(above)) {
                 signs[curve] = below;
                 continue;
             }
             self.tests += 1;
-            if self.tests > LARGEST {
+            if self.tests > MAX_TESTS {
                 return Err(too_large(self.model));
             }
-            let below = self.tree(with(below), &low)?;
-            let above = self.tree(with(above), &high)?;
+            let below = self.tree(with_side(below), &low)?;
+            let above = self.tree(with_side(above), &high)?;
             return Ok(Tree::split(curve, strict, below, above));
         }
     }
@@ -143,7 +143,7 @@ impl Planner<'_> {
             }
             tried.push(*curve);
             let gain = self.gain(*curve, samples) - 0.01 * self.costs[*curve];
-            if best.is_none_or(|(most, _)| gain > most) {
+            if best.is_none_or(|(best_gain, _)| gain > best_gain) {
                 best = Some((gain, *curve));
             }
         }
@@ -181,13 +181,13 @@ impl Planner<'_> {
 /// Returns the information, in bits, that a side gives about classes with known weights on the two sides.
 fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
     let totals = counts.clone().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
-    let all = totals[0] + totals[1];
-    if all == 0.0 {
+    let total = totals[0] + totals[1];
+    if total == 0.0 {
         return 0.0;
     }
-    let before: f64 = counts.clone().map(|c| bits(c[0] + c[1], all)).sum();
+    let before: f64 = counts.clone().map(|c| bits(c[0] + c[1], total)).sum();
     let after: f64 = counts.map(|c| bits(c[0], totals[0]) + bits(c[1], totals[1])).sum();
-    (before - after) / all
+    (before - after) / total
 }
 
 /// Returns the signs on the two sides of a test.

@@ -35,9 +35,9 @@ impl<'m> Cover<'m> {
 
     /// Returns the signs that a curve can have at a claim's points in the current box, according to the box
     /// and the path down the tree.
-    pub(super) fn own_sign(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+    pub(super) fn sign_at_claim(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
         let own = claim.signs.iter().filter(|(other, _)| *other == curve);
-        own.fold(self.sign(curve), |all, (_, signs)| all & signs)
+        own.fold(self.sign(curve), |allowed, (_, signs)| allowed & signs)
     }
 
     /// Returns the claims to a box.
@@ -51,23 +51,23 @@ impl<'m> Cover<'m> {
     fn descend(
         &mut self,
         tree: &Tree<Option<usize>>,
-        way: &mut Vec<(CurveIndex, Signs)>,
+        path: &mut Vec<(CurveIndex, Signs)>,
         claims: &mut Vec<Claim>,
     ) {
         let Tree::Split { curve, strict, below, above } = tree else {
             if let Tree::Leaf(owner) = tree {
-                claims.push(Claim { owner: *owner, signs: way.clone() });
+                claims.push(Claim { owner: *owner, signs: path.clone() });
             }
             return;
         };
-        let known = way.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
-        let here = known.fold(self.sign(*curve), |all, signs| all & signs);
+        let known = path.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
+        let possible_signs = known.fold(self.sign(*curve), |allowed, signs| allowed & signs);
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
-        for (side, signs) in [(below, here & low), (above, here & !low & ANY)] {
+        for (side, signs) in [(below, possible_signs & low), (above, possible_signs & !low & ANY)] {
             if signs != 0 {
-                way.push((*curve, signs));
-                self.descend(side, way, claims);
-                way.pop();
+                path.push((*curve, signs));
+                self.descend(side, path, claims);
+                path.pop();
             }
         }
     }
@@ -75,28 +75,28 @@ impl<'m> Cover<'m> {
 
 /// The boxes that remain to be examined, as a stack.
 pub(super) struct Boxes {
-    open: Vec<Cell>,
+    stack: Vec<Cell>,
     /// The number of boxes examined.
     pub(super) count: usize,
 }
 
 impl Boxes {
     pub(super) fn new(whole: Cell) -> Boxes {
-        Boxes { open: vec![whole], count: 0 }
+        Boxes { stack: vec![whole], count: 0 }
     }
 
     pub(super) fn next(&mut self) -> Option<Cell> {
         self.count += 1;
-        self.open.pop()
+        self.stack.pop()
     }
 
     pub(super) fn divide(&mut self, cell: Cell) {
-        self.open.extend(halves(cell));
+        self.stack.extend(halves(cell));
     }
 }
 
 /// Returns half of a box's diagonal.
-pub(super) fn reach(cell: &Cell) -> f64 {
+pub(super) fn half_diagonal(cell: &Cell) -> f64 {
     let squares = cell.sides.iter().map(|side| (side.high - side.low) * (side.high - side.low));
     squares.sum::<f64>().sqrt() / 2.0
 }

@@ -3,7 +3,7 @@
 
 use super::{Border, Bounds, Certificate};
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber};
-use crate::lint::deep_on_the_surface;
+use crate::lint::deep_on_surface;
 use crate::model::{DirectionSource, Model, Region};
 use crate::plan::PlannedTool;
 use crate::source::Span;
@@ -12,13 +12,13 @@ use std::f64::consts::PI;
 impl Certificate {
     /// Returns all diagnostics: errors with a counterexample, warnings with a point or a box.
     pub fn diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
-        let mut diagnostics = self.certain(tool);
-        diagnostics.extend(self.undecided(tool));
+        let mut diagnostics = self.certain_diagnostics(tool);
+        diagnostics.extend(self.undecided_diagnostics(tool));
         diagnostics
     }
 
     /// Returns the diagnostics that rest on single points, which more boxes would not change.
-    pub(super) fn certain(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+    pub(super) fn certain_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
         // One diagnostic per pair of regions, and one per region next to the outside.
@@ -34,13 +34,13 @@ impl Certificate {
         let oblique = facts()
             .filter(|(region, _)| region.source != DirectionSource::Oblique)
             .filter_map(|(region, facts)| Some((region.raw_direction.1, (region, facts.oblique?))));
-        for (region, (angle, point)) in worst(oblique) {
+        for (region, (angle, point)) in largest_by_span(oblique) {
             diagnostics.push(oblique_direction(region, angle, model.shown(point)));
         }
         let rises = facts().filter(|(region, _)| !region.rising).filter_map(|(region, facts)| {
             Some((region.law_spans.niceness, (region, facts.rises?)))
         });
-        for (region, (rate, point)) in worst(rises) {
+        for (region, (rate, point)) in largest_by_span(rises) {
             let kind = CheckKind::NicenessRises {
                 region: region.name.clone(),
                 place: model.shown(point),
@@ -53,16 +53,16 @@ impl Certificate {
     }
 
     /// Returns the diagnostics of proofs that did not finish; more boxes might finish them.
-    fn undecided(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+    fn undecided_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics = Vec::new();
         if model.is_exact() && self.is_continuous() && !self.is_exact() {
             diagnostics.push(Diagnostic::new(model.name_span, CheckKind::NotShownExact));
         }
-        if let Some(first) = self.undecided.first() {
+        if let Some(open_proof) = self.undecided.first() {
             let kind = CheckKind::Undecided {
-                statement: first.statement.clone(),
-                place: model.shown(first.cell.middle()),
+                statement: open_proof.statement.clone(),
+                place: model.shown(open_proof.cell.middle()),
                 more: self.undecided.len() - 1,
                 exact: model.is_exact(),
                 bound: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
@@ -76,20 +76,20 @@ impl Certificate {
 /// Returns the error for a border with a point where depth jumps.
 fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
     let (point, [own, other]) = border.seen?;
-    let (region, beside) = border.between;
+    let (region, neighbour) = border.between;
     let region = &model.regions[region];
     let place = model.shown(point);
-    Some(match beside.map(|beside| &model.regions[beside]) {
-        None => deep_on_the_surface(region, own, place),
-        Some(beside) => {
+    Some(match neighbour.map(|neighbour| &model.regions[neighbour]) {
+        None => deep_on_surface(region, own, place),
+        Some(neighbour) => {
             let kind = CheckKind::DepthJumps {
                 own: FormattedNumber(own),
                 other: FormattedNumber(other),
                 place,
                 region: region.name.clone(),
-                beside: beside.name.clone(),
+                beside: neighbour.name.clone(),
             };
-            Diagnostic::new(region.law_spans.depth, kind).and(beside.law_spans.depth, "here")
+            Diagnostic::new(region.law_spans.depth, kind).and(neighbour.law_spans.depth, "here")
         }
     })
 }
@@ -99,16 +99,18 @@ type Fact<'t> = (&'t Region, (f64, [f64; 3]));
 
 /// Returns the largest fact at each location of the text, since several regions may share a law or come from
 /// one region.
-fn worst<'t>(facts: impl Iterator<Item = (Span, Fact<'t>)>) -> impl Iterator<Item = Fact<'t>> {
-    let mut kept: Vec<(Span, Fact<'t>)> = Vec::new();
+fn largest_by_span<'t>(
+    facts: impl Iterator<Item = (Span, Fact<'t>)>,
+) -> impl Iterator<Item = Fact<'t>> {
+    let mut largest: Vec<(Span, Fact<'t>)> = Vec::new();
     for (span, fact) in facts {
-        match kept.iter_mut().find(|(known, _)| *known == span) {
+        match largest.iter_mut().find(|(known, _)| *known == span) {
             Some((_, known)) if known.1.0 >= fact.1.0 => {}
             Some((_, known)) => *known = fact,
-            None => kept.push((span, fact)),
+            None => largest.push((span, fact)),
         }
     }
-    kept.into_iter().map(|(_, fact)| fact)
+    largest.into_iter().map(|(_, fact)| fact)
 }
 
 /// Returns the warning for a direction that is certainly not that of steepest descent.

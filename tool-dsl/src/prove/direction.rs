@@ -15,9 +15,9 @@ use std::f64::consts::PI;
 #[derive(Clone)]
 pub(super) struct DirectionFacts {
     /// True if it is parallel to the depth's gradient, with either sign.
-    pub(super) straight: bool,
+    pub(super) is_parallel: bool,
     /// The angle between it and the steepest descent, in radians.
-    pub(super) off: Option<Interval>,
+    pub(super) angle_to_descent: Option<Interval>,
     /// The boxes where it may vanish.
     pub(super) singular: Vec<Cell>,
     /// True if it has a component perpendicular to an axis that the region touches, where that component has
@@ -26,22 +26,25 @@ pub(super) struct DirectionFacts {
 }
 
 impl DirectionFacts {
-    pub(super) fn new(straight: bool) -> DirectionFacts {
-        DirectionFacts { straight, off: None, singular: Vec::new(), on_axis: false }
+    pub(super) fn new(is_parallel: bool) -> DirectionFacts {
+        DirectionFacts { is_parallel, angle_to_descent: None, singular: Vec::new(), on_axis: false }
     }
 
     /// Records the facts over a box. Returns the largest angle there, if it is known.
-    pub(super) fn note(
+    pub(super) fn record(
         &mut self,
-        course: [Interval; 3],
+        direction: [Interval; 3],
         depth: Slope,
         cell: Cell,
         domain: Domain,
     ) -> Option<f64> {
-        let here = off(course, depth, self.straight);
-        match here {
-            Some(off) => self.off = Some(self.off.map_or(off, |known| known.hull(off))),
-            None if vanishes(course) => {
+        let angle_here = angle_to_descent(direction, depth, self.is_parallel);
+        match angle_here {
+            Some(angle) => {
+                self.angle_to_descent =
+                    Some(self.angle_to_descent.map_or(angle, |known| known.hull(angle)));
+            }
+            None if vanishes(direction) => {
                 let near = self.singular.iter().position(|known| known.meets(&cell));
                 let known = near.map(|at| self.singular.swap_remove(at));
                 self.singular.push(known.map_or(cell, |known| known.hull(&cell)));
@@ -49,20 +52,20 @@ impl DirectionFacts {
             None => {}
         }
         let axis = domain == Domain::HalfPlane && cell.sides[0].low <= 0.0;
-        self.on_axis |= axis && course[0] != ZERO;
-        here.map(|off| off.high)
+        self.on_axis |= axis && direction[0] != ZERO;
+        angle_here.map(|angle| angle.high)
     }
 }
 
 /// Returns whether an identity proves that a region's direction is parallel to its depth's gradient, with
 /// either sign.
-pub(super) fn straight(model: &Model, region: &Region, depth: Option<&RootForm>) -> bool {
-    let Some(slope) = depth.and_then(RootForm::course) else { return false };
+pub(super) fn is_parallel(model: &Model, region: &Region, depth: Option<&RootForm>) -> bool {
+    let Some(slope) = depth.and_then(RootForm::gradient_direction) else { return false };
     let mut polynomials = Polynomials::default();
-    let undivided: Vec<(Id, i64, Option<Id>)> =
-        region.raw_direction.0.iter().map(|part| undivided(&model.graph, *part)).collect();
+    let without_root: Vec<(Id, i64, Option<Id>)> =
+        region.raw_direction.0.iter().map(|part| without_root(&model.graph, *part)).collect();
     let is_zero = |id: Id| model.graph.constant(id).is_some_and(Number::is_zero);
-    let mut divisors = undivided.iter().filter(|(part, ..)| !is_zero(*part)).map(|(.., by)| by);
+    let mut divisors = without_root.iter().filter(|(part, ..)| !is_zero(*part)).map(|(.., by)| by);
     let first = divisors.next();
     if !divisors.all(|by| Some(by) == first) {
         return false;
@@ -72,7 +75,7 @@ pub(super) fn straight(model: &Model, region: &Region, depth: Option<&RootForm>)
         .coordinates()
         .iter()
         .map(|(coord, axis, _)| {
-            let (part, sign, _) = undivided[*axis];
+            let (part, sign, _) = without_root[*axis];
             let part = polynomials.of(&model.graph, part)?.scaled(&Number::int(sign));
             let by = monomial_of(*coord).iter().position(|exponent| *exponent > 0)?;
             Some((part, &slope[by]))
@@ -81,7 +84,7 @@ pub(super) fn straight(model: &Model, region: &Region, depth: Option<&RootForm>)
     let Some(parts) = parts else { return false };
     let parallel = |(a, u): &(Polynomial, &Polynomial), (b, v): &(Polynomial, &Polynomial)| {
         let cross = a.times(v)?.plus(&b.times(u)?.scaled(&Number::int(-1)));
-        Some(cross.is_nothing())
+        Some(cross.is_zero())
     };
     let mut pairs = parts
         .iter()
@@ -91,10 +94,10 @@ pub(super) fn straight(model: &Model, region: &Region, depth: Option<&RootForm>)
 }
 
 /// Returns a component of a vector without its sign and without the root that it is divided by.
-fn undivided(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
+fn without_root(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
     match *graph.node(part) {
         Node::Neg(a) => {
-            let (a, sign, by) = undivided(graph, a);
+            let (a, sign, by) = without_root(graph, a);
             (a, -sign, by)
         }
         Node::Div(a, by) | Node::Quotient(a, by) if matches!(graph.node(by), Node::Sqrt(_)) => {
@@ -105,24 +108,28 @@ fn undivided(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
 }
 
 /// Encloses the angle between a direction and the steepest descent over a box, if the direction does not
-/// vanish there. It is exact for a direction that is `straight`.
-pub(super) fn off(course: [Interval; 3], depth: Slope, straight: bool) -> Option<Interval> {
-    let down = depth.parts.map(Interval::negated);
-    let along = (0..3).fold(ZERO, |sum, k| sum.plus(course[k].times(down[k])));
-    match along {
-        _ if vanishes(course) => None,
-        Interval { low, .. } if straight && low > 0.0 => Some(ZERO),
-        Interval { high, .. } if straight && high < 0.0 => Some(Interval { low: PI, high: PI }),
-        _ if straight => None,
+/// vanish there. It is exact if `is_parallel` is set.
+pub(super) fn angle_to_descent(
+    direction: [Interval; 3],
+    depth: Slope,
+    is_parallel: bool,
+) -> Option<Interval> {
+    let descent = depth.partials.map(Interval::negated);
+    let dot_product = (0..3).fold(ZERO, |sum, k| sum.plus(direction[k].times(descent[k])));
+    match dot_product {
+        _ if vanishes(direction) => None,
+        Interval { low, .. } if is_parallel && low > 0.0 => Some(ZERO),
+        Interval { high, .. } if is_parallel && high < 0.0 => Some(Interval { low: PI, high: PI }),
+        _ if is_parallel => None,
         _ => {
             let unit = |vector: [Interval; 3], length: Interval| {
-                let per = length.reciprocal();
-                let one = Interval { low: -1.0, high: 1.0 };
-                vector.map(|part| part.times(per).common(one))
+                let reciprocal = length.reciprocal();
+                let unit_range = Interval { low: -1.0, high: 1.0 };
+                vector.map(|part| part.times(reciprocal).common(unit_range))
             };
-            let squares = course.map(Interval::square);
+            let squares = direction.map(Interval::square);
             let length = squares[0].plus(squares[1]).plus(squares[2]).sqrt();
-            Some(angle(unit(course, length), unit(down, depth.length)))
+            Some(angle(unit(direction, length), unit(descent, depth.length)))
         }
     }
 }

@@ -20,9 +20,9 @@ impl FromPoint {
         let (factor, under) = depth.root().filter(|_| depth.is_distance())?;
         let half = |coord| &under.exact_factor(monomial_of(coord)) / &Number::int(-2);
         // The half plane has D and Z, space has the other three; an absent coordinate is 0.
-        let across = half(Coord::D);
+        let radial = half(Coord::D);
         let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
-        let first = if across.is_zero() { x } else { across };
+        let first = if radial.is_zero() { x } else { radial };
         Some(FromPoint {
             sign: if factor.is_negative() { -1 } else { 1 },
             centre: [first, y, z],
@@ -38,9 +38,9 @@ impl FromPoint {
 
 /// Returns the terms of a linear function's value at a point.
 fn linear_at(depth: &RootForm, [first, y, z]: &[Number; 3]) -> [Number; 5] {
-    let at = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
+    let term = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
     let rest = depth.part().exact_factor([0; 4]);
-    [rest, at(Coord::D, first), at(Coord::X, first), at(Coord::Y, y), at(Coord::Z, z)]
+    [rest, term(Coord::D, first), term(Coord::X, first), term(Coord::Y, y), term(Coord::Z, z)]
 }
 
 /// Returns an upper bound of `a - b` everywhere, if one can be proved; 0 if it is not positive.
@@ -58,19 +58,19 @@ pub(super) fn excess(a: &RootForm, b: &RootForm) -> Option<f64> {
             linear_at(b, &a.centre).map(|term| -&term).into_iter().chain([a.rest]).collect()
         }
         (Some(a), Some(b)) => {
-            let apart = a.distance(&b)?;
+            let distance = a.distance(&b)?;
             let signed = match (a.sign, b.sign) {
-                (-1, 1) => -&apart,
-                (1, 1) | (-1, -1) => apart,
+                (-1, 1) => -&distance,
+                (1, 1) | (-1, -1) => distance,
                 _ => return None,
             };
             vec![a.rest, -&b.rest, signed]
         }
         _ => return None,
     };
-    let (most, size) = Number::sum(&terms);
-    let most = most.to_f64();
-    Some(if most <= ROUNDING * size { 0.0 } else { most.next_up() })
+    let (max_excess, size) = Number::sum(&terms);
+    let max_excess = max_excess.to_f64();
+    Some(if max_excess <= ROUNDING * size { 0.0 } else { max_excess.next_up() })
 }
 
 #[cfg(test)]
@@ -90,33 +90,33 @@ mod tests {
             let number = |value: f64| Number::from_f64(value).expect("finite");
             let [d, z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
             match self {
-                Distance::Line([x, y], rest) => RootForm::plainly(
+                Distance::Line([x, y], rest) => RootForm::from_polynomial(
                     &d.scaled(&number(x))
                         .plus(&z.scaled(&number(y)))
-                        .plus(&Polynomial::constantly(&number(rest))),
+                        .plus(&Polynomial::from_constant(&number(rest))),
                 ),
-                Distance::Point(sign, at, rest) => {
-                    let rest = Polynomial::constantly(&number(rest));
-                    let under = Polynomial::squared_distance(&at.map(number));
+                Distance::Point(sign, point, rest) => {
+                    let rest = Polynomial::from_constant(&number(rest));
+                    let under = Polynomial::squared_distance(&point.map(number));
                     RootForm::new(rest, Number::int(sign), under)
                 }
             }
         }
 
-        fn at(self, [d, z]: [f64; 2]) -> f64 {
+        fn value_at(self, [d, z]: [f64; 2]) -> f64 {
             match self {
                 Distance::Line([x, y], rest) => x * d + y * z + rest,
-                Distance::Point(sign, at, rest) => {
-                    sign as f64 * (d - at[0]).hypot(z - at[1]) + rest
+                Distance::Point(sign, point, rest) => {
+                    sign as f64 * (d - point[0]).hypot(z - point[1]) + rest
                 }
             }
         }
     }
 
     #[test]
-    fn no_point_of_a_grid_exceeds_and_one_far_along_comes_near() {
+    fn the_bound_holds_on_a_grid_and_is_nearly_attained() {
         let [a, b] = [[1.0, 2.0], [4.0, -2.0]];
-        let kinds = [
+        let distances = [
             Distance::Point(1, a, -0.5),
             Distance::Point(-1, a, 3.0),
             Distance::Point(1, b, 1.0),
@@ -125,22 +125,22 @@ mod tests {
             Distance::Line([-1.0, 0.0], 2.5),
         ];
         let mut bounded = 0;
-        for less in kinds {
-            for more in kinds {
-                let Some(most) = excess(&less.form(), &more.form()) else { continue };
+        for less in distances {
+            for more in distances {
+                let Some(max_excess) = excess(&less.form(), &more.form()) else { continue };
                 bounded += 1;
-                let mut seen = 0.0f64;
+                let mut largest = 0.0f64;
                 for k in 0..400 * 400 {
-                    let at = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
-                    seen = seen.max(less.at(at) - more.at(at));
+                    let point = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
+                    largest = largest.max(less.value_at(point) - more.value_at(point));
                 }
                 // On the line through both points, far away, differences of distances are largest.
                 for t in [-1e6, -2.0, 0.0, 0.5, 1.0, 2.0, 1e6] {
-                    let at = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
-                    seen = seen.max(less.at(at) - more.at(at));
+                    let point = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+                    largest = largest.max(less.value_at(point) - more.value_at(point));
                 }
-                assert!(seen <= most + 1e-9, "{seen} of {most}");
-                assert!(seen >= most - 0.1, "{seen} of {most}");
+                assert!(largest <= max_excess + 1e-9, "{largest} of {max_excess}");
+                assert!(largest >= max_excess - 0.1, "{largest} of {max_excess}");
             }
         }
         // Twelve pairs of points, and pairs of a line and a point in both orders.

@@ -24,7 +24,7 @@ use std::collections::HashMap;
 /// The largest difference, relative to the tool's size, between a depth and the distance to its segment for
 /// the two to count as equal. The difference is added to the certificate's slack, so the proof does not
 /// depend on this number.
-const NEAR: f64 = 1e-13;
+const DISTANCE_TOLERANCE_FRACTION: f64 = 1e-13;
 
 /// An end of a region's segment, as linear functions with a gradient of length 1.
 struct End {
@@ -38,24 +38,28 @@ struct End {
 type Ends = Vec<End>;
 
 /// The segments of a profile.
-pub(super) struct Feet<'m> {
+pub(super) struct ProfileFeet<'m> {
     model: &'m Model,
     /// The ends of each region's segment; a corner has none.
     ends: Vec<Ends>,
     /// The largest difference of depths from these distances.
-    pub(super) off: f64,
+    pub(super) max_difference: f64,
     /// A lower bound of each end's function on a side of a curve.
-    beside: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
+    bounds: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
 }
 
-impl<'m> Feet<'m> {
+impl<'m> ProfileFeet<'m> {
     /// Returns the segments of a profile, if each region's depth is the distance from the line, circle or
     /// corner of its own segment.
-    pub(super) fn of(tool: &'m PlannedTool, forms: &mut Forms<'_>, size: f64) -> Option<Feet<'m>> {
+    pub(super) fn of(
+        tool: &'m PlannedTool,
+        forms: &mut Forms<'_>,
+        size: f64,
+    ) -> Option<ProfileFeet<'m>> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
         let (features, whole) = (section.inner.features(), tool.extent.cell());
-        let mut off = 0.0f64;
+        let mut max_difference = 0.0f64;
         let ends = model.regions.iter().enumerate().map(|(index, region)| {
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
             let (distance, ends) = match *features.get(part)? {
@@ -68,47 +72,48 @@ impl<'m> Feet<'m> {
                     (from_point(&section.outline.get(piece)?.to), Ends::new())
                 }
             };
-            let apart = forms.of(region.depth)?.apart(&distance, &whole)?;
-            off = off.max(apart);
-            (apart <= NEAR * size).then_some(ends)
+            let difference = forms.of(region.depth)?.difference_bound(&distance, &whole)?;
+            max_difference = max_difference.max(difference);
+            (difference <= DISTANCE_TOLERANCE_FRACTION * size).then_some(ends)
         });
         let ends = ends.collect::<Option<_>>()?;
-        Some(Feet { model, ends, off, beside: HashMap::new() })
+        Some(ProfileFeet { model, ends, max_difference, bounds: HashMap::new() })
     }
 
     /// Returns an upper bound of the distance of feet past the ends of their owner's segment, for a claim's
     /// points in a box.
-    pub(super) fn beyond(&mut self, claim: &Claim, cover: &mut Cover<'_>, cell: Cell) -> f64 {
+    pub(super) fn overshoot(&mut self, claim: &Claim, cover: &mut Cover<'_>, cell: Cell) -> f64 {
         let Some(owner) = claim.owner else { return 0.0 };
-        let mut most = 0.0f64;
+        let mut max_overshoot = 0.0f64;
         for end in 0..self.ends[owner].len() {
-            let mut beyond = -self.ends[owner][end].inside.over(&cell).low;
+            let mut overshoot = -self.ends[owner][end].inside.over(&cell).low;
             for (curve, _) in &claim.signs {
-                if beyond <= 0.0 {
+                if overshoot <= 0.0 {
                     break;
                 }
-                let Some(below) = one_side(cover.own_sign(claim, *curve)) else { continue };
-                if let Some(least) = self.least((owner, end), (*curve, below), cell) {
-                    beyond = beyond.min(-least);
+                let Some(below) = one_side(cover.sign_at_claim(claim, *curve)) else { continue };
+                if let Some(min_distance) = self.min_distance((owner, end), (*curve, below), cell) {
+                    overshoot = overshoot.min(-min_distance);
                 }
             }
             let side = self.ends[owner][end].side.as_ref();
-            let behind = side.filter(|(side, _)| side.over(&cell).low < 0.0);
-            most = most.max(beyond * behind.map_or(1.0, |(_, scale)| *scale));
+            let far_side = side.filter(|(side, _)| side.over(&cell).low < 0.0);
+            max_overshoot =
+                max_overshoot.max(overshoot * far_side.map_or(1.0, |(_, scale)| *scale));
         }
-        most
+        max_overshoot
     }
 
     /// Returns a lower bound of the distance from an end's normal in a box, on one side of a curve: a nearby
     /// line, or a conic that does not cross the normal.
-    fn least(
+    fn min_distance(
         &mut self,
         (owner, end): (usize, usize),
         (curve, below): (CurveIndex, bool),
         cell: Cell,
     ) -> Option<f64> {
         let (model, ends) = (self.model, &self.ends);
-        let beside = || {
+        let bound = || {
             let curve = Polynomial::of(&model.graph, model.curves[curve].value)?;
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
@@ -119,15 +124,15 @@ impl<'m> Feet<'m> {
             let sign = Number::int(if below { 1 } else { -1 });
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end))
         };
-        let beside = self.beside.entry((owner, end, curve, below)).or_insert_with(beside);
-        beside.as_ref().map(|least| least.over(&cell).low)
+        let bound = self.bounds.entry((owner, end, curve, below)).or_insert_with(bound);
+        bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }
 
 /// Returns the linear function that grows along a unit vector and is 0 at a point.
-fn along([d, z]: &[Number; 2], from: &ExactPoint) -> Polynomial {
+fn linear_function([d, z]: &[Number; 2], from: &ExactPoint) -> Polynomial {
     let [of_d, of_z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
-    let rest = Polynomial::constantly(&-&(&(d * &from[0]) + &(z * &from[1])));
+    let rest = Polynomial::from_constant(&-&(&(d * &from[0]) + &(z * &from[1])));
     of_d.scaled(d).plus(&of_z.scaled(z)).plus(&rest)
 }
 
@@ -139,31 +144,34 @@ fn from_point(point: &ExactPoint) -> RootForm {
 fn distance(segment: &Segment) -> Option<RootForm> {
     let Some(circle) = &segment.circle else {
         let [d, z] = segment.direction()?;
-        return Some(RootForm::plainly(&along(&[-&z, d], &segment.from)));
+        return Some(RootForm::from_polynomial(&linear_function(&[-&z, d], &segment.from)));
     };
     let sign = if circle.convex { 1 } else { -1 };
-    let rest = Polynomial::constantly(&(&Number::int(sign) * &circle.radius));
+    let rest = Polynomial::from_constant(&(&Number::int(sign) * &circle.radius));
     Some(RootForm::new(rest, Number::int(-sign), Polynomial::squared_distance(&circle.centre)))
 }
 
 /// Returns the functions that are not negative between the normals at a segment's ends.
 fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
-        let ahead = segment.direction()?;
-        let back = ahead.each_ref().map(|part| -part);
+        let forward = segment.direction()?;
+        let backward = forward.each_ref().map(|part| -part);
         let end = |inside: Polynomial| End { inside, side: None };
-        return Some(vec![end(along(&ahead, &segment.from)), end(along(&back, &segment.to))]);
+        return Some(vec![
+            end(linear_function(&forward, &segment.from)),
+            end(linear_function(&backward, &segment.to)),
+        ]);
     };
     // To the left of the ray to one end and to the right of that to the other, or vice versa. Arcs span at
     // most 180°.
     let sign = Number::int(if circle.convex { 1 } else { -1 });
     let scale = diameter_by_chord([&segment.from, &segment.to], &circle.radius)?;
-    let beside = |end: &ExactPoint, sign: &Number| {
+    let end_at = |end: &ExactPoint, sign: &Number| {
         let [d, z] = unit_between(&circle.centre, end)?;
-        let side = Some((along(&[d.clone(), z.clone()], &circle.centre), scale));
-        Some(End { inside: along(&[&-&z * sign, &d * sign], &circle.centre), side })
+        let side = Some((linear_function(&[d.clone(), z.clone()], &circle.centre), scale));
+        Some(End { inside: linear_function(&[&-&z * sign, &d * sign], &circle.centre), side })
     };
-    Some(vec![beside(&segment.from, &sign)?, beside(&segment.to, &-&sign)?])
+    Some(vec![end_at(&segment.from, &sign)?, end_at(&segment.to, &-&sign)?])
 }
 
 /// Returns the ratio of an arc's diameter to its chord, rounded up.
@@ -181,9 +189,9 @@ mod tests {
 
     /// In doubles the chord would be wrong by a fifth.
     #[test]
-    fn short_arcs_far_out_have_their_chord() {
-        let place = |d: &str, z: &str| [d, z].map(|text| Number::decimal(text).expect("a number"));
-        let [from, to] = [place("1000.1", "0"), place("1000.1000000000006", "0.0000000000008")];
+    fn short_arcs_far_from_the_origin_keep_their_chord() {
+        let point = |d: &str, z: &str| [d, z].map(|text| Number::decimal(text).expect("a number"));
+        let [from, to] = [point("1000.1", "0"), point("1000.1000000000006", "0.0000000000008")];
         let scale = diameter_by_chord([&from, &to], &Number::int(5)).expect("two ends");
         assert!((1e13..=1e13 * (1.0 + 1e-15)).contains(&scale), "{scale:e}");
     }

@@ -38,9 +38,9 @@ impl Profile {
         let mut narrowest = diameters.fold(f64::INFINITY, f64::min);
         let last = outline.len().saturating_sub(1);
         for (index, piece) in outline.iter().enumerate() {
-            for (other, own) in outline.iter().enumerate().skip(index + 1) {
+            for (other, other_segment) in outline.iter().enumerate().skip(index + 1) {
                 let joint = (other == index + 1).then_some([1, 0]);
-                narrowest = narrowest.min(facing(piece, own, joint.as_slice()));
+                narrowest = narrowest.min(facing_distance(piece, other_segment, joint.as_slice()));
             }
             // The first and last segments continue as their own mirror images, which run in the opposite
             // sense.
@@ -48,12 +48,12 @@ impl Profile {
                 let ends = [(index == 0).then_some([0, 1]), (index == last).then_some([1, 0])];
                 let joints: Vec<_> =
                     ends.into_iter().flatten().filter(|_| other == index).collect();
-                narrowest = narrowest.min(facing(piece, image, &joints));
+                narrowest = narrowest.min(facing_distance(piece, image, &joints));
             }
         }
         // The whole closed curve.
-        let around = || outline.iter().chain(mirrored.iter().rev());
-        let sharpest = around().zip(around().cycle().skip(1)).map(|(before, after)| {
+        let closed_curve = || outline.iter().chain(mirrored.iter().rev());
+        let sharpest = closed_curve().zip(closed_curve().cycle().skip(1)).map(|(before, after)| {
             let [before, after] = [before.tangent(true), after.tangent(false)];
             let turn = cross(before, after).atan2(dot(before, after));
             (0.5 * turn.min(0.0)).cos()
@@ -62,58 +62,61 @@ impl Profile {
     }
 
     /// Returns an upper bound of the distance from the solid's surface to the profile. `slack` bounds depth
-    /// where the solid ends, and the points that decide which side is solid lie `beside` the profile at that
-    /// distance. Returns `None` if this does not prove that the profile encloses the solid.
-    pub(super) fn off(&self, slack: f64, beside: f64) -> Option<f64> {
-        let off = 4.0 * slack / self.sharpest;
-        (2.0 * off < self.narrowest && 4.0 * slack < beside).then_some(off)
+    /// where the solid ends, and the points that decide which side is solid lie at a distance of `test_offset`
+    /// from the profile. Returns `None` if this does not prove that the profile encloses the solid.
+    pub(super) fn max_distance(&self, slack: f64, test_offset: f64) -> Option<f64> {
+        let max_distance = 4.0 * slack / self.sharpest;
+        (2.0 * max_distance < self.narrowest && 4.0 * slack < test_offset).then_some(max_distance)
     }
 }
 
 /// Returns a lower bound of the distance between points of two segments that face each other. `joints` are
 /// the ends that the segments share, as pairs of indices of an end of each.
-fn facing(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
-    let mut least = f64::INFINITY;
+fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
+    let mut min_distance = f64::INFINITY;
     for (side, from, to) in [(0, one, other), (1, other, one)] {
         for (end, point) in from.ends().into_iter().enumerate() {
             if !joints.iter().any(|joint| joint[side] == end) {
-                least = least.min(to.away(point));
+                min_distance = min_distance.min(to.distance_to(point));
             }
         }
     }
-    let between = |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
+    let is_between_normals =
+        |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
     for [p, q] in normals(one, other) {
-        let facing = dot(one.inward(p), other.inward(q)) < 0.0;
-        if facing && between(one, p) && between(other, q) {
-            least = least.min(norm(minus(p, q)));
+        let facing_distance = dot(one.inward(p), other.inward(q)) < 0.0;
+        if facing_distance && is_between_normals(one, p) && is_between_normals(other, q) {
+            min_distance = min_distance.min(norm(minus(p, q)));
         }
     }
-    least
+    min_distance
 }
 
 /// Returns the pairs of points, one on each line or circle, that lie on a common normal. Two lines and two
 /// concentric circles have none: the distances from their ends suffice.
 fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
-    let on = |from: Point, direction: Point, by: f64| {
+    let point_along = |from: Point, direction: Point, by: f64| {
         [from[0] + by * direction[0], from[1] + by * direction[1]]
     };
     match (one.round(), other.round()) {
         (None, None) => Vec::new(),
         (None, Some((centre, radius, _))) => {
             let (start, along) = (one.ends()[0], one.tangent(false));
-            let foot = on(start, along, dot(minus(centre, start), along));
+            let foot = point_along(start, along, dot(minus(centre, start), along));
             let across = [-along[1], along[0]];
-            [radius, -radius].map(|by| [foot, on(centre, across, by)]).to_vec()
+            [radius, -radius].map(|by| [foot, point_along(centre, across, by)]).to_vec()
         }
         (Some(_), None) => normals(other, one).into_iter().map(|[p, q]| [q, p]).collect(),
         (Some((a, r, _)), Some((b, s, _))) => {
-            let apart = norm(minus(b, a));
-            if apart == 0.0 {
+            let centre_distance = norm(minus(b, a));
+            if centre_distance == 0.0 {
                 return Vec::new();
             }
-            let direction = minus(b, a).map(|part| part / apart);
+            let direction = minus(b, a).map(|part| part / centre_distance);
             let pairs = [[r, s], [r, -s], [-r, s], [-r, -s]];
-            pairs.map(|[r, s]| [on(a, direction, r), on(b, direction, s)]).to_vec()
+            pairs
+                .map(|[r, s]| [point_along(a, direction, r), point_along(b, direction, s)])
+                .to_vec()
         }
     }
 }
@@ -123,7 +126,7 @@ mod tests {
     use super::*;
     use crate::source::Source;
 
-    fn of(profile: &str) -> Profile {
+    fn profile_of(profile: &str) -> Profile {
         let profile = profile.replace(';', " as body;").replacen(" as body", "", 1);
         let text = format!("tool T \"a profile\" {{ units mm; profile {{ {profile} }} }}");
         let compiled = crate::compile(&Source::new("t.tool", text));
@@ -133,7 +136,7 @@ mod tests {
         Profile::new(&section.outline)
     }
 
-    fn near(value: f64, expected: f64) {
+    fn assert_near(value: f64, expected: f64) {
         assert!((value - expected).abs() < 1e-9, "{value} is not {expected}");
     }
 
@@ -142,48 +145,48 @@ mod tests {
         // A groove 0.25 wide in the side; a wall 0.3 thick on the face; a hole of radius 0.1 in the end.
         let groove =
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);";
-        near(of(groove).narrowest, 0.25);
+        assert_near(profile_of(groove).narrowest, 0.25);
         let wall = "start (0, 2); line to (4, 2), (4, 0), (4.3, 0), (4.3, 20), (0, 20);";
-        near(of(wall).narrowest, 0.3);
+        assert_near(profile_of(wall).narrowest, 0.3);
         let hole = "start (0, 2); line to (0.1, 2), (0.1, 0), (6, 0), (6, 20), (0, 20);";
         // The bottom of the hole ends on the axis, at this distance from its wall.
-        near(of(hole).narrowest, 0.1);
-        let reach = "start (0, 0); line to (5, 0), (5, 20), (0, 20);";
-        near(of(reach).narrowest, 5.0);
+        assert_near(profile_of(hole).narrowest, 0.1);
+        let pin = "start (0, 0); line to (5, 0), (5, 20), (0, 20);";
+        assert_near(profile_of(pin).narrowest, 5.0);
     }
 
     #[test]
-    fn narrowest_sees_arcs() {
+    fn narrowest_includes_arcs() {
         // The closest approach of a ball and of a neck's fillet to the axis and to each other.
-        near(of("start (0, 0); arc to (0, 6) center (0, 3);").narrowest, 6.0);
+        assert_near(profile_of("start (0, 0); arc to (0, 6) center (0, 3);").narrowest, 6.0);
         let neck = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3, 6) concave; line to (3, 20), (0, 20);";
-        near(of(neck).narrowest, 2.0);
+        assert_near(profile_of(neck).narrowest, 2.0);
         // A bead of a sixth of a circle leaves the wall at 30°, like a corner with a small outside angle.
         let bead = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3 - 2*sqrt(3), 6); line to (3, 20), (0, 20);";
-        near(of(bead).sharpest, 15f64.to_radians().cos());
+        assert_near(profile_of(bead).sharpest, 15f64.to_radians().cos());
     }
 
     /// At a joint where a line continues as a circle nothing faces anything, and neither do the sides of a
     /// corner.
     #[test]
-    fn neighbours_do_not_face_each_other() {
+    fn adjacent_segments_do_not_face_each_other() {
         let ball = "start (0, 0); arc to (3, 3) center (0, 3); line to (3, 20), (0, 20);";
-        near(of(ball).narrowest, 3.0);
+        assert_near(profile_of(ball).narrowest, 3.0);
         let needle = "start (0, 0); line to (4, 10), (0, 10.5);";
-        let profile = of(needle);
+        let profile = profile_of(needle);
         assert!(profile.narrowest > 3.0, "{}", profile.narrowest);
-        near(profile.sharpest, 1.0);
+        assert_near(profile.sharpest, 1.0);
     }
 
     #[test]
-    fn what_is_narrower_than_the_slack_is_not_shown() {
-        let slot = of(
+    fn passages_narrower_than_the_slack_are_not_proved() {
+        let slot = profile_of(
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);",
         );
         // The bottom of the slot has outside corners of 90°.
-        assert!(slot.off(0.02, 0.1).is_some() && slot.off(0.025, 0.2).is_none());
-        assert_eq!(slot.off(0.0, 0.1), Some(0.0));
+        assert!(slot.max_distance(0.02, 0.1).is_some() && slot.max_distance(0.025, 0.2).is_none());
+        assert_eq!(slot.max_distance(0.0, 0.1), Some(0.0));
         // Points this close decide nothing.
-        assert_eq!(slot.off(0.02, 0.08), None);
+        assert_eq!(slot.max_distance(0.02, 0.08), None);
     }
 }

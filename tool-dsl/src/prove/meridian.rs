@@ -5,7 +5,7 @@
 //! then the same in each half plane that ends on the axis, and one of them suffices, as for a tool. This
 //! takes far fewer boxes, and nested lengths such as `hypot(x, hypot(y, z) - r)` become lengths.
 
-use super::rounding::Errors;
+use super::rounding::RoundingErrors;
 use super::witness::Witness;
 use super::{Certificate, RegionFacts};
 use crate::bound::Extent;
@@ -17,14 +17,14 @@ use crate::model::{Model, RegionOutputs};
 use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
-const COORDINATES: [Coord; 3] = [Coord::X, Coord::Y, Coord::Z];
+const SPACE_COORDINATES: [Coord; 3] = [Coord::X, Coord::Y, Coord::Z];
 
 /// A solid of revolution as a tool in a half plane.
 pub(super) struct Meridian {
     pub(super) tool: PlannedTool,
     axis: usize,
     /// The axes perpendicular to it. The half plane lies along the first.
-    across: [usize; 2],
+    perpendicular: [usize; 2],
 }
 
 impl Meridian {
@@ -34,40 +34,43 @@ impl Meridian {
             return None;
         }
         let mut axes = [(0, [1, 2]), (1, [2, 0]), (2, [0, 1])].into_iter();
-        let (axis, across) = axes.find(|(axis, across)| {
-            let coords = across.map(|axis| COORDINATES[axis]);
-            let turns = &mut Turns::new(&tool.model.graph, coords);
+        let (axis, perpendicular) = axes.find(|(axis, perpendicular)| {
+            let coords = perpendicular.map(|axis| SPACE_COORDINATES[axis]);
+            let behaviour = &mut RotationBehaviour::new(&tool.model.graph, coords);
             let model = &tool.model;
-            let [first, second] = *across;
-            model.curves.iter().all(|curve| turns.keeps(curve.value))
+            let [first, second] = *perpendicular;
+            model.curves.iter().all(|curve| behaviour.is_invariant(curve.value))
                 && model.regions.iter().all(|region| {
                     let evaluation = [region.depth, region.magnitude, region.niceness];
-                    let (course, _) = region.raw_direction;
-                    evaluation.into_iter().chain([course[*axis]]).all(|id| turns.keeps(id))
-                        && turns.turns([course[first], course[second]])
+                    let (direction, _) = region.raw_direction;
+                    evaluation
+                        .into_iter()
+                        .chain([direction[*axis]])
+                        .all(|id| behaviour.is_invariant(id))
+                        && behaviour.rotates([direction[first], direction[second]])
                 })
         })?;
-        let model = in_half_plane(&tool.model, axis, across)?;
+        let model = in_half_plane(&tool.model, axis, perpendicular)?;
         let sides = tool.extent.cell().sides;
-        let reach = across.map(|axis| sides[axis].abs().high);
+        let reach = perpendicular.map(|axis| sides[axis].abs().high);
         let radius = reach[0].min(reach[1]);
         let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
         let extent = Extent::of(cell, radius);
         let tool = PlannedTool { model, extent, plan: tool.plan.clone() };
-        Some(Meridian { tool, axis, across })
+        Some(Meridian { tool, axis, perpendicular })
     }
 
     /// Converts the certificate of the half plane to that of the solid.
-    pub(super) fn turned(&self, proved: Certificate, tool: &PlannedTool) -> Certificate {
+    pub(super) fn revolved(&self, proved: Certificate, tool: &PlannedTool) -> Certificate {
         let (model, whole) = (&tool.model, tool.extent.cell());
         let depths = model.regions.iter().map(|region| region.depth);
-        let mut errors = Errors::new(&model.graph, model.domain, depths);
+        let mut errors = RoundingErrors::new(&model.graph, model.domain, depths);
         let shares = Witness::new(tool, proved.tolerance).shares();
         let facts = proved.regions.into_iter().zip(&model.regions).zip(shares);
         let regions = facts.map(|((facts, region), share)| RegionFacts {
             share,
-            oblique: facts.oblique.map(|(angle, at)| (angle, self.point(at))),
-            rises: facts.rises.map(|(rate, at)| (rate, self.point(at))),
+            oblique: facts.oblique.map(|(angle, point)| (angle, self.point(point))),
+            rises: facts.rises.map(|(rate, point)| (rate, self.point(point))),
             singular: facts.singular.iter().map(|cell| self.cell(cell)).collect(),
             rounding: errors.over(region.depth, &whole),
             ..facts
@@ -75,7 +78,7 @@ impl Meridian {
         let regions = regions.collect();
         let mut borders = proved.borders;
         for border in &mut borders {
-            border.seen = border.seen.map(|(at, depths)| (self.point(at), depths));
+            border.seen = border.seen.map(|(point, depths)| (self.point(point), depths));
         }
         let mut undecided = proved.undecided;
         undecided.iter_mut().for_each(|open| open.cell = self.cell(&open.cell));
@@ -85,7 +88,7 @@ impl Meridian {
     fn point(&self, [d, _, z]: [f64; 3]) -> [f64; 3] {
         let mut point = [0.0; 3];
         point[self.axis] = z;
-        point[self.across[0]] = d;
+        point[self.perpendicular[0]] = d;
         point
     }
 
@@ -94,7 +97,7 @@ impl Meridian {
         let [d, _, z] = cell.sides;
         let mut sides = [ZERO; 3];
         sides[self.axis] = z;
-        for axis in self.across {
+        for axis in self.perpendicular {
             sides[axis] = Interval { low: -d.high, high: d.high };
         }
         Cell { sides }
@@ -102,31 +105,38 @@ impl Meridian {
 }
 
 /// A classification of nodes by their behaviour under rotation of the point about an axis.
-struct Turns<'g> {
+struct RotationBehaviour<'g> {
     graph: &'g Graph,
     /// The coordinates perpendicular to the axis.
-    across: [Coord; 2],
+    perpendicular: [Coord; 2],
     polynomials: Polynomials,
     known: HashMap<Id, bool>,
 }
 
-impl<'g> Turns<'g> {
-    fn new(graph: &'g Graph, across: [Coord; 2]) -> Turns<'g> {
-        Turns { graph, across, polynomials: Polynomials::default(), known: HashMap::new() }
+impl<'g> RotationBehaviour<'g> {
+    fn new(graph: &'g Graph, perpendicular: [Coord; 2]) -> RotationBehaviour<'g> {
+        RotationBehaviour {
+            graph,
+            perpendicular,
+            polynomials: Polynomials::default(),
+            known: HashMap::new(),
+        }
     }
 
     /// Returns whether a node is invariant: a polynomial if `y ∂/∂z - z ∂/∂y` of it is 0, any other node if
     /// its operands are.
-    fn keeps(&mut self, id: Id) -> bool {
+    fn is_invariant(&mut self, id: Id) -> bool {
         for id in self.graph.needed([id]) {
             if !self.known.contains_key(&id) {
                 let node = self.graph.node(id);
-                let keeps = match self.polynomials.of(self.graph, id).and_then(in_space) {
-                    Some(polynomial) => is_kept(&polynomial, self.across),
-                    None if *node == Node::Coord(Coord::D) => self.across == [Coord::X, Coord::Y],
+                let is_invariant = match self.polynomials.of(self.graph, id).and_then(in_space) {
+                    Some(polynomial) => is_invariant_polynomial(&polynomial, self.perpendicular),
+                    None if *node == Node::Coord(Coord::D) => {
+                        self.perpendicular == [Coord::X, Coord::Y]
+                    }
                     None => node.operands().all(|operand| self.known[&operand]),
                 };
-                self.known.insert(id, keeps);
+                self.known.insert(id, is_invariant);
             }
         }
         self.known[&id]
@@ -134,25 +144,27 @@ impl<'g> Turns<'g> {
 
     /// Returns whether two nodes turn with the point: they are the coordinates perpendicular to the axis,
     /// multiplied by a common invariant factor.
-    fn turns(&mut self, [a, b]: [Id; 2]) -> bool {
+    fn rotates(&mut self, [a, b]: [Id; 2]) -> bool {
         let graph = self.graph;
         let is_zero = |id: Id| graph.constant(id).is_some_and(|value| value.is_zero());
         match (graph.node(a), graph.node(b)) {
             _ if is_zero(a) && is_zero(b) => true,
-            (Node::Coord(a), Node::Coord(b)) => [*a, *b] == self.across,
-            (Node::Neg(a), Node::Neg(b)) => self.turns([*a, *b]),
+            (Node::Coord(a), Node::Coord(b)) => [*a, *b] == self.perpendicular,
+            (Node::Neg(a), Node::Neg(b)) => self.rotates([*a, *b]),
             (Node::Add(a, b), Node::Add(c, d)) => {
-                self.turns([*a, *c]) && self.turns([*b, *d])
-                    || self.turns([*a, *d]) && self.turns([*b, *c])
+                self.rotates([*a, *c]) && self.rotates([*b, *d])
+                    || self.rotates([*a, *d]) && self.rotates([*b, *c])
             }
-            (Node::Sub(a, b), Node::Sub(c, d)) => self.turns([*a, *c]) && self.turns([*b, *d]),
+            (Node::Sub(a, b), Node::Sub(c, d)) => self.rotates([*a, *c]) && self.rotates([*b, *d]),
             (Node::Div(a, b), Node::Div(c, d)) | (Node::Quotient(a, b), Node::Quotient(c, d)) => {
-                b == d && self.keeps(*b) && self.turns([*a, *c])
+                b == d && self.is_invariant(*b) && self.rotates([*a, *c])
             }
             (Node::Mul(a, b), Node::Mul(c, d)) => {
                 [(a, b), (b, a)].into_iter().any(|(factor, part)| {
                     [(c, d), (d, c)].into_iter().any(|(other, other_part)| {
-                        factor == other && self.keeps(*factor) && self.turns([*part, *other_part])
+                        factor == other
+                            && self.is_invariant(*factor)
+                            && self.rotates([*part, *other_part])
                     })
                 })
             }
@@ -161,10 +173,10 @@ impl<'g> Turns<'g> {
                 Node::Select { low: lower, high: higher, then: c, other: d },
             ) => {
                 [low, high] == [lower, higher]
-                    && self.keeps(*low)
-                    && self.keeps(*high)
-                    && self.turns([*a, *c])
-                    && self.turns([*b, *d])
+                    && self.is_invariant(*low)
+                    && self.is_invariant(*high)
+                    && self.rotates([*a, *c])
+                    && self.rotates([*b, *d])
             }
             _ => false,
         }
@@ -177,8 +189,8 @@ fn in_space(polynomial: &Polynomial) -> Option<Polynomial> {
     let square = x.times(&x)?.plus(&y.times(&y)?);
     let mut sum = Polynomial::zero();
     for (monomial, factor) in polynomial.terms() {
-        let mut term = Polynomial::constantly(factor);
-        for (exponent, coord) in monomial[1..].iter().zip(COORDINATES) {
+        let mut term = Polynomial::from_constant(factor);
+        for (exponent, coord) in monomial[1..].iter().zip(SPACE_COORDINATES) {
             for _ in 0..*exponent {
                 term = term.times(&Polynomial::coordinate(coord))?;
             }
@@ -192,37 +204,37 @@ fn in_space(polynomial: &Polynomial) -> Option<Polynomial> {
 }
 
 /// Returns whether a polynomial is invariant under rotation about an axis.
-fn is_kept(polynomial: &Polynomial, across: [Coord; 2]) -> bool {
-    let [y, z] = across;
+fn is_invariant_polynomial(polynomial: &Polynomial, perpendicular: [Coord; 2]) -> bool {
+    let [y, z] = perpendicular;
     let term = |by: Coord, times: Coord| {
-        let at = monomial_of(by).iter().position(|exponent| *exponent > 0)?;
-        polynomial.derivative(at).times(&Polynomial::coordinate(times))
+        let index = monomial_of(by).iter().position(|exponent| *exponent > 0)?;
+        polynomial.derivative(index).times(&Polynomial::coordinate(times))
     };
-    let Some((up, down)) = term(z, y).zip(term(y, z)) else { return false };
-    up.plus(&down.scaled(&crate::number::Number::int(-1))).is_nothing()
+    let Some((first_term, second_term)) = term(z, y).zip(term(y, z)) else { return false };
+    first_term.plus(&second_term.scaled(&crate::number::Number::int(-1))).is_zero()
 }
 
 /// Returns the model on the half plane where the second coordinate perpendicular to the axis is 0 and the
 /// first is not negative.
-fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model> {
+fn in_half_plane(model: &Model, axis: usize, perpendicular: [usize; 2]) -> Option<Model> {
     let mut graph = Graph::default();
-    let mut moved: HashMap<Id, Id> = HashMap::new();
-    let mut here = [graph.int(0); 3];
-    here[axis] = graph.coord(Coord::Z);
-    here[across[0]] = graph.coord(Coord::D);
-    let squares = [0, 1].map(|axis| graph.mul(here[axis], here[axis]));
+    let mut mapped: HashMap<Id, Id> = HashMap::new();
+    let mut coordinates = [graph.int(0); 3];
+    coordinates[axis] = graph.coord(Coord::Z);
+    coordinates[perpendicular[0]] = graph.coord(Coord::D);
+    let squares = [0, 1].map(|axis| graph.mul(coordinates[axis], coordinates[axis]));
     let square = graph.add(squares[0], squares[1]);
     let evaluation = model.regions.iter().flat_map(|region| {
         let evaluation = [region.depth, region.magnitude, region.niceness];
         evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
     });
     for id in model.graph.needed(evaluation.chain(model.curves.iter().map(|curve| curve.value))) {
-        let at = |id: &Id| moved[id];
-        let there = match model.graph.node(id) {
+        let at = |id: &Id| mapped[id];
+        let image = match model.graph.node(id) {
             Node::Const(value) => graph.number(value.clone()),
-            Node::Coord(Coord::X) => here[0],
-            Node::Coord(Coord::Y) => here[1],
-            Node::Coord(Coord::Z) => here[2],
+            Node::Coord(Coord::X) => coordinates[0],
+            Node::Coord(Coord::Y) => coordinates[1],
+            Node::Coord(Coord::Z) => coordinates[2],
             Node::Coord(Coord::Q) => square,
             Node::Coord(Coord::D) => graph.sqrt(square)?,
             Node::Coord(coord) => graph.coord(*coord),
@@ -240,16 +252,16 @@ fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model
                 graph.select(at(low), at(high), at(then), at(other))
             }
         };
-        moved.insert(id, there);
+        mapped.insert(id, image);
     }
     let zero = graph.int(0);
-    let at = |id: Id| moved[&id];
-    let way = |way: [Id; 3]| [at(way[across[0]]), zero, at(way[axis])];
+    let at = |id: Id| mapped[&id];
+    let in_plane = |vector: [Id; 3]| [at(vector[perpendicular[0]]), zero, at(vector[axis])];
     let mut model = Model { domain: Domain::HalfPlane, graph, ..model.clone() };
     model.curves.iter_mut().for_each(|curve| curve.value = at(curve.value));
     for region in &mut model.regions {
-        region.direction = way(region.direction);
-        region.raw_direction.0 = way(region.raw_direction.0);
+        region.direction = in_plane(region.direction);
+        region.raw_direction.0 = in_plane(region.raw_direction.0);
         [region.depth, region.magnitude, region.niceness] =
             [region.depth, region.magnitude, region.niceness].map(at);
         region.outputs = RegionOutputs {

@@ -53,15 +53,15 @@ const TOLERANCE: f64 = 1e-6;
 
 /// The size of boxes, relative to the tool's size, in which the proof looks for points with different depths,
 /// and for a third depth that explains how two meet.
-const SMALL: f64 = 1.0 / 1024.0;
+const SMALL_BOX_FRACTION: f64 = 1.0 / 1024.0;
 
 /// The relative tolerance within which both bounds must be 1 for depth to count as the distance, see
-/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`nonsmooth::ROUNDING`]).
-const EXACT: f64 = 1e-8;
+/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`nonsmooth::SLOPE_MARGIN`]).
+const EXACT_TOLERANCE: f64 = 1e-8;
 
 /// The number of boxes that a proof may use, and that a proof during compilation may use.
-const MANY: usize = 35_000;
-const FEW: usize = 4_000;
+const MAX_BOXES: usize = 35_000;
+const MAX_BOXES_IN_COMPILATION: usize = 4_000;
 
 /// The facts proved about a tool.
 #[derive(Clone, Debug)]
@@ -78,7 +78,7 @@ pub struct Certificate {
     /// The number of boxes examined.
     pub boxes: usize,
     /// The least slope of the depth toward the surface.
-    least: f64,
+    min_slope: f64,
     /// The slack of all bounds, in the file's unit: `c · distance - slack ≤ depth ≤ L · distance + slack`,
     /// and depth changes by at most L times the length of a path plus the slack. It includes jumps of depth
     /// at points where regions meet that no curve joins. For a profile it also includes the distance of feet
@@ -183,7 +183,7 @@ impl Border {
         self.turn = self.turn.hull(other.turn);
         self.turn_on_surface = match (self.turn_on_surface, other.turn_on_surface) {
             (Some(a), Some(b)) => Some(a.hull(b)),
-            (one, other) => one.or(other),
+            (is_one, other) => is_one.or(other),
         };
         self.depth = self.depth.hull(other.depth);
         self.seen = self.seen.or(other.seen);
@@ -215,37 +215,39 @@ impl Bounds {
     /// independently. Regions by hand are examined in a few thousand boxes, except for their owners, which
     /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
-        let rounding = rounding::over(tool);
-        let written = |region: &Region| region.source == DirectionSource::Written;
+        let rounding = rounding::bound_over_tool(tool);
+        let is_written = |region: &Region| region.source == DirectionSource::Written;
         let exact = Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding };
-        if tool.model.is_exact() && !tool.model.regions.iter().any(written) {
+        if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
             return (exact, Vec::new());
         }
-        let proved = proved(tool, FEW, false);
+        let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
         // A statement that is undecided here may be provable with more boxes.
-        let diagnostics = proved.certain(tool);
+        let diagnostics = certificate.certain_diagnostics(tool);
         if tool.model.is_exact() {
             return (exact, diagnostics);
         }
-        let [least, lipschitz] = [proved.lower_slope(), proved.lipschitz()];
-        let rounding = rounding + proved.slack;
-        (Bounds { least, lipschitz, rounding }, diagnostics)
+        let [min_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
+        let rounding = rounding + certificate.slack;
+        (Bounds { least: min_slope, lipschitz, rounding }, diagnostics)
     }
 }
 
-/// Proves as much as possible with a number of boxes. For regions by hand this includes, if `alone` is set,
-/// that no two of them overlap.
-fn proved(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
+/// Proves as much as possible with a number of boxes. For regions by hand this includes, if
+/// `check_overlaps` is set, that no two of them overlap.
+fn prove_with_budget(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
     match Meridian::of(tool) {
-        Some(meridian) => meridian.turned(survey::survey(&meridian.tool, boxes, alone), tool),
-        None => survey::survey(tool, boxes, alone),
+        Some(meridian) => {
+            meridian.revolved(survey::survey(&meridian.tool, boxes, check_overlaps), tool)
+        }
+        None => survey::survey(tool, boxes, check_overlaps),
     }
 }
 
 impl Certificate {
     /// Proves as much as possible about a tool.
     pub fn of(tool: &PlannedTool) -> Certificate {
-        proved(tool, MANY, true)
+        prove_with_budget(tool, MAX_BOXES, true)
     }
 
     /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
@@ -264,13 +266,13 @@ impl Certificate {
     /// Returns `c`, if it is proved: depth is at least `c` times the distance to the surface, up to the
     /// [slack](Certificate::slack).
     pub fn lower_slope(&self) -> Option<f64> {
-        (self.is_continuous() && self.least > 0.0).then_some(self.least)
+        (self.is_continuous() && self.min_slope > 0.0).then_some(self.min_slope)
     }
 
     /// Returns whether depth is proved to be the distance to the surface, to a part in 10^8 and up to the
     /// [slack](Certificate::slack).
     pub fn is_exact(&self) -> bool {
-        let one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT);
-        one(self.lipschitz()) && one(self.lower_slope())
+        let is_one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT_TOLERANCE);
+        is_one(self.lipschitz()) && is_one(self.lower_slope())
     }
 }

@@ -17,36 +17,36 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// The largest number of boxes divided for one end of a range.
-const BOXES: usize = 2_000;
+const MAX_BOXES: usize = 2_000;
 
 /// The accuracy of ends, relative to the range or to 1.
-const FINE: f64 = 1e-4;
+const RELATIVE_ACCURACY: f64 = 1e-4;
 
 /// A box, and an upper bound of the required end in it.
-struct Open {
+struct OpenBox {
     bound: f64,
     cell: Cell,
 }
 
-impl Ord for Open {
-    fn cmp(&self, other: &Open) -> Ordering {
+impl Ord for OpenBox {
+    fn cmp(&self, other: &OpenBox) -> Ordering {
         self.bound.total_cmp(&other.bound)
     }
 }
 
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
+impl PartialOrd for OpenBox {
+    fn partial_cmp(&self, other: &OpenBox) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Open {
-    fn eq(&self, other: &Open) -> bool {
+impl PartialEq for OpenBox {
+    fn eq(&self, other: &OpenBox) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Open {}
+impl Eq for OpenBox {}
 
 /// The inputs of a range.
 pub(super) struct Ranges<'s, 't> {
@@ -58,18 +58,18 @@ pub(super) struct Ranges<'s, 't> {
 impl Ranges<'_, '_> {
     /// Encloses the niceness of a region that is known to lie within `known`.
     pub(super) fn niceness(&mut self, index: usize, region: &Region, known: Interval) -> Interval {
-        let high = self.most(index, region, 1.0, known.high);
-        let low = -self.most(index, region, -1.0, -known.low);
+        let high = self.upper_bound(index, region, 1.0, known.high);
+        let low = -self.upper_bound(index, region, -1.0, -known.low);
         Interval { low, high }
     }
 
     /// Returns an upper bound of `sign` times the niceness.
-    fn most(&mut self, index: usize, region: &Region, sign: f64, known: f64) -> f64 {
-        let mut open = BinaryHeap::from([Open { bound: known, cell: self.whole }]);
-        let mut seen = f64::NEG_INFINITY;
-        for _ in 0..BOXES {
-            let Some(Open { bound, cell }) = open.pop() else { return seen };
-            if bound - seen <= FINE * bound.abs().max(1.0) {
+    fn upper_bound(&mut self, index: usize, region: &Region, sign: f64, known: f64) -> f64 {
+        let mut open = BinaryHeap::from([OpenBox { bound: known, cell: self.whole }]);
+        let mut largest = f64::NEG_INFINITY;
+        for _ in 0..MAX_BOXES {
+            let Some(OpenBox { bound, cell }) = open.pop() else { return largest };
+            if bound - largest <= RELATIVE_ACCURACY * bound.abs().max(1.0) {
                 return bound;
             }
             for cell in halves(cell) {
@@ -77,52 +77,56 @@ impl Ranges<'_, '_> {
                 if !claims.iter().any(|claim| claim.owner == Some(index)) {
                     continue;
                 }
-                let Some((here, middle)) = self.enclose(region, sign, cell) else { continue };
-                let at = Cell::point(cell.middle());
-                let owns = self.cover.claims(at).iter().all(|claim| claim.owner == Some(index));
-                if owns {
-                    seen = seen.max(middle);
+                let Some((box_bound, middle)) = self.enclose(region, sign, cell) else { continue };
+                let centre = Cell::point(cell.middle());
+                let is_owned =
+                    self.cover.claims(centre).iter().all(|claim| claim.owner == Some(index));
+                if is_owned {
+                    largest = largest.max(middle);
                 }
-                open.push(Open { bound: here.min(bound), cell });
+                open.push(OpenBox { bound: box_bound.min(bound), cell });
             }
         }
-        open.peek().map_or(seen, |open| open.bound)
+        open.peek().map_or(largest, |open| open.bound)
     }
 
     /// Returns an upper bound of `sign` times the niceness in a box, and its value at the centre; `None` if
     /// the box has no point that is inside.
     fn enclose(&mut self, region: &Region, sign: f64, cell: Cell) -> Option<(f64, f64)> {
         self.slopes.set(Cell::point(cell.middle()));
-        let [depth, nice] = [region.depth, region.niceness].map(|id| self.slopes.get(id).value);
+        let [depth, centre_niceness] =
+            [region.depth, region.niceness].map(|id| self.slopes.get(id).value);
         self.slopes.set(cell);
-        let (over, of) = (self.slopes.get(region.depth), self.slopes.get(region.niceness));
-        if over.value.high < 0.0 {
+        let (depth_slope, niceness_slope) =
+            (self.slopes.get(region.depth), self.slopes.get(region.niceness));
+        if depth_slope.value.high < 0.0 {
             return None;
         }
         let signed = |value: Interval| value.times(Interval::new(sign, sign));
-        let plain = signed(of.value).high;
-        let rate = -sign * rate(&over, &of);
-        let with = Interval::new(rate, rate);
-        let mut sum = signed(nice).plus(with.times(depth));
+        let direct_bound = signed(niceness_slope.value).high;
+        let rate = -sign * rate(&depth_slope, &niceness_slope);
+        let rate_interval = Interval::new(rate, rate);
+        let mut sum = signed(centre_niceness).plus(rate_interval.times(depth));
         for axis in 0..3 {
-            let slope = signed(of.parts[axis]).plus(with.times(over.parts[axis]));
+            let slope = signed(niceness_slope.partials[axis])
+                .plus(rate_interval.times(depth_slope.partials[axis]));
             let middle = cell.middle()[axis];
             sum = sum.plus(slope.times(cell.sides[axis].plus(Interval::new(-middle, -middle))));
         }
-        let inside = Interval { low: over.value.low.max(0.0), high: over.value.high };
-        let bound = sum.plus(with.times(inside).negated()).high;
-        let bound = if bound.is_nan() { plain } else { bound.min(plain) };
-        Some((bound, signed(nice).middle()))
+        let inside = Interval { low: depth_slope.value.low.max(0.0), high: depth_slope.value.high };
+        let bound = sum.plus(rate_interval.times(inside).negated()).high;
+        let bound = if bound.is_nan() { direct_bound } else { bound.min(direct_bound) };
+        Some((bound, signed(centre_niceness).middle()))
     }
 }
 
 /// Returns the rate at which niceness changes with depth, from the midpoints of their slopes; 0 where that is
 /// not finite.
 fn rate(depth: &Slope, niceness: &Slope) -> f64 {
-    let along = |one: &Slope, other: &Slope| -> f64 {
-        (0..3).map(|k| one.parts[k].middle() * other.parts[k].middle()).sum()
+    let dot_product = |one: &Slope, other: &Slope| -> f64 {
+        (0..3).map(|k| one.partials[k].middle() * other.partials[k].middle()).sum()
     };
-    let rate = along(depth, niceness) / along(depth, depth);
+    let rate = dot_product(depth, niceness) / dot_product(depth, depth);
     if rate.is_finite() { rate } else { 0.0 }
 }
 
@@ -142,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn niceness_is_told_over_the_region_alone() {
+    fn niceness_is_bounded_over_the_region_only() {
         let ball = "tool Ball { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting;
                     line to (3, 20), (0, 20) as shank; } niceness cutting: 1 - depth/3; }";
         for (name, [low, high]) in
@@ -155,7 +159,7 @@ mod tests {
 
     /// A niceness that is not a function of depth: 1 at half the flute's height, 0 at its ends.
     #[test]
-    fn niceness_by_height_is_told_as_well() {
+    fn niceness_by_height_is_bounded() {
         let mill = "tool Mill { units mm; profile { start (0, 0); line to (3, 0) as face;
                     line to (3, 20) as flute cutting; line to (0, 20) as top; }
                     niceness cutting: 1 - ((z - 10)/10)^2; }";

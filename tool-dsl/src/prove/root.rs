@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// `l + k √P`
 #[derive(Clone, Debug)]
 pub(super) struct RootForm {
-    plain: Polynomial,
+    polynomial: Polynomial,
     root: Option<(Number, Polynomial)>,
 }
 
@@ -38,9 +38,9 @@ pub(super) struct Order {
 
 impl Order {
     /// Returns whether, in a box where a curve has these signs, the first of two depths is nowhere larger
-    /// than the second; nowhere smaller if they are `turned`.
-    pub(super) fn is_lesser(&self, turned: bool, signs: Signs, cell: &Cell) -> bool {
-        let other_side = if self.falls != turned { NEGATIVE } else { POSITIVE };
+    /// than the second; nowhere smaller if `is_swapped` is set.
+    pub(super) fn is_lesser(&self, is_swapped: bool, signs: Signs, cell: &Cell) -> bool {
+        let other_side = if self.falls != is_swapped { NEGATIVE } else { POSITIVE };
         signs & other_side == 0 && self.positive.iter().all(|form| form.over_box(cell).low > 0.0)
     }
 }
@@ -52,7 +52,7 @@ struct Difference {
     /// A polynomial that is not negative where the difference is 0.
     branch: Option<Polynomial>,
     /// True if the difference has the opposite sign of `squared` where `branch` and `positive` are positive.
-    flipped: bool,
+    is_opposite: bool,
     positive: Option<RootForm>,
 }
 
@@ -60,35 +60,36 @@ struct Difference {
 pub(super) struct Forms<'g> {
     graph: &'g Graph,
     polynomials: Polynomials,
-    known: HashMap<Id, Option<RootForm>>,
+    forms: HashMap<Id, Option<RootForm>>,
 }
 
 impl<'g> Forms<'g> {
     pub(super) fn new(graph: &'g Graph) -> Forms<'g> {
-        Forms { graph, polynomials: Polynomials::default(), known: HashMap::new() }
+        Forms { graph, polynomials: Polynomials::default(), forms: HashMap::new() }
     }
 
     /// Returns the form of a node, if it has one.
     pub(super) fn of(&mut self, id: Id) -> Option<RootForm> {
         for id in self.graph.needed([id]) {
-            if !self.known.contains_key(&id) {
+            if !self.forms.contains_key(&id) {
                 let form = self.node(id);
-                self.known.insert(id, form);
+                self.forms.insert(id, form);
             }
         }
-        self.known.get(&id).cloned().flatten()
+        self.forms.get(&id).cloned().flatten()
     }
 
     fn node(&mut self, id: Id) -> Option<RootForm> {
-        if let Some(plain) = self.polynomials.of(self.graph, id) {
-            return Some(RootForm::plainly(plain));
+        if let Some(polynomial) = self.polynomials.of(self.graph, id) {
+            return Some(RootForm::from_polynomial(polynomial));
         }
-        let of = |id: &Id| self.known.get(id)?.as_ref();
+        let of = |id: &Id| self.forms.get(id)?.as_ref();
         match self.graph.node(id) {
             Node::Sqrt(a) => {
                 let inner = of(a)?;
-                let root = (inner.root.is_none()).then(|| (Number::int(1), inner.plain.clone()))?;
-                Some(RootForm { plain: Polynomial::zero(), root: Some(root) })
+                let root =
+                    (inner.root.is_none()).then(|| (Number::int(1), inner.polynomial.clone()))?;
+                Some(RootForm { polynomial: Polynomial::zero(), root: Some(root) })
             }
             Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
             Node::Add(a, b) => of(a)?.plus(of(b)?),
@@ -106,22 +107,23 @@ impl<'g> Forms<'g> {
 }
 
 impl RootForm {
-    /// Returns `plain + factor √under`.
-    pub(super) fn new(plain: Polynomial, factor: Number, under: Polynomial) -> RootForm {
-        RootForm { plain, root: Some((factor, under)) }
+    /// Returns `polynomial + factor √radicand`.
+    pub(super) fn new(polynomial: Polynomial, factor: Number, radicand: Polynomial) -> RootForm {
+        RootForm { polynomial, root: Some((factor, radicand)) }
     }
 
     /// Returns an upper bound of the difference of two distances, with root factors of ±1, in a box; `None`
     /// if only one has a root, or their signs differ.
-    pub(super) fn apart(&self, other: &RootForm, cell: &Cell) -> Option<f64> {
-        let minus = Number::int(-1);
-        let plain = self.plain.clone().plus(&other.plain.scaled(&minus)).over(cell).abs();
+    pub(super) fn difference_bound(&self, other: &RootForm, cell: &Cell) -> Option<f64> {
+        let minus_one = Number::int(-1);
+        let polynomial =
+            self.polynomial.clone().plus(&other.polynomial.scaled(&minus_one)).over(cell).abs();
         match (&self.root, &other.root) {
-            (None, None) => Some(plain.high),
+            (None, None) => Some(polynomial.high),
             (Some((k, p)), Some((m, q))) => {
                 // |√P - √Q| is at most √|P - Q|.
-                let squares = p.clone().plus(&q.scaled(&minus)).over(cell).abs();
-                k.agrees(m).then(|| plain.plus(squares.sqrt()).high)
+                let squares = p.clone().plus(&q.scaled(&minus_one)).over(cell).abs();
+                k.agrees(m).then(|| polynomial.plus(squares.sqrt()).high)
             }
             _ => None,
         }
@@ -129,27 +131,27 @@ impl RootForm {
 
     /// Returns the form 0.
     pub(super) fn zero() -> RootForm {
-        RootForm { plain: Polynomial::zero(), root: None }
+        RootForm { polynomial: Polynomial::zero(), root: None }
     }
 
     /// Returns a polynomial that is zero wherever the form is. A second polynomial, if present, must be
     /// positive for the first to have the form's sign too.
     pub(super) fn curve(&self) -> Option<(Polynomial, Option<Polynomial>)> {
-        let Some((k, p)) = &self.root else { return Some((self.plain.clone(), None)) };
+        let Some((k, p)) = &self.root else { return Some((self.polynomial.clone(), None)) };
         // (l + k √P) (l - k √P) = l² - k² P. The second factor has the sign of l where k has the opposite
         // sign.
         let sign = Number::int(if k.is_negative() { 1 } else { -1 });
-        Some((self.times_conjugate(k, p)?.scaled(&sign), Some(self.plain.scaled(&sign))))
+        Some((self.times_conjugate(k, p)?.scaled(&sign), Some(self.polynomial.scaled(&sign))))
     }
 
     /// `l² - k² P`
     fn times_conjugate(&self, k: &Number, p: &Polynomial) -> Option<Polynomial> {
-        Some(self.plain.times(&self.plain)?.plus(&p.scaled(&-&(k * k))))
+        Some(self.polynomial.times(&self.polynomial)?.plus(&p.scaled(&-&(k * k))))
     }
 
     fn scaled(&self, factor: &Number) -> RootForm {
         RootForm {
-            plain: self.plain.scaled(factor),
+            polynomial: self.polynomial.scaled(factor),
             root: self.root.as_ref().map(|(k, p)| (k * factor, p.clone())),
         }
     }
@@ -163,15 +165,15 @@ impl RootForm {
                 same.then(|| (!sum.is_zero()).then(|| (sum, p.clone())))?
             }
         };
-        Some(RootForm { plain: self.plain.clone().plus(&other.plain), root })
+        Some(RootForm { polynomial: self.polynomial.clone().plus(&other.polynomial), root })
     }
 
     /// `(c + k √P)² = c² + k² P + 2 c k √P`
     fn square(&self) -> Option<RootForm> {
-        let (c, (k, p)) = (self.plain.constant()?, self.root.as_ref()?);
-        let plain = Polynomial::constantly(&(&c * &c)).plus(&p.scaled(&(k * k)));
-        let twice = &(&Number::int(2) * &c) * k;
-        Some(RootForm { plain, root: (!twice.is_zero()).then(|| (twice, p.clone())) })
+        let (c, (k, p)) = (self.polynomial.constant()?, self.root.as_ref()?);
+        let polynomial = Polynomial::from_constant(&(&c * &c)).plus(&p.scaled(&(k * k)));
+        let doubled = &(&Number::int(2) * &c) * k;
+        Some(RootForm { polynomial, root: (!doubled.is_zero()).then(|| (doubled, p.clone())) })
     }
 
     /// `(m² - k² P) γ / (m + k √P) = γ (m - k √P)`, the form in which depths below flat arcs are written.
@@ -180,14 +182,14 @@ impl RootForm {
             return None;
         }
         let conjugate = RootForm {
-            plain: divisor.plain.clone(),
+            polynomial: divisor.polynomial.clone(),
             root: divisor.root.as_ref().map(|(k, p)| (-k, p.clone())),
         };
         let Some((k, p)) = &divisor.root else {
-            let divisor = divisor.plain.constant()?;
+            let divisor = divisor.polynomial.constant()?;
             return Some(self.scaled(&Number::int(1).over(&divisor)?));
         };
-        Some(conjugate.scaled(&self.plain.ratio(&divisor.times_conjugate(k, p)?)?))
+        Some(conjugate.scaled(&self.polynomial.ratio(&divisor.times_conjugate(k, p)?)?))
     }
 
     /// Returns how two forms agree wherever a curve's polynomial is zero, if they do.
@@ -195,96 +197,103 @@ impl RootForm {
     /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
     /// includes a polynomial that is at least 0 where it is this branch.
     pub(super) fn agrees_on(&self, other: &RootForm, curve: &Polynomial) -> Option<Agreement> {
-        let Difference { squared, branch, flipped, positive } = self.minus(other)?;
-        let smooth = squared.is_nothing() || squared.is_square_of(curve);
+        let Difference { squared, branch, is_opposite, positive } = self.difference(other)?;
+        let smooth = squared.is_zero() || squared.is_square_of(curve);
         let order = squared.ratio(curve).map(|ratio| Order {
-            falls: ratio.is_negative() != flipped,
-            positive: branch.iter().map(RootForm::plainly).chain(positive).collect(),
+            falls: ratio.is_negative() != is_opposite,
+            positive: branch.iter().map(RootForm::from_polynomial).chain(positive).collect(),
         });
         (smooth || squared.vanishes_on(curve)).then_some(Agreement { smooth, branch, order })
     }
 
     /// Returns the difference of two forms, with roots eliminated by squaring.
-    fn minus(&self, other: &RootForm) -> Option<Difference> {
+    fn difference(&self, other: &RootForm) -> Option<Difference> {
         let minus = Number::int(-1);
         if let Some(difference) = self.plus(&other.scaled(&minus)) {
             // l + k √P = 0 where l² = k² P and l does not have the sign of k.
             let (squared, branch) = difference.curve()?;
-            return Some(Difference { squared, branch, flipped: false, positive: None });
+            return Some(Difference { squared, branch, is_opposite: false, positive: None });
         }
         let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
-        let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;
+        let constant_difference =
+            self.polynomial.clone().plus(&other.polynomial.scaled(&minus)).constant()?;
         let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
-        let apart = a.clone().plus(&b.scaled(&minus));
-        if beside.is_zero() {
-            let (flipped, squared) = (k.is_negative(), apart);
-            let same = flipped == m.is_negative();
-            return same.then_some(Difference { squared, branch: None, flipped, positive: None });
+        let squares_difference = a.clone().plus(&b.scaled(&minus));
+        if constant_difference.is_zero() {
+            let (is_opposite, squared) = (k.is_negative(), squares_difference);
+            let same_sign = is_opposite == m.is_negative();
+            return same_sign.then_some(Difference {
+                squared,
+                branch: None,
+                is_opposite,
+                positive: None,
+            });
         }
         // With u = c + k √P, u² - m² Q = L + 2 c k √P where L = c² + k² P - m² Q. It is 0 where L is -2 c k
         // √P. There L² - 4 c² k² P has its sign if c k is negative, else the opposite one. Where u has the
         // sign of m, u - m √Q has the sign of m (u² - m² Q).
-        let square = &beside * &beside;
-        let lead = apart.plus(&Polynomial::constantly(&square));
-        let squared = lead.times(&lead)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
-        let same = beside.is_negative() == k.is_negative();
-        let branch = Some(lead.scaled(&Number::int(if same { -1 } else { 1 })));
-        let first = RootForm::new(Polynomial::constantly(&beside), k.clone(), p.clone());
+        let square = &constant_difference * &constant_difference;
+        let leading = squares_difference.plus(&Polynomial::from_constant(&square));
+        let squared = leading.times(&leading)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
+        let same = constant_difference.is_negative() == k.is_negative();
+        let branch = Some(leading.scaled(&Number::int(if same { -1 } else { 1 })));
+        let first =
+            RootForm::new(Polynomial::from_constant(&constant_difference), k.clone(), p.clone());
         let positive = Some(first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 })));
-        Some(Difference { squared, branch, flipped: same != m.is_negative(), positive })
+        Some(Difference { squared, branch, is_opposite: same != m.is_negative(), positive })
     }
 
     /// Returns a polynomial as a form.
-    pub(super) fn plainly(polynomial: &Polynomial) -> RootForm {
-        RootForm { plain: polynomial.clone(), root: None }
+    pub(super) fn from_polynomial(polynomial: &Polynomial) -> RootForm {
+        RootForm { polynomial: polynomial.clone(), root: None }
     }
 
     /// Encloses the form over a box.
     fn over_box(&self, cell: &Cell) -> Interval {
-        let plain = self.plain.over(cell);
-        let Some((k, p)) = &self.root else { return plain };
-        plain.plus(Interval::about(k).times(p.over(cell).sqrt()))
+        let polynomial = self.polynomial.over(cell);
+        let Some((k, p)) = &self.root else { return polynomial };
+        polynomial.plus(Interval::enclosing(k).times(p.over(cell).sqrt()))
     }
 
     /// Returns polynomials in the direction of the form's gradient or its opposite, for each of a monomial's
     /// four coordinates.
-    pub(super) fn course(&self) -> Option<[Polynomial; 4]> {
-        let under = match &self.root {
-            None => &self.plain,
-            Some((_, p)) => self.plain.constant().map(|_| p)?,
+    pub(super) fn gradient_direction(&self) -> Option<[Polynomial; 4]> {
+        let radicand = match &self.root {
+            None => &self.polynomial,
+            Some((_, p)) => self.polynomial.constant().map(|_| p)?,
         };
-        Some([0, 1, 2, 3].map(|by| under.derivative(by)))
+        Some([0, 1, 2, 3].map(|by| radicand.derivative(by)))
     }
 
     /// Returns the polynomial, without the root.
     pub(super) fn part(&self) -> &Polynomial {
-        &self.plain
+        &self.polynomial
     }
 
     /// Returns the root's factor and its radicand.
     pub(super) fn root(&self) -> Option<(&Number, &Polynomial)> {
-        self.root.as_ref().map(|(factor, under)| (factor, under))
+        self.root.as_ref().map(|(factor, radicand)| (factor, radicand))
     }
 
     /// Returns the polynomial, if the form has no root.
-    pub(super) fn plain(&self) -> Option<&Polynomial> {
-        self.root.is_none().then_some(&self.plain)
+    pub(super) fn polynomial(&self) -> Option<&Polynomial> {
+        self.root.is_none().then_some(&self.polynomial)
     }
 
     /// Returns whether this is a root without further terms: nowhere below 0, and smooth except where it is
     /// 0.
     pub(super) fn is_length(&self) -> bool {
-        self.plain.is_nothing() && self.root.as_ref().is_some_and(|(k, _)| !k.is_negative())
+        self.polynomial.is_zero() && self.root.as_ref().is_some_and(|(k, _)| !k.is_negative())
     }
 
     /// Returns whether this is a distance: `c ± |p - centre|`, or a linear function with a gradient of length
     /// 1.
     pub(super) fn is_distance(&self) -> bool {
         match &self.root {
-            None => self.plain.slope_squared().is_some_and(|s| s.agrees(&Number::int(1))),
+            None => self.polynomial.slope_squared().is_some_and(|s| s.agrees(&Number::int(1))),
             Some((k, p)) => {
                 k.abs().agrees(&Number::int(1))
-                    && self.plain.constant().is_some()
+                    && self.polynomial.constant().is_some()
                     && p.is_squared_distance()
             }
         }

@@ -24,10 +24,10 @@ use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
 /// The unit roundoff.
-const UNIT: f64 = f64::EPSILON / 2.0;
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// A factor that covers the rounding of the error bounds themselves. An operation rounds positive terms at
 /// most 16 times, besides the roundings of its operands. Each rounding loses at most half of the epsilon.
-const KEPT: f64 = 1.0 + 16.0 * f64::EPSILON;
+const ERROR_BOUND_FACTOR: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 /// A value over a box, and its error in unit roundoffs.
 #[derive(Clone, Copy)]
@@ -37,57 +37,57 @@ struct Rounded {
 }
 
 /// Returns a bound of the error of any region's computed depth over a tool's whole box.
-pub(super) fn over(tool: &PlannedTool) -> f64 {
+pub(super) fn bound_over_tool(tool: &PlannedTool) -> f64 {
     let model = &tool.model;
     let depths = || model.regions.iter().map(|region| region.depth);
-    let mut errors = Errors::new(&model.graph, model.domain, depths());
+    let mut errors = RoundingErrors::new(&model.graph, model.domain, depths());
     let cell = tool.extent.cell();
     depths().map(|depth| errors.over(depth, &cell)).fold(0.0, f64::max)
 }
 
 /// Error bounds of chosen nodes of a graph over one box after another. The coordinates x, y and z of a point
 /// have no error.
-pub(super) struct Errors<'g> {
+pub(super) struct RoundingErrors<'g> {
     graph: &'g Graph,
     domain: Domain,
     needed: HashMap<Id, Vec<Id>>,
     values: Vec<Rounded>,
 }
 
-impl<'g> Errors<'g> {
+impl<'g> RoundingErrors<'g> {
     pub(super) fn new(
         graph: &'g Graph,
         domain: Domain,
         roots: impl IntoIterator<Item = Id>,
-    ) -> Errors<'g> {
+    ) -> RoundingErrors<'g> {
         let needed = roots.into_iter().map(|root| (root, graph.needed([root]))).collect();
         let unknown = Rounded { value: ENTIRE, error: f64::INFINITY };
-        Errors { graph, domain, needed, values: vec![unknown; graph.nodes().len()] }
+        RoundingErrors { graph, domain, needed, values: vec![unknown; graph.nodes().len()] }
     }
 
     /// Returns a bound of the error of a node over a box.
     pub(super) fn over(&mut self, root: Id, cell: &Cell) -> f64 {
         for &id in self.needed.get(&root).into_iter().flatten() {
             let Rounded { value, error } = self.node(id, cell);
-            let error = error * KEPT;
-            let computed = value.abs().high + error * UNIT;
+            let error = error * ERROR_BOUND_FACTOR;
+            let computed = value.abs().high + error * UNIT_ROUNDOFF;
             let error = if computed <= f64::MAX { error } else { f64::INFINITY };
             self.values[id.index()] = Rounded { value, error };
         }
-        self.values[root.index()].error * UNIT * KEPT
+        self.values[root.index()].error * UNIT_ROUNDOFF * ERROR_BOUND_FACTOR
     }
 
     fn node(&self, id: Id, cell: &Cell) -> Rounded {
         let v = |id: &Id| self.values[id.index()];
         let size = |value: Interval| value.abs().high;
         // The operation's own rounding, on a value that includes the propagated error.
-        let rounded = |value: Interval, brought: f64| Rounded {
+        let rounded = |value: Interval, propagated: f64| Rounded {
             value,
-            error: brought + (size(value) + brought * UNIT),
+            error: propagated + (size(value) + propagated * UNIT_ROUNDOFF),
         };
         match self.graph.node(id) {
             Node::Const(number) => {
-                let value = Interval::about(number);
+                let value = Interval::enclosing(number);
                 let exact = value.low == value.high;
                 Rounded { value, error: if exact { 0.0 } else { number.to_f64().abs() } }
             }
@@ -106,16 +106,20 @@ impl<'g> Errors<'g> {
                 let value = if a == b { v(a).value.square() } else { v(a).value.times(v(b).value) };
                 let (a, b) = (v(a), v(b));
                 let first = product(a.error, size(b.value)) + product(b.error, size(a.value));
-                let brought = first + product(a.error, product(b.error, UNIT));
+                let propagated = first + product(a.error, product(b.error, UNIT_ROUNDOFF));
                 let exact = [a.value, b.value].iter().any(|factor| is_power_of_two(*factor));
-                if exact { Rounded { value, error: brought } } else { rounded(value, brought) }
+                if exact {
+                    Rounded { value, error: propagated }
+                } else {
+                    rounded(value, propagated)
+                }
             }
             Node::Div(a, b) | Node::Quotient(a, b) => {
                 let (a, b) = (v(a), v(b));
                 let value = a.value.times(b.value.reciprocal());
-                let least = b.value.abs().low - b.error * UNIT;
-                let more = a.error + product(b.error, size(value));
-                rounded(value, if least > 0.0 { more / least } else { f64::INFINITY })
+                let min_value = b.value.abs().low - b.error * UNIT_ROUNDOFF;
+                let numerator = a.error + product(b.error, size(value));
+                rounded(value, if min_value > 0.0 { numerator / min_value } else { f64::INFINITY })
             }
             Node::Min(a, b) | Node::Max(a, b) => {
                 let smaller = matches!(self.graph.node(id), Node::Min(..));
@@ -138,22 +142,23 @@ impl<'g> Errors<'g> {
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
                     // Squares and their sums are each accurate to one unit roundoff of themselves.
-                    let brought = parts.iter().map(|part| part.error * part.error);
-                    let brought = brought.sum::<f64>().sqrt();
-                    let own = gamma(parts.len() as f64 / 2.0 + 1.0);
-                    let error = brought + own * (size(value) + brought * UNIT);
+                    let propagated = parts.iter().map(|part| part.error * part.error);
+                    let propagated = propagated.sum::<f64>().sqrt();
+                    let own_rounding = gamma(parts.len() as f64 / 2.0 + 1.0);
+                    let error =
+                        propagated + own_rounding * (size(value) + propagated * UNIT_ROUNDOFF);
                     return Rounded { value, error };
                 }
                 let a = v(a);
                 let value = a.value.sqrt();
-                let least = a.value.low - a.error * UNIT;
-                let brought = match a.error {
+                let min_value = a.value.low - a.error * UNIT_ROUNDOFF;
+                let propagated = match a.error {
                     0.0 => 0.0,
                     // A value that may be computed as negative may have no root.
-                    _ if least < 0.0 => f64::INFINITY,
-                    error => error / (value.low + least.sqrt()),
+                    _ if min_value < 0.0 => f64::INFINITY,
+                    error => error / (value.low + min_value.sqrt()),
                 };
-                rounded(value, brought)
+                rounded(value, propagated)
             }
             Node::Select { low, high, then, other } => {
                 let (low, high) = (v(low).value, v(high).value);
@@ -170,15 +175,16 @@ impl<'g> Errors<'g> {
     }
 
     fn coordinate(&self, coord: Coord, cell: &Cell) -> Rounded {
-        let given = |axis: usize| Rounded { value: cell.sides[axis], error: 0.0 };
+        let without_error = |axis: usize| Rounded { value: cell.sides[axis], error: 0.0 };
         // Every operation of x² + y² rounds once; the root halves their error and adds its own.
-        let twice = |value: Interval| Rounded { value, error: gamma(2.0) * value.abs().high };
+        let two_roundings =
+            |value: Interval| Rounded { value, error: gamma(2.0) * value.abs().high };
         match coord {
-            Coord::X if self.domain == Domain::Space => given(0),
-            Coord::Y => given(1),
-            Coord::Z => given(2),
-            Coord::X | Coord::D => twice(cell.radius()),
-            Coord::Q => twice(cell.squared_radius()),
+            Coord::X if self.domain == Domain::Space => without_error(0),
+            Coord::Y => without_error(1),
+            Coord::Z => without_error(2),
+            Coord::X | Coord::D => two_roundings(cell.radius()),
+            Coord::Q => two_roundings(cell.squared_radius()),
             Coord::Length | Coord::PerLength => Rounded { value: ENTIRE, error: f64::INFINITY },
         }
     }
@@ -186,7 +192,7 @@ impl<'g> Errors<'g> {
 
 /// Returns the largest relative change by a number of roundings, in unit roundoffs.
 fn gamma(count: f64) -> f64 {
-    count / (1.0 - count * UNIT)
+    count / (1.0 - count * UNIT_ROUNDOFF)
 }
 
 /// Returns an error times a size, or 0 if there is no error.
@@ -207,24 +213,24 @@ mod tests {
     /// On the circle `d = 1` only the product of both factors' errors remains of `(d - 1)²`. A quotient whose
     /// divisor may be computed as 0 has no bound, and neither has a value that may exceed all doubles.
     #[test]
-    fn products_of_errors_count() {
+    fn products_of_errors_are_included() {
         let mut graph = Graph::default();
         let one = graph.number(Number::int(1));
         let d = graph.coord(Coord::D);
-        let off = graph.sub(d, one);
-        let square = graph.mul(off, off);
-        let quotient = graph.quotient(one, off);
-        let mut errors = Errors::new(&graph, Domain::HalfPlane, [square, quotient]);
+        let difference = graph.sub(d, one);
+        let square = graph.mul(difference, difference);
+        let quotient = graph.quotient(one, difference);
+        let mut errors = RoundingErrors::new(&graph, Domain::HalfPlane, [square, quotient]);
         let circle = Cell::half_plane(Interval::new(1.0, 1.0), ZERO);
         // `d` is computed to within two unit roundoffs.
-        let most = (2.0 * UNIT) * (2.0 * UNIT);
+        let expected = (2.0 * UNIT_ROUNDOFF) * (2.0 * UNIT_ROUNDOFF);
         let bound = errors.over(square, &circle);
-        assert!((most..2.0 * most).contains(&bound), "{bound:e}");
+        assert!((expected..2.0 * expected).contains(&bound), "{bound:e}");
         let low = 1.0 + f64::EPSILON;
-        let beside = Cell::half_plane(Interval::new(low, 1.5), ZERO);
-        assert_eq!(errors.over(quotient, &beside), f64::INFINITY);
-        let far = |at: f64| Cell::half_plane(Interval::new(at, at), ZERO);
-        assert!(errors.over(square, &far(1e20)) < 1e25);
-        assert_eq!(errors.over(square, &far(1e160)), f64::INFINITY);
+        let near_circle = Cell::half_plane(Interval::new(low, 1.5), ZERO);
+        assert_eq!(errors.over(quotient, &near_circle), f64::INFINITY);
+        let at_radius = |at: f64| Cell::half_plane(Interval::new(at, at), ZERO);
+        assert!(errors.over(square, &at_radius(1e20)) < 1e25);
+        assert_eq!(errors.over(square, &at_radius(1e160)), f64::INFINITY);
     }
 }

@@ -9,36 +9,36 @@ use crate::expr::{Coord, Graph, Id, Node};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slope {
     pub(super) value: Interval,
-    pub(super) parts: [Interval; 3],
+    pub(super) partials: [Interval; 3],
     pub(super) length: Interval,
     /// Flags for points where it may not be smooth: kinks that point down, as lengths and the larger of two
     /// have, and kinks that point up.
     kinks: [bool; 2],
 }
 
-const SMOOTH: [bool; 2] = [false; 2];
-const DOWN: [bool; 2] = [true, false];
-const UP: [bool; 2] = [false, true];
+const NO_KINKS: [bool; 2] = [false; 2];
+const KINK_DOWN: [bool; 2] = [true, false];
+const KINK_UP: [bool; 2] = [false, true];
 
 /// Returns the kinks of a sum of functions.
-fn either(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
+fn union(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
     [a[0] || b[0], a[1] || b[1]]
 }
 
 /// Returns the kinks of a product or another nonlinear combination.
-fn mixed(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
+fn nonlinear(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
     [a.into_iter().chain(b).any(|kinked| kinked); 2]
 }
 
-const FLAT: [Interval; 3] = [ZERO; 3];
+const ZERO_GRADIENT: [Interval; 3] = [ZERO; 3];
 
 impl Slope {
     fn constant(value: Interval) -> Slope {
-        Slope { value, parts: FLAT, length: ZERO, kinks: SMOOTH }
+        Slope { value, partials: ZERO_GRADIENT, length: ZERO, kinks: NO_KINKS }
     }
 
-    fn new(value: Interval, parts: [Interval; 3], kinks: [bool; 2]) -> Slope {
-        Slope { value, parts, length: length(parts), kinks }
+    fn new(value: Interval, partials: [Interval; 3], kinks: [bool; 2]) -> Slope {
+        Slope { value, partials, length: length(partials), kinks }
     }
 
     /// Returns a lower bound of the rate at which the function falls in some direction, from any point of the
@@ -47,7 +47,7 @@ impl Slope {
     /// At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope
     /// is a mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
     pub(super) fn fall(&self) -> f64 {
-        if self.kinks[0] { length(self.parts).low } else { self.length.low }
+        if self.kinks[0] { length(self.partials).low } else { self.length.low }
     }
 
     /// Tightens the length of the gradient by another enclosure of it.
@@ -56,8 +56,8 @@ impl Slope {
             low: self.length.low.max(known.low),
             high: self.length.high.min(known.high),
         };
-        let within = Interval { low: -length.high, high: length.high };
-        Slope { length, parts: self.parts.map(|part| part.common(within)), ..self }
+        let bound = Interval { low: -length.high, high: length.high };
+        Slope { length, partials: self.partials.map(|part| part.common(bound)), ..self }
     }
 
     fn is_constant(&self) -> bool {
@@ -67,12 +67,12 @@ impl Slope {
     fn scaled(self, factor: Interval) -> Slope {
         Slope {
             value: self.value.times(factor),
-            parts: self.parts.map(|part| part.times(factor)),
+            partials: self.partials.map(|part| part.times(factor)),
             length: self.length.times(factor.abs()),
             kinks: match self.kinks {
                 kinks if factor.low >= 0.0 => kinks,
                 [down, up] if factor.high <= 0.0 => [up, down],
-                kinks => mixed(kinks, SMOOTH),
+                kinks => nonlinear(kinks, NO_KINKS),
             },
         }
     }
@@ -81,13 +81,13 @@ impl Slope {
         let other = other.scaled(sign);
         let value = self.value.plus(other.value);
         if self.is_constant() || other.is_constant() {
-            let sloped = if self.is_constant() { other } else { self };
-            return Slope { value, ..sloped };
+            let varying = if self.is_constant() { other } else { self };
+            return Slope { value, ..varying };
         }
-        let parts = [0, 1, 2].map(|k| self.parts[k].plus(other.parts[k]));
-        let most = self.length.plus(other.length).high;
-        let kinks = either(self.kinks, other.kinks);
-        Slope::new(value, parts, kinks).with(Interval { low: 0.0, high: most })
+        let partials = [0, 1, 2].map(|k| self.partials[k].plus(other.partials[k]));
+        let max_length = self.length.plus(other.length).high;
+        let kinks = union(self.kinks, other.kinks);
+        Slope::new(value, partials, kinks).with(Interval { low: 0.0, high: max_length })
     }
 
     fn times(self, other: Slope) -> Slope {
@@ -97,20 +97,21 @@ impl Slope {
         if other.is_constant() {
             return other.times(self);
         }
-        let part =
-            |k: usize| self.parts[k].times(other.value).plus(other.parts[k].times(self.value));
-        let kinks = mixed(self.kinks, other.kinks);
+        let part = |k: usize| {
+            self.partials[k].times(other.value).plus(other.partials[k].times(self.value))
+        };
+        let kinks = nonlinear(self.kinks, other.kinks);
         Slope::new(self.value.times(other.value), [0, 1, 2].map(part), kinks)
     }
 
     fn square(self) -> Slope {
-        let twice = self.value.plus(self.value);
-        let length = self.length.times(twice.abs());
+        let double = self.value.plus(self.value);
+        let length = self.length.times(double.abs());
         Slope {
             value: self.value.square(),
-            parts: self.parts.map(|part| part.times(twice)),
+            partials: self.partials.map(|part| part.times(double)),
             length,
-            kinks: mixed(self.kinks, SMOOTH),
+            kinks: nonlinear(self.kinks, NO_KINKS),
         }
     }
 
@@ -121,10 +122,10 @@ impl Slope {
         }
         let value = self.value.times(reciprocal);
         let part = |k: usize| {
-            let down = value.times(other.parts[k]);
-            self.parts[k].plus(down.negated()).times(reciprocal)
+            let down = value.times(other.partials[k]);
+            self.partials[k].plus(down.negated()).times(reciprocal)
         };
-        Slope::new(value, [0, 1, 2].map(part), mixed(self.kinks, other.kinks))
+        Slope::new(value, [0, 1, 2].map(part), nonlinear(self.kinks, other.kinks))
     }
 
     fn sqrt(self) -> Slope {
@@ -132,7 +133,7 @@ impl Slope {
         let half = value.plus(value).reciprocal();
         Slope {
             value,
-            parts: self.parts.map(|part| part.times(half)),
+            partials: self.partials.map(|part| part.times(half)),
             length: self.length.times(half.abs()),
             kinks: if value.low > 0.0 { self.kinks } else { [true; 2] },
         }
@@ -141,62 +142,67 @@ impl Slope {
     fn hull(self, other: Slope) -> Slope {
         Slope {
             value: self.value.hull(other.value),
-            parts: [0, 1, 2].map(|k| self.parts[k].hull(other.parts[k])),
+            partials: [0, 1, 2].map(|k| self.partials[k].hull(other.partials[k])),
             length: self.length.hull(other.length),
-            kinks: either(self.kinks, other.kinks),
+            kinks: union(self.kinks, other.kinks),
         }
     }
 
     /// Adds kinks.
     fn kinked(self, more: [bool; 2]) -> Slope {
-        Slope { kinks: either(self.kinks, more), ..self }
+        Slope { kinks: union(self.kinks, more), ..self }
     }
 }
 
 /// Returns the length of a vector.
-fn length(parts: [Interval; 3]) -> Interval {
+fn length(partials: [Interval; 3]) -> Interval {
     // Exact for a vector along an axis.
-    if let [part, ZERO, ZERO] | [ZERO, part, ZERO] | [ZERO, ZERO, part] = parts {
+    if let [part, ZERO, ZERO] | [ZERO, part, ZERO] | [ZERO, ZERO, part] = partials {
         return part.abs();
     }
-    let squares = parts.map(Interval::square);
+    let squares = partials.map(Interval::square);
     squares[0].plus(squares[1]).plus(squares[2]).sqrt()
 }
 
 /// Encloses the root of a sum of squares `u² + v² + …`, the length of the vector `(u, v, …)`. Its gradient is
 /// a unit vector times the slopes of the components. It is defined except where all components are 0, and is
 /// at most as long as the largest singular value of the slopes.
-fn norm(parts: &[Slope]) -> Slope {
-    let squares = parts.iter().map(|part| part.value.square());
+fn norm(partials: &[Slope]) -> Slope {
+    let squares = partials.iter().map(|part| part.value.square());
     let value = squares.fold(ZERO, Interval::plus).sqrt();
-    let unit = Interval { low: -1.0, high: 1.0 };
+    let unit_range = Interval { low: -1.0, high: 1.0 };
     // A length is not negative.
-    let away = Interval { low: (1.0 / value.high).next_down(), high: (1.0 / value.low).next_up() };
-    let way: Vec<Interval> = parts.iter().map(|part| part.value.times(away).common(unit)).collect();
+    let per_length =
+        Interval { low: (1.0 / value.high).next_down(), high: (1.0 / value.low).next_up() };
+    let unit_vector: Vec<Interval> =
+        partials.iter().map(|part| part.value.times(per_length).common(unit_range)).collect();
     let slope = |k: usize| {
-        parts.iter().zip(&way).fold(ZERO, |sum, (part, way)| sum.plus(part.parts[k].times(*way)))
+        partials
+            .iter()
+            .zip(&unit_vector)
+            .fold(ZERO, |sum, (part, way)| sum.plus(part.partials[k].times(*way)))
     };
     // The squares of the singular values lie around the diagonal of J Jᵀ, within its row sums (Gershgorin
     // 1931).
     let mut singular: Option<Interval> = None;
-    for (i, a) in parts.iter().enumerate() {
+    for (i, a) in partials.iter().enumerate() {
         let mut circle = a.length.square();
-        for (j, b) in parts.iter().enumerate() {
+        for (j, b) in partials.iter().enumerate() {
             if i != j {
                 let mut product = ZERO;
                 for k in 0..3 {
-                    product = product.plus(a.parts[k].times(b.parts[k]));
+                    product = product.plus(a.partials[k].times(b.partials[k]));
                 }
-                let off = product.abs().high;
-                circle = circle.plus(Interval { low: -off, high: off });
+                let radius = product.abs().high;
+                circle = circle.plus(Interval { low: -radius, high: radius });
             }
         }
-        singular = Some(singular.map_or(circle, |all| all.hull(circle)));
+        singular = Some(singular.map_or(circle, |hull| hull.hull(circle)));
     }
     let squared = singular.unwrap_or(ZERO);
     let known = Interval { low: squared.low.max(0.0), ..squared }.sqrt();
-    let of_parts = parts.iter().fold(SMOOTH, |all, part| mixed(all, part.kinks));
-    let kinks = if value.low > 0.0 { of_parts } else { either(of_parts, DOWN) };
+    let component_kinks = partials.iter().fold(NO_KINKS, |hull, part| nonlinear(hull, part.kinks));
+    let kinks = if value.low > 0.0 { component_kinks } else { union(component_kinks, KINK_DOWN) };
     Slope::new(value, [0, 1, 2].map(slope), kinks).with(known)
 }
 
@@ -209,8 +215,8 @@ pub(super) struct Slopes<'g> {
     needed: Vec<Vec<Id>>,
     values: Vec<Slope>,
     /// The number of the box for which each value was last computed.
-    done: Vec<u32>,
-    now: u32,
+    computed_for: Vec<u32>,
+    box_number: u32,
     cell: Cell,
 }
 
@@ -227,32 +233,32 @@ impl<'g> Slopes<'g> {
             let mut order = graph.needed([root]);
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
-                    values[id.index()] = Slope::constant(Interval::about(value));
+                    values[id.index()] = Slope::constant(Interval::enclosing(value));
                     false
                 }
                 None => true,
             });
             needed[root.index()] = order;
         }
-        let done = vec![0; values.len()];
+        let computed_for = vec![0; values.len()];
         let cell = Cell { sides: [ZERO; 3] };
-        Slopes { graph, domain, needed, values, done, now: 0, cell }
+        Slopes { graph, domain, needed, values, computed_for, box_number: 0, cell }
     }
 
     /// Selects a box.
     pub(super) fn set(&mut self, cell: Cell) {
         self.cell = cell;
-        self.now += 1;
+        self.box_number += 1;
     }
 
     /// Returns the enclosure over the current box of one of the roots.
     pub(super) fn get(&mut self, root: Id) -> Slope {
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
-            let at = id.index();
-            if self.done[at] != self.now {
-                self.done[at] = self.now;
-                self.values[at] = self.node(id, self.cell);
+            let index = id.index();
+            if self.computed_for[index] != self.box_number {
+                self.computed_for[index] = self.box_number;
+                self.values[index] = self.node(id, self.cell);
             }
         }
         self.values[root.index()]
@@ -275,11 +281,11 @@ impl<'g> Slopes<'g> {
             Node::Max(a, b) if v(b).value.low >= v(a).value.high => v(b),
             Node::Min(a, b) => {
                 let (a, b) = (v(a), v(b));
-                Slope { value: a.value.min(b.value), ..a.hull(b).kinked(UP) }
+                Slope { value: a.value.min(b.value), ..a.hull(b).kinked(KINK_UP) }
             }
             Node::Max(a, b) => {
                 let (a, b) = (v(a), v(b));
-                Slope { value: a.value.max(b.value), ..a.hull(b).kinked(DOWN) }
+                Slope { value: a.value.max(b.value), ..a.hull(b).kinked(KINK_DOWN) }
             }
             Node::Abs(a) => {
                 let a = v(a);
@@ -287,14 +293,14 @@ impl<'g> Slopes<'g> {
                 match a.value {
                     Interval { low, .. } if low >= 0.0 => a,
                     Interval { high, .. } if high <= 0.0 => other,
-                    value => Slope { value: value.abs(), ..a.hull(other).kinked(DOWN) },
+                    value => Slope { value: value.abs(), ..a.hull(other).kinked(KINK_DOWN) },
                 }
             }
             Node::Sqrt(a) => match self.graph.squares_of(*a) {
-                Some(parts) => {
+                Some(partials) => {
                     let axis = || self.coordinate(Coord::D, cell);
                     let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
-                    norm(&parts.iter().map(part).collect::<Vec<_>>())
+                    norm(&partials.iter().map(part).collect::<Vec<_>>())
                 }
                 None => v(a).sqrt(),
             },
@@ -311,20 +317,20 @@ impl<'g> Slopes<'g> {
     }
 
     fn coordinate(&self, coord: Coord, cell: Cell) -> Slope {
-        let along = |axis: usize| {
-            let mut parts = FLAT;
-            parts[axis] = ONE;
-            Slope { value: cell.sides[axis], parts, length: ONE, kinks: SMOOTH }
+        let coordinate_slope = |axis: usize| {
+            let mut partials = ZERO_GRADIENT;
+            partials[axis] = ONE;
+            Slope { value: cell.sides[axis], partials, length: ONE, kinks: NO_KINKS }
         };
         match coord {
-            Coord::X => along(0),
-            Coord::Y => along(1),
-            Coord::Z => along(2),
-            Coord::D if self.domain == Domain::HalfPlane => along(0),
-            Coord::D => norm(&[along(0), along(1)]),
+            Coord::X => coordinate_slope(0),
+            Coord::Y => coordinate_slope(1),
+            Coord::Z => coordinate_slope(2),
+            Coord::D if self.domain == Domain::HalfPlane => coordinate_slope(0),
+            Coord::D => norm(&[coordinate_slope(0), coordinate_slope(1)]),
             Coord::Q => {
                 let d = self.coordinate(Coord::D, cell);
-                Slope { value: cell.squared_radius(), kinks: SMOOTH, ..d.square() }
+                Slope { value: cell.squared_radius(), kinks: NO_KINKS, ..d.square() }
             }
             Coord::Length | Coord::PerLength => Slope { value: ENTIRE, ..Slope::constant(ZERO) },
         }

@@ -9,7 +9,7 @@ use crate::number::Number;
 /// `l + k √P + m √Q + …`
 #[derive(Clone)]
 pub(super) struct RootSum {
-    plain: Polynomial,
+    polynomial: Polynomial,
     roots: Vec<(Number, Polynomial)>,
 }
 
@@ -35,27 +35,27 @@ impl RootSum {
 
     fn from(form: &RootForm) -> RootSum {
         let roots = form.root().map(|(factor, under)| (factor.clone(), under.clone()));
-        RootSum { plain: form.part().clone(), roots: roots.into_iter().collect() }
+        RootSum { polynomial: form.part().clone(), roots: roots.into_iter().collect() }
     }
 
     /// Returns the factor by which this is a multiple of the first depth minus the second.
-    pub(super) fn by_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
+    pub(super) fn ratio_to_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
         let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
         let (factor, under) = self.roots.first()?;
-        let (other, _) = difference.roots.iter().find(|(_, own)| is_same(own, under))?;
+        let (other, _) = difference.roots.iter().find(|(_, own)| is_same_radicand(own, under))?;
         let ratio = factor.over(other)?;
         let rest = difference.scaled(&-&ratio).plus(self.clone());
-        (rest.plain.is_nothing() && rest.roots.is_empty()).then_some(ratio)
+        (rest.polynomial.is_zero() && rest.roots.is_empty()).then_some(ratio)
     }
 
-    fn scaled(self, by: &Number) -> RootSum {
-        let roots = self.roots.into_iter().map(|(factor, under)| (&factor * by, under));
-        RootSum { plain: self.plain.scaled(by), roots: roots.collect() }
+    fn scaled(self, factor_by: &Number) -> RootSum {
+        let roots = self.roots.into_iter().map(|(factor, under)| (&factor * factor_by, under));
+        RootSum { polynomial: self.polynomial.scaled(factor_by), roots: roots.collect() }
     }
 
     fn plus(mut self, other: RootSum) -> RootSum {
         for (factor, under) in other.roots {
-            match self.roots.iter_mut().find(|(_, own)| is_same(own, &under)) {
+            match self.roots.iter_mut().find(|(_, own)| is_same_radicand(own, &under)) {
                 // A sum that cancels in 256 bits is 0.
                 Some((own, _)) if own.agrees(&-&factor) => *own = Number::int(0),
                 Some((own, _)) => *own = &*own + &factor,
@@ -63,10 +63,10 @@ impl RootSum {
             }
         }
         self.roots.retain(|(factor, _)| !factor.is_zero());
-        RootSum { plain: self.plain.plus(&other.plain), roots: self.roots }
+        RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
     }
 }
 
-fn is_same(a: &Polynomial, b: &Polynomial) -> bool {
+fn is_same_radicand(a: &Polynomial, b: &Polynomial) -> bool {
     a.ratio(b).is_some_and(|ratio| ratio.agrees(&Number::int(1)))
 }

@@ -9,7 +9,7 @@ type Conic<N> = [N; 6];
 
 /// The number of Newton steps from a double to a point of 256 bits. Each gains as many digits as a double
 /// has, less those lost if the point is badly conditioned.
-const STEPS: usize = 24;
+const NEWTON_STEPS: usize = 24;
 
 fn conic(polynomial: &Polynomial) -> Option<Conic<Number>> {
     let mut factors = [(); 6].map(|()| Number::int(0));
@@ -39,56 +39,64 @@ fn exact_value(c: &Conic<Number>, [d, z]: &[Number; 2]) -> (Number, f64) {
 
 fn exact_slope(c: &Conic<Number>, [d, z]: &[Number; 2]) -> [Number; 2] {
     let two = Number::int(2);
-    let along = Number::sum(&[c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
-    [along, Number::sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
+    let d_slope = Number::sum(&[c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
+    [d_slope, Number::sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
 }
 
 /// The contact of two conics near a point.
 #[derive(Clone)]
-pub(super) struct Touch {
+pub(super) struct Contact {
     slopes: [[Number; 2]; 2],
     conics: [Conic<Number>; 2],
 }
 
-impl Touch {
+impl Contact {
     /// Returns the point near another at which two conics touch, if there is one.
-    pub(super) fn near(a: &Polynomial, b: &Polynomial, near: [f64; 2], size: f64) -> Option<Touch> {
+    pub(super) fn near(
+        a: &Polynomial,
+        b: &Polynomial,
+        near: [f64; 2],
+        size: f64,
+    ) -> Option<Contact> {
         let conics = [conic(a)?, conic(b)?];
         let [a, b] = conics.each_ref().map(|conic| conic.each_ref().map(Number::to_f64));
         let mut at = near.map(Number::from_f64);
-        for step in 0..STEPS {
+        for step in 0..NEWTON_STEPS {
             let [Some(d), Some(z)] = &at else { return None };
             let exact = [d.clone(), z.clone()];
             let p = [d.to_f64(), z.to_f64()];
             let ([ad, az], [bd, bz]) = (slope(&a, p), slope(&b, p));
             // The equations: one conic's value and the cross product of both gradients are 0. The first half
             // of the steps uses doubles.
-            let (first, second) = if step < STEPS / 2 {
+            let (first, second) = if step < NEWTON_STEPS / 2 {
                 let value = b[0] + b[1] * p[0] + b[2] * p[1];
-                let bent = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
-                (value + bent, ad * bz - az * bd)
+                let quadratic = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
+                (value + quadratic, ad * bz - az * bd)
             } else {
                 let [[ad, az], [bd, bz]] = conics.each_ref().map(|c| exact_slope(c, &exact));
                 let cross = &(&ad * &bz) - &(&az * &bd);
                 (exact_value(&conics[1], &exact).0.to_f64(), cross.to_f64())
             };
-            let down = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
-            let up = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
-            let det = bd * up - bz * down;
-            let way = [(first * up - bz * second) / det, (bd * second - first * down) / det];
-            if step == STEPS / 2 && (p[0] - near[0]).hypot(p[1] - near[1]) >= 1e-2 * size {
+            let d_derivative = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
+            let z_derivative = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
+            let determinant = bd * z_derivative - bz * d_derivative;
+            let newton_step = [
+                (first * z_derivative - bz * second) / determinant,
+                (bd * second - first * d_derivative) / determinant,
+            ];
+            if step == NEWTON_STEPS / 2 && (p[0] - near[0]).hypot(p[1] - near[1]) >= 1e-2 * size {
                 return None;
             }
-            at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(way[k])?));
+            at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(newton_step[k])?));
         }
         let [Some(d), Some(z)] = at else { return None };
-        let at = [d, z];
+        let point = [d, z];
         let is_zero = |(value, size): (Number, f64)| value.to_f64().abs() <= ROUNDING * size;
-        let slopes = conics.each_ref().map(|conic| exact_slope(conic, &at));
+        let slopes = conics.each_ref().map(|conic| exact_slope(conic, &point));
         let [[ad, az], [bd, bz]] = &slopes;
-        let touch = conics.iter().all(|conic| is_zero(exact_value(conic, &at)))
+        let touches = conics.iter().all(|conic| is_zero(exact_value(conic, &point)))
             && is_zero(Number::sum(&[ad * bz, -&(az * bd)]));
-        touch.then_some(Touch { slopes, conics })
+        touches.then_some(Contact { slopes, conics })
     }
 
     /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1. Then `to b` is a
@@ -96,18 +104,22 @@ impl Touch {
     pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
         let [[ad, az], [bd, bz]] = &self.slopes;
-        let (along, _) = Number::sum(&[ad * bd, az * bz]);
+        let (dot_product, _) = Number::sum(&[ad * bd, az * bz]);
         let (length, _) = Number::sum(&[ad * ad, az * az]);
-        let Some(share) = (&Number::int(to * from) * &along).over(&length) else { return false };
-        if share.is_zero() || share.is_negative() {
+        let Some(ratio) = (&Number::int(to * from) * &dot_product).over(&length) else {
+            return false;
+        };
+        if ratio.is_zero() || ratio.is_negative() {
             return false;
         }
         let [from, to] = [from, to].map(Number::int);
-        let bent = |k: usize| Number::sum(&[&to * &b[k], -&(&share * &(&from * &a[k]))]);
-        let [(dd, dd_size), (dz, dz_size), (zz, zz_size)] = [3, 4, 5].map(bent);
+        let quadratic = |k: usize| Number::sum(&[&to * &b[k], -&(&ratio * &(&from * &a[k]))]);
+        let [(dd, dd_size), (dz, dz_size), (zz, zz_size)] = [3, 4, 5].map(quadratic);
         let size = dd_size.max(dz_size).max(zz_size);
-        let (bend, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
-        let least = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;
-        least(&dd, size) && least(&zz, size) && least(&bend, size * size)
+        let (discriminant, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
+        let is_not_negative = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;
+        is_not_negative(&dd, size)
+            && is_not_negative(&zz, size)
+            && is_not_negative(&discriminant, size * size)
     }
 }

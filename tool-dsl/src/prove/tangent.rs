@@ -21,30 +21,30 @@ pub(super) struct Tangency {
     rest: Number,
     roots: Vec<Root>,
     /// The largest slope of a depth across the line, without roots.
-    across: f64,
+    slope_across: f64,
     /// The radicands of two roots with the same factor, if the difference consists of these alone.
-    under: Option<[Polynomial; 2]>,
+    radicands: Option<[Polynomial; 2]>,
 }
 
-/// `factor · √((t - foot)² + (off/scale)²)`, which differs from `factor · |t - foot|` by at most
-/// `factor · off/scale`.
+/// `factor · √((t - foot)² + (distance/scale)²)`, which differs from `factor · |t - foot|` by at most
+/// `factor · distance/scale`.
 #[derive(Clone, Debug)]
 struct Root {
     factor: Number,
     foot: Number,
     /// The distance of the root's point from the line.
-    off: f64,
+    distance: f64,
     /// The length along the line per unit of its coordinate.
     scale: f64,
 }
 
 /// The difference of two depths on a line in a box.
 #[derive(Clone, Copy)]
-pub(super) struct Off {
+pub(super) struct DepthDifference {
     /// An upper bound of the difference.
     pub(super) jump: f64,
     /// The largest slope of one of them across the line.
-    pub(super) across: f64,
+    pub(super) slope_across: f64,
 }
 
 impl Tangency {
@@ -54,20 +54,25 @@ impl Tangency {
         if !line.is_linear() {
             return None;
         }
-        let along = [(0, Coord::D), (2, Coord::Z)].into_iter().find_map(|(axis, coord)| {
-            let only = monomial_of(coord);
-            let left = Polynomial::constantly(&Number::int(1)).plus(&Polynomial::coordinate(coord));
-            let is_free = left.on_line(line)?.terms().any(|(monomial, _)| monomial == only);
-            is_free.then_some((axis, only))
-        });
-        let (axis, only) = along?;
+        let axis_and_monomial =
+            [(0, Coord::D), (2, Coord::Z)].into_iter().find_map(|(axis, coord)| {
+                let monomial_of_axis = monomial_of(coord);
+                let remainder =
+                    Polynomial::from_constant(&Number::int(1)).plus(&Polynomial::coordinate(coord));
+                let is_free = remainder
+                    .on_line(line)?
+                    .terms()
+                    .any(|(monomial, _)| monomial == monomial_of_axis);
+                is_free.then_some((axis, monomial_of_axis))
+            });
+        let (axis, only) = axis_and_monomial?;
         let mut tangency = Tangency {
             axis,
             slope: Number::int(0),
             rest: Number::int(0),
             roots: Vec::new(),
-            across: 0.0,
-            under: None,
+            slope_across: 0.0,
+            radicands: None,
         };
         tangency.add(a, false, line, only)?;
         tangency.add(b, true, line, only)?;
@@ -75,7 +80,7 @@ impl Tangency {
             && k.agrees(m)
             && tangency.rest.is_zero()
         {
-            tangency.under = Some([p.on_line(line)?, q.on_line(line)?]);
+            tangency.radicands = Some([p.on_line(line)?, q.on_line(line)?]);
         }
         Some(tangency)
     }
@@ -83,15 +88,15 @@ impl Tangency {
     fn add(
         &mut self,
         depth: &RootForm,
-        less: bool,
+        is_subtracted: bool,
         line: &Polynomial,
-        only: Monomial,
+        monomial_of_axis: Monomial,
     ) -> Option<()> {
         if !depth.is_distance() {
             return None;
         }
-        let signed = |n: Number| if less { -&n } else { n };
-        let [rest, slope, square] = factors(&depth.part().on_line(line)?, only)?;
+        let signed = |n: Number| if is_subtracted { -&n } else { n };
+        let [rest, slope, square] = coefficients(&depth.part().on_line(line)?, monomial_of_axis)?;
         if !square.is_zero() {
             return None;
         }
@@ -105,18 +110,18 @@ impl Tangency {
             });
             // With unit roundoff u, each product has an error of 3u, and their sum, the root and the quotient
             // of u each: 6u in total, relative to a product of lengths that is the line's.
-            let across = (slopes[0] + slopes[1]).abs() / size + 4.0 * f64::EPSILON;
-            self.across = self.across.max(across);
+            let slope_across = (slopes[0] + slopes[1]).abs() / size + 4.0 * f64::EPSILON;
+            self.slope_across = self.slope_across.max(slope_across);
             return Some(());
         };
-        let [rest, slope, square] = factors(&under.on_line(line)?, only)?;
+        let [rest, slope, square] = coefficients(&under.on_line(line)?, monomial_of_axis)?;
         let foot = -&slope.over(&(&Number::int(2) * &square))?;
-        let off = &rest - &(&(&foot * &foot) * &square);
+        let squared_distance = &rest - &(&(&foot * &foot) * &square);
         let scale = square.sqrt()?;
         self.roots.push(Root {
             factor: signed(factor * &scale),
             foot,
-            off: off.to_f64().max(0.0).sqrt().next_up(),
+            distance: squared_distance.to_f64().max(0.0).sqrt().next_up(),
             scale: scale.to_f64(),
         });
         Some(())
@@ -124,7 +129,7 @@ impl Tangency {
 
     /// Returns the difference of the two depths on the line in a box; `None` if a root's foot may be there
     /// and the radicands give no bound.
-    pub(super) fn over(&self, cell: &Cell) -> Option<Off> {
+    pub(super) fn over_box(&self, cell: &Cell) -> Option<DepthDifference> {
         let [by_feet, by_roots] = [self.by_feet(cell), self.by_roots(cell)];
         match (by_feet, by_roots) {
             (Some(a), Some(b)) => Some(if a.jump <= b.jump { a } else { b }),
@@ -133,48 +138,52 @@ impl Tangency {
     }
 
     /// `|√P - √Q| = |P - Q| / (√P + √Q)`
-    fn by_roots(&self, cell: &Cell) -> Option<Off> {
-        let [p, q] = self.under.as_ref()?;
-        let differ = p.clone().plus(&q.scaled(&Number::int(-1))).over(cell).abs();
+    fn by_roots(&self, cell: &Cell) -> Option<DepthDifference> {
+        let [p, q] = self.radicands.as_ref()?;
+        let difference = p.clone().plus(&q.scaled(&Number::int(-1))).over(cell).abs();
         let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
-        (lengths.low > 0.0)
-            .then(|| Off { jump: differ.times(lengths.reciprocal()).high, across: 1.0 })
+        (lengths.low > 0.0).then(|| DepthDifference {
+            jump: difference.times(lengths.reciprocal()).high,
+            slope_across: 1.0,
+        })
     }
 
-    fn by_feet(&self, cell: &Cell) -> Option<Off> {
+    fn by_feet(&self, cell: &Cell) -> Option<DepthDifference> {
         let t = cell.sides[self.axis];
         let (mut slope, mut rest) = (self.slope.clone(), self.rest.clone());
-        let (mut noise, mut across) = (0.0f64, self.across);
+        let (mut error, mut slope_across) = (0.0f64, self.slope_across);
         for root in &self.roots {
-            let from_foot = t.plus(Interval::about(&root.foot).negated());
+            let from_foot = t.plus(Interval::enclosing(&root.foot).negated());
             if from_foot.low <= 0.0 && from_foot.high >= 0.0 {
                 return None;
             }
             let factor = if from_foot.high < 0.0 { -&root.factor } else { root.factor.clone() };
             rest = &rest - &(&factor * &root.foot);
             slope = &slope + &factor;
-            // A root differs from the form without `off` by at most `off`. Twice that also covers the
-            // rounding of `off` and of the sum.
-            noise += 2.0 * root.off;
-            across = across.max(2.0 * root.off / (root.scale * from_foot.abs().low));
+            // A root differs from the form without `distance` by at most `distance`. Twice that also covers the
+            // rounding of `distance` and of the sum.
+            error += 2.0 * root.distance;
+            slope_across =
+                slope_across.max(2.0 * root.distance / (root.scale * from_foot.abs().low));
         }
-        let affine = Interval::about(&slope).times(t).plus(Interval::about(&rest));
-        Some(Off { jump: affine.abs().high + noise, across })
+        let affine = Interval::enclosing(&slope).times(t).plus(Interval::enclosing(&rest));
+        Some(DepthDifference { jump: affine.abs().high + error, slope_across })
     }
 }
 
 /// Returns the coefficients of a polynomial of degree 2 in one coordinate, the constant first.
-fn factors(polynomial: &Polynomial, only: Monomial) -> Option<[Number; 3]> {
-    let mut factors = [(); 3].map(|()| Number::int(0));
+fn coefficients(polynomial: &Polynomial, monomial_of_axis: Monomial) -> Option<[Number; 3]> {
+    let mut coefficients = [(); 3].map(|()| Number::int(0));
     for (monomial, value) in polynomial.terms() {
         let degree = usize::from(monomial.iter().sum::<u8>());
-        let powers = only.map(|exponent| exponent * u8::try_from(degree).unwrap_or(u8::MAX));
+        let powers =
+            monomial_of_axis.map(|exponent| exponent * u8::try_from(degree).unwrap_or(u8::MAX));
         if degree > 2 || monomial != powers {
             return None;
         }
-        factors[degree] = value.clone();
+        coefficients[degree] = value.clone();
     }
-    Some(factors)
+    Some(coefficients)
 }
 
 #[cfg(test)]
@@ -184,13 +193,13 @@ mod tests {
     use crate::expr::Graph;
 
     /// Returns the largest difference between an arc's depth and a line's, on the arc's normal at the line's
-    /// end in a box on it, and its proved bound. The arc's centre is `off` beside the normal.
-    fn seen(off: f64) -> (f64, Off) {
+    /// end in a box on it, and its proved bound. The arc's centre is `distance` beside the normal.
+    fn largest_difference_and_bound(distance: f64) -> (f64, DepthDifference) {
         let mut graph = Graph::default();
         let number = |value: f64| Number::from_f64(value).expect("finite");
         let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
         let [centre_d, centre_z, radius] =
-            [3.0 + off, 5.0, 2.0].map(|value| graph.number(number(value)));
+            [3.0 + distance, 5.0, 2.0].map(|value| graph.number(number(value)));
         let [from_d, from_z] = [graph.sub(d, centre_d), graph.sub(z, centre_z)];
         let [square_d, square_z] = [graph.mul(from_d, from_d), graph.mul(from_z, from_z)];
         let under = graph.add(square_d, square_z);
@@ -202,30 +211,33 @@ mod tests {
         let normal = graph.sub(d, three);
         let mut forms = Forms::new(&graph);
         let [arc, line, normal] = [arc, line, normal].map(|id| forms.of(id).expect("a form"));
-        let normal = normal.plain().expect("linear").clone();
+        let normal = normal.polynomial().expect("linear").clone();
         let tangency = Tangency::of(&arc, &line, &normal).expect("lines and distances");
         let [low, high] = [3.25, 3.75];
         let cell = Cell::half_plane(Interval::new(2.9, 3.1), Interval::new(low, high));
         let differences = (0..=100).map(|k| {
             let z = low + (high - low) * f64::from(k) / 100.0;
             // The distance minus the length along the normal, without cancellation.
-            let (t, length) = (5.0 - z, (5.0 - z).hypot(off));
-            off * off / (t + length)
+            let (t, length) = (5.0 - z, (5.0 - z).hypot(distance));
+            distance * distance / (t + length)
         });
-        (differences.fold(0.0, f64::max), tangency.over(&cell).expect("the foot is elsewhere"))
+        (differences.fold(0.0, f64::max), tangency.over_box(&cell).expect("the foot is elsewhere"))
     }
 
     #[test]
-    fn arcs_that_are_nearly_tangent_to_lines_differ_as_said() {
-        for off in [0.0, 1e-16, 1e-12, 1e-9, 1e-3] {
-            let off = 3.0 + off - 3.0;
-            let (most, said) = seen(off);
+    fn the_bound_holds_for_arcs_that_are_nearly_tangent_to_lines() {
+        for distance in [0.0, 1e-16, 1e-12, 1e-9, 1e-3] {
+            let distance = 3.0 + distance - 3.0;
+            let (largest, bound) = largest_difference_and_bound(distance);
             assert!(
-                said.jump >= most && said.jump <= 2.0 * off * (1.0 + 1e-12) + 1e-60,
-                "{off}: {most} {}",
-                said.jump
+                bound.jump >= largest && bound.jump <= 2.0 * distance * (1.0 + 1e-12) + 1e-60,
+                "{distance}: {largest} {}",
+                bound.jump
             );
-            assert!(said.across >= off / 1.75_f64.hypot(off) && said.across <= 2.0 * off + 1e-15);
+            assert!(
+                bound.slope_across >= distance / 1.75_f64.hypot(distance)
+                    && bound.slope_across <= 2.0 * distance + 1e-15
+            );
         }
     }
 }

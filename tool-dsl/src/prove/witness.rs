@@ -7,15 +7,15 @@ use crate::domain::Domain;
 use crate::expr::interval::Cell;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::CurveIndex;
-use crate::geometry::outline::{Segment, stations};
+use crate::geometry::outline::{Segment, points_with_normals};
 use crate::plan::PlannedTool;
 
 /// The number of points from which shares are estimated.
-const SPREAD: usize = 10_000;
+const SHARE_SAMPLES: usize = 10_000;
 /// The number of points on each segment of a profile, and the distance at which the test points lie beside
 /// them, relative to the tool's size.
-const STATIONS: usize = 8;
-pub(super) const BESIDE: f64 = 1e-4;
+const POINTS_PER_SEGMENT: usize = 8;
+pub(super) const TEST_OFFSET_FRACTION: f64 = 1e-4;
 
 /// Evaluates depths and owners at points.
 pub(super) struct Witness<'t> {
@@ -28,25 +28,25 @@ impl<'t> Witness<'t> {
     pub(super) fn new(tool: &'t PlannedTool, size: f64) -> Witness<'t> {
         let model = &tool.model;
         let depths = model.regions.iter().map(|region| region.depth);
-        let asked = depths.chain(model.curves.iter().map(|curve| curve.value));
-        Witness { tool, values: Evaluator::new(&model.graph, asked), size }
+        let outputs = depths.chain(model.curves.iter().map(|curve| curve.value));
+        Witness { tool, values: Evaluator::new(&model.graph, outputs), size }
     }
 
     /// Returns each region's share of the solid, estimated from evenly spread points.
     pub(super) fn shares(&mut self) -> Vec<f64> {
         let mut counts = vec![0.0; self.tool.model.regions.len()];
-        for point in spread(self.tool.model.domain, &self.tool.extent, SPREAD, 0.0) {
+        for point in spread(self.tool.model.domain, &self.tool.extent, SHARE_SAMPLES, 0.0) {
             if let Some(owner) = self.owner(point) {
                 counts[owner] += 1.0;
             }
         }
-        let all: f64 = counts.iter().sum();
-        counts.iter().map(|count| count / all.max(1.0)).collect()
+        let total: f64 = counts.iter().sum();
+        counts.iter().map(|count| count / total.max(1.0)).collect()
     }
 
     /// Returns a point in a box with two owners side by side and a jump of depth between them, if a few test
     /// points find one.
-    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<JumpPoint> {
+    pub(super) fn find_jump(&mut self, (own, other): Pair, cell: Cell) -> Option<JumpPoint> {
         let steps = 6;
         let at = |axis: usize, k: u32| {
             let side = cell.sides[axis];
@@ -57,31 +57,31 @@ impl<'t> Witness<'t> {
             Domain::Space => &[0, 1, 2],
         };
         // Pairs of consecutive points in each row of a grid.
-        let mut before = None;
+        let mut previous = None;
         for first in 0..=steps {
             for second in 0..=steps {
                 let mut p = cell.middle();
                 for (k, axis) in axes.iter().enumerate() {
                     p[*axis] = at(*axis, if k == 0 { first } else { second });
                 }
-                let here = self.owner(p);
-                if let Some((last, owner)) = before
-                    && [[owner, here], [here, owner]].contains(&[Some(own), other])
+                let owner_here = self.owner(p);
+                if let Some((last, owner)) = previous
+                    && [[owner, owner_here], [owner_here, owner]].contains(&[Some(own), other])
                 {
                     let [from, to] = if owner == Some(own) { [last, p] } else { [p, last] };
-                    let seen = self.jumps([from, to], [Some(own), other]);
-                    if seen.is_some() {
-                        return seen;
+                    let jump_point = self.jump_between([from, to], [Some(own), other]);
+                    if jump_point.is_some() {
+                        return jump_point;
                     }
                 }
-                before = (second < steps).then_some((p, here));
+                previous = (second < steps).then_some((p, owner_here));
             }
         }
         None
     }
 
     /// Returns the point of the border between two points of different owners, if depth jumps there.
-    fn jumps(
+    fn jump_between(
         &mut self,
         [mut a, mut b]: [[f64; 3]; 2],
         owners: [Option<usize>; 2],
@@ -109,25 +109,29 @@ impl<'t> Witness<'t> {
 
     /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether
     /// it ends beside any.
-    pub(super) fn off_profile(&mut self, outline: &[Segment]) -> (Vec<[f64; 3]>, bool) {
-        let near = BESIDE * self.size;
-        let (mut off, mut ends) = (Vec::new(), false);
+    pub(super) fn points_off_profile(&mut self, outline: &[Segment]) -> (Vec<[f64; 3]>, bool) {
+        let test_offset = TEST_OFFSET_FRACTION * self.size;
+        let (mut off_points, mut ends) = (Vec::new(), false);
         for (index, segment) in outline.iter().enumerate() {
-            for [at, inward] in stations(segment, STATIONS) {
+            for [at, inward] in points_with_normals(segment, POINTS_PER_SEGMENT) {
                 let others = || outline.iter().enumerate().filter(|(k, _)| *k != index);
                 // Where another segment is as near, either side may belong to it.
-                if at[0] < 3.0 * near || others().any(|(_, other)| other.away(at) < 3.0 * near) {
+                if at[0] < 3.0 * test_offset
+                    || others().any(|(_, other)| other.distance_to(at) < 3.0 * test_offset)
+                {
                     continue;
                 }
-                let beside = |way: f64| [at[0] + way * inward[0], 0.0, at[1] + way * inward[1]];
-                let [inside, outside] = [near, -near].map(|way| self.owner(beside(way)));
+                let offset_point =
+                    |offset: f64| [at[0] + offset * inward[0], 0.0, at[1] + offset * inward[1]];
+                let [inside, outside] = [test_offset, -test_offset]
+                    .map(|signed_offset| self.owner(offset_point(signed_offset)));
                 if inside.is_none() || outside.is_some() {
-                    off.push(beside(0.0));
+                    off_points.push(offset_point(0.0));
                 } else {
                     ends = true;
                 }
             }
         }
-        (off, ends)
+        (off_points, ends)
     }
 }

@@ -22,11 +22,11 @@ pub(crate) struct Cell {
 }
 
 /// Depths of samples, as fractions of the slice's length along the normal.
-const DEPTHS: [f64; 4] = [0.02, 0.12, 0.45, 0.85];
+const SAMPLE_DEPTH_FRACTIONS: [f64; 4] = [0.02, 0.12, 0.45, 0.85];
 /// Positions of samples along a slice, as fractions of its width.
-const PLACES: [f64; 3] = [0.1, 0.5, 0.9];
+const SAMPLE_FRACTIONS: [f64; 3] = [0.1, 0.5, 0.9];
 /// The thickness of the layer near the surface that is weighted most, in sizes.
-const SHELL: f64 = 0.05;
+const SHELL_FRACTION: f64 = 0.05;
 
 impl Cell {
     /// Returns twice the area.
@@ -40,73 +40,79 @@ impl Cell {
 /// Returns the cells of all slices that have an area. Neighbours share the points of their common border.
 pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
     let all: Vec<&Slice> = slices.iter().flatten().collect();
-    let mut rims: Vec<Option<Vec<Point>>> = vec![None; all.len()];
+    let mut far_ends: Vec<Option<Vec<Point>>> = vec![None; all.len()];
     for index in 0..all.len() {
-        if rims[index].is_some() {
+        if far_ends[index].is_some() {
             continue;
         }
-        let rim = rim(section, all[index], chords);
-        if let Some(twin) = twin(section, &all, index, &rim) {
-            rims[twin] = Some(rim.iter().rev().copied().collect());
+        let far_end = far_end(section, all[index], chords);
+        if let Some(opposite) = opposite(section, &all, index, &far_end) {
+            far_ends[opposite] = Some(far_end.iter().rev().copied().collect());
         }
-        rims[index] = Some(rim);
+        far_ends[index] = Some(far_end);
     }
-    let rims = rims.into_iter().flatten();
-    let least = 1e-16 * section.size * section.size;
+    let far_ends = far_ends.into_iter().flatten();
+    let min_area = 1e-16 * section.size * section.size;
     all.iter()
-        .zip(rims)
-        .flat_map(|(slice, rim)| quads(section, slice, &rim, chords))
-        .filter(|cell| cell.area() > least)
+        .zip(far_ends)
+        .flat_map(|(slice, far_end)| quads(section, slice, &far_end, chords))
+        .filter(|cell| cell.area() > min_area)
         .collect()
 }
 
-/// The thickness of the layer returned by [`shell`], in sizes.
-const LAYER: f64 = 1e-6;
+/// The thickness of the layer returned by [`surface_layer`], in sizes.
+const LAYER_FRACTION: f64 = 1e-6;
 
 /// Returns the cells of a thin layer next to the outline.
-pub(super) fn shell(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
-    let least = 1e-16 * section.size * section.size * LAYER;
+pub(super) fn surface_layer(
+    section: &Section<'_>,
+    slices: &[Vec<Slice>],
+    chords: u32,
+) -> Vec<Cell> {
+    let min_area = 1e-16 * section.size * section.size * LAYER_FRACTION;
     let layer = |slice: &&Slice| {
         let steps = match section.features[slice.feature] {
             Feature::Piece(piece) if section.outline[piece].circle.is_none() => 1,
             _ => chords,
         };
-        let at = |k: u32| {
+        let ends_at = |k: u32| {
             let part = f64::from(k) / f64::from(steps);
-            let seat = section.seat(slice.feature, slice.from + part * (slice.to - slice.from));
-            let depth = slice.radius(section, part).min(LAYER * section.size);
-            (seat.foot, seat.at(depth))
+            let foot_point =
+                section.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
+            let depth = slice.radius(section, part).min(LAYER_FRACTION * section.size);
+            (foot_point.foot, foot_point.at(depth))
         };
         let quad = |k: u32| {
-            let ((a, c), (b, d)) = (at(k), at(k + 1));
+            let ((a, c), (b, d)) = (ends_at(k), ends_at(k + 1));
             let straight = [steps == 1, true, true, true];
-            let (vertices, straight) = tidy(&[a, b, d, c], &straight, 1e-14 * section.size);
+            let (vertices, straight) =
+                without_short_edges(&[a, b, d, c], &straight, 1e-14 * section.size);
             let (samples, witnesses) = (vec![], vec![]);
             Cell { part: slice.feature, vertices, straight, corners: vec![], samples, witnesses }
         };
-        (0..steps).map(quad).filter(|cell| cell.area() > least).collect::<Vec<_>>()
+        (0..steps).map(quad).filter(|cell| cell.area() > min_area).collect::<Vec<_>>()
     };
     slices.iter().flatten().collect::<Vec<_>>().iter().flat_map(layer).collect()
 }
 
-fn rim(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
-    if slice.stop == Obstacle::Centre {
-        return vec![slice.rim_at(section, 0.5)];
+fn far_end(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
+    if slice.obstacle == Obstacle::Centre {
+        return vec![slice.far_end_at(section, 0.5)];
     }
-    slice.rim(section, if is_straight(section, slice) { 1 } else { chords })
+    slice.far_end(section, if is_straight(section, slice) { 1 } else { chords })
 }
 
 /// Returns whether the far end of a slice is a straight line.
 fn is_straight(section: &Section<'_>, slice: &Slice) -> bool {
-    let line = |feature: usize| match section.features[feature] {
+    let is_line = |feature: usize| match section.features[feature] {
         Feature::Piece(piece) => Some(section.outline[piece].circle.is_none()),
         Feature::Corner(_) => None,
     };
-    match slice.stop {
+    match slice.obstacle {
         Obstacle::Axis => true,
-        Obstacle::Far => line(slice.feature) == Some(true),
+        Obstacle::Far => is_line(slice.feature) == Some(true),
         Obstacle::Centre => false,
-        Obstacle::Feature(other) => match (line(slice.feature), line(other)) {
+        Obstacle::Feature(other) => match (is_line(slice.feature), is_line(other)) {
             (Some(a), Some(b)) => a && b,
             (None, None) => true,
             _ => false,
@@ -115,53 +121,59 @@ fn is_straight(section: &Section<'_>, slice: &Slice) -> bool {
 }
 
 /// Returns the slice on the other side of a far end.
-fn twin(section: &Section<'_>, all: &[&Slice], index: usize, rim: &[Point]) -> Option<usize> {
-    let slice = all[index];
-    let Obstacle::Feature(other) = slice.stop else { return None };
-    let near = |a: Point, b: Point| norm(minus(a, b)) < 1e-7 * section.size;
-    (index + 1..all.len()).find(|k| {
-        let twin = all[*k];
-        twin.feature == other
-            && twin.stop == Obstacle::Feature(slice.feature)
-            && near(twin.rim_at(section, 0.0), rim[rim.len() - 1])
-            && near(twin.rim_at(section, 1.0), rim[0])
+fn opposite(
+    section: &Section<'_>,
+    slices: &[&Slice],
+    index: usize,
+    far_end: &[Point],
+) -> Option<usize> {
+    let slice = slices[index];
+    let Obstacle::Feature(other) = slice.obstacle else { return None };
+    let is_near = |a: Point, b: Point| norm(minus(a, b)) < 1e-7 * section.size;
+    (index + 1..slices.len()).find(|k| {
+        let opposite = slices[*k];
+        opposite.feature == other
+            && opposite.obstacle == Obstacle::Feature(slice.feature)
+            && is_near(opposite.far_end_at(section, 0.0), far_end[far_end.len() - 1])
+            && is_near(opposite.far_end_at(section, 1.0), far_end[0])
     })
 }
 
 /// Divides a slice along normals, so that no part of a curved edge is long.
-fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Vec<Cell> {
+fn quads(section: &Section<'_>, slice: &Slice, far_end: &[Point], chords: u32) -> Vec<Cell> {
     let curved = match section.features[slice.feature] {
         Feature::Piece(piece) => section.outline[piece].circle.is_some(),
         Feature::Corner(_) => false,
     };
     let straight_rim = is_straight(section, slice);
-    let steps = if curved { chords as usize } else { rim.len().max(2) - 1 };
-    let at = |list: &[Point], k: usize| list[(k * (list.len() - 1)) / steps];
+    let steps = if curved { chords as usize } else { far_end.len().max(2) - 1 };
+    let point_of = |list: &[Point], k: usize| list[(k * (list.len() - 1)) / steps];
     let feet: Vec<Point> = (0..=steps)
         .map(|k| {
             let t = slice.from + (slice.to - slice.from) * k as f64 / steps as f64;
-            section.seat(slice.feature, t).foot
+            section.foot_point(slice.feature, t).foot
         })
         .collect();
     // A straight far end opposite a curved segment has only two points.
-    let rim: Vec<Point> = if rim.len() == 2 && steps > 1 {
-        slice.rim(section, chords)
+    let far_end: Vec<Point> = if far_end.len() == 2 && steps > 1 {
+        slice.far_end(section, chords)
     } else {
-        (0..=steps).map(|k| at(rim, k)).collect()
+        (0..=steps).map(|k| point_of(far_end, k)).collect()
     };
     let (mut samples, mut witnesses) = (samples(section, slice), witnesses(section, slice));
     (0..steps)
         .map(|k| {
-            let vertices = [feet[k], feet[k + 1], rim[k + 1], rim[k]];
+            let vertices = [feet[k], feet[k + 1], far_end[k + 1], far_end[k]];
             let straight = [!curved, true, straight_rim, true];
-            let (vertices, straight) = tidy(&vertices, &straight, 1e-14 * section.size);
+            let (vertices, straight) =
+                without_short_edges(&vertices, &straight, 1e-14 * section.size);
             let (samples, witnesses) = (take(&mut samples), take(&mut witnesses));
             let mut corners = Vec::new();
             if k == 0 {
-                corners.extend([feet[0], rim[0]]);
+                corners.extend([feet[0], far_end[0]]);
             }
             if k + 1 == steps {
-                corners.extend([feet[steps], rim[steps]]);
+                corners.extend([feet[steps], far_end[steps]]);
             }
             Cell { part: slice.feature, vertices, straight, corners, samples, witnesses }
         })
@@ -169,32 +181,36 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
 }
 
 /// Removes edges without length.
-fn tidy(vertices: &[Point], straight: &[bool], least: f64) -> (Vec<Point>, Vec<bool>) {
+fn without_short_edges(
+    vertices: &[Point],
+    straight: &[bool],
+    min_area: f64,
+) -> (Vec<Point>, Vec<bool>) {
     let count = vertices.len();
     (0..count)
-        .filter(|k| norm(minus(vertices[*k], vertices[(k + 1) % count])) > least)
+        .filter(|k| norm(minus(vertices[*k], vertices[(k + 1) % count])) > min_area)
         .map(|k| (vertices[k], straight[k]))
         .unzip()
 }
 
 fn samples(section: &Section<'_>, slice: &Slice) -> Vec<(Point, f64)> {
     let mut samples = Vec::new();
-    let shell = SHELL * section.size;
-    for part in PLACES {
+    let layer_thickness = SHELL_FRACTION * section.size;
+    for part in SAMPLE_FRACTIONS {
         let t = slice.from + part * (slice.to - slice.from);
-        let seat = section.seat(slice.feature, t);
+        let foot_point = section.foot_point(slice.feature, t);
         let radius = slice.radius(section, part).min(2.0 * section.size);
         let wide = |r: f64| {
-            let ends = [slice.from, slice.to].map(|t| section.seat(slice.feature, t).at(r));
+            let ends = [slice.from, slice.to].map(|t| section.foot_point(slice.feature, t).at(r));
             norm(minus(ends[0], ends[1]))
         };
         let mut before = 0.0;
-        for (k, share) in DEPTHS.iter().enumerate() {
-            let after = DEPTHS.get(k + 1).map_or(1.0, |next| (share + next) / 2.0);
+        for (k, share) in SAMPLE_DEPTH_FRACTIONS.iter().enumerate() {
+            let after = SAMPLE_DEPTH_FRACTIONS.get(k + 1).map_or(1.0, |next| (share + next) / 2.0);
             let depth = share * radius;
-            let area = wide(depth) * (after - before) * radius / PLACES.len() as f64;
-            let weight = area * ((-depth / shell).exp() + SHELL);
-            samples.push((seat.at(depth), weight));
+            let area = wide(depth) * (after - before) * radius / SAMPLE_FRACTIONS.len() as f64;
+            let weight = area * ((-depth / layer_thickness).exp() + SHELL_FRACTION);
+            samples.push((foot_point.at(depth), weight));
             before = after;
         }
     }
@@ -205,9 +221,12 @@ fn witnesses(section: &Section<'_>, slice: &Slice) -> Vec<Point> {
     let mut witnesses = Vec::new();
     for k in 0..24 {
         let part = (f64::from(k) + 0.5) / 24.0;
-        let seat = section.seat(slice.feature, slice.from + part * (slice.to - slice.from));
+        let foot_point =
+            section.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
         let radius = slice.radius(section, part);
-        witnesses.extend([0.002, 0.15, 0.4, 0.7, 0.93, 0.998].map(|share| seat.at(share * radius)));
+        witnesses.extend(
+            [0.002, 0.15, 0.4, 0.7, 0.93, 0.998].map(|share| foot_point.at(share * radius)),
+        );
     }
     witnesses
 }

@@ -1,34 +1,36 @@
 //! Checks of a profile before regions are derived from it.
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
-use crate::geometry::crossing::meeting;
-use crate::geometry::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
+use crate::geometry::crossing::common_point;
+use crate::geometry::outline::{
+    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, minus, norm, sample_points,
+};
 
 /// Checks a profile that runs from the axis to the axis: contact with the axis, orientation, turns between neighbours,
 /// self-intersections. Returns the diagnostics.
 pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Diagnostic> {
     let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
     let mut diagnostics = Vec::new();
-    let points: Vec<Point> = outline.iter().flat_map(along).collect();
-    let [_, high] = reach(outline);
+    let points: Vec<Point> = outline.iter().flat_map(sample_points).collect();
+    let [_, high] = bounding_box(outline);
     for (index, segment) in outline.iter().enumerate() {
         let [_, [to, _]] = segment.ends();
         // The point of an arc's circle nearest to the axis, if it lies strictly between the arc's ends.
-        let within = segment.round().filter(|(centre, radius, _)| {
+        let arc_near_axis = segment.round().filter(|(centre, radius, _)| {
             segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
         });
-        let lowest = within.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
+        let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
         let touches =
             lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
-        let lies = |segment: &Segment| {
+        let lies_on_axis = |segment: &Segment| {
             let [[from, _], [to, _]] = segment.ends();
             segment.round().is_none() && from == 0.0 && to == 0.0
         };
-        if lies(segment) {
+        if lies_on_axis(segment) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::OnAxis));
         } else if lowest < -1e-12 * high[0] || to < 0.0 {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::CrossesAxis));
-        } else if touches && !outline.get(index + 1).is_some_and(lies) {
+        } else if touches && !outline.get(index + 1).is_some_and(lies_on_axis) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::TouchesAxis));
         }
     }
@@ -44,51 +46,58 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         (first, first.tangent(false), first.ends()[0]),
         (last, last.tangent(true), last.ends()[1]),
     ];
-    for (segment, along, at) in axis_ends {
-        if along[0].abs() < TANGENT {
+    for (segment, tangent, point) in axis_ends {
+        if tangent[0].abs() < TANGENT_SINE {
             diagnostics
-                .push(Diagnostic::new(segment.span, ProfileKind::AlongAxis { place: show(at) }));
+                .push(Diagnostic::new(segment.span, ProfileKind::AlongAxis { place: show(point) }));
         }
     }
     // Segments that already have a diagnostic. Their neighbours would only repeat it.
-    let mut said: Vec<usize> = Vec::new();
+    let mut reported: Vec<usize> = Vec::new();
     for (index, pair) in outline.windows(2).enumerate() {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
-        if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {
+        if cross(before, after).abs() < TANGENT_SINE && dot(before, after) < 0.0 {
             let place = show(pair[0].ends()[1]);
             diagnostics.push(
                 Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { place })
                     .and(pair[0].span, "from this one"),
             );
-            said.extend([index, index + 1]);
+            reported.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
             let place = show(pair[0].ends()[1]);
             diagnostics.push(
-                Diagnostic::new(pair[1].span, ProfileKind::HardlyTurns { least: TANGENT, place })
-                    .and(pair[0].span, "from this one"),
+                Diagnostic::new(
+                    pair[1].span,
+                    ProfileKind::HardlyTurns { least: TANGENT_SINE, place },
+                )
+                .and(pair[0].span, "from this one"),
             );
-            said.extend([index, index + 1]);
+            reported.extend([index, index + 1]);
         }
     }
-    let known = |said: &[usize], index: usize| said.iter().any(|other| index.abs_diff(*other) <= 1);
+    let is_near_reported =
+        |reported: &[usize], index: usize| reported.iter().any(|other| index.abs_diff(*other) <= 1);
     for (i, a) in outline.iter().enumerate() {
         for (j, b) in outline.iter().enumerate().skip(i + 1) {
-            if known(&said, i) || known(&said, j) {
+            if is_near_reported(&reported, i) || is_near_reported(&reported, j) {
                 continue;
             }
-            if let Some(at) = meeting(a, b, j == i + 1) {
+            if let Some(point) = common_point(a, b, j == i + 1) {
                 let slack = 1e-9 * high.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
-                let end = |segment: &Segment| {
-                    segment.ends().iter().any(|end| norm(minus(*end, at)) <= slack)
+                let is_end = |segment: &Segment| {
+                    segment.ends().iter().any(|end| norm(minus(*end, point)) <= slack)
                 };
                 diagnostics.push(
                     Diagnostic::new(
                         b.span,
-                        ProfileKind::MeetsItself { touches: end(a) || end(b), place: show(at) },
+                        ProfileKind::MeetsItself {
+                            touches: is_end(a) || is_end(b),
+                            place: show(point),
+                        },
                     )
                     .and(a.span, "that one"),
                 );
-                said.extend([i, j]);
+                reported.extend([i, j]);
             }
             if enough(&diagnostics) {
                 return diagnostics;
@@ -109,5 +118,5 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     };
     // The rounding error in 256 bits is far below the lower limit.
     let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
-    (1e-60..TANGENT).contains(&sine)
+    (1e-60..TANGENT_SINE).contains(&sine)
 }

@@ -41,13 +41,13 @@ pub(super) enum Border {
     /// No farther from `this` feature's line, circle or corner than from the other's.
     Nearer { this: usize, other: usize },
     /// Up to the normal of a feature at a parameter.
-    UpTo { feature: usize, at: f64 },
+    UpTo { feature: usize, parameter: f64 },
     /// Beyond the normal of a feature at a parameter.
-    From { feature: usize, at: f64 },
+    From { feature: usize, parameter: f64 },
 }
 
 /// The radius, in sizes of the outline, above which an arc's distance is computed from a point on the arc.
-const FLAT: f64 = 2.0;
+const MAX_FLATNESS: f64 = 2.0;
 
 impl Border {
     pub(super) fn holds(&self, section: &Section<'_>, p: Point) -> bool {
@@ -58,23 +58,31 @@ impl Border {
             Border::Nearer { this, other } => {
                 section.depth_at(this, p) <= section.depth_at(other, p)
             }
-            Border::UpTo { feature, at } => section.beyond(feature, at, p) <= 0.0,
-            Border::From { feature, at } => section.beyond(feature, at, p) >= 0.0,
+            Border::UpTo { feature, parameter } => {
+                section.distance_beyond_normal(feature, parameter, p) <= 0.0
+            }
+            Border::From { feature, parameter } => {
+                section.distance_beyond_normal(feature, parameter, p) >= 0.0
+            }
         }
     }
 
     /// Returns the distance along a normal at which a straight border is met; NaN for other borders.
-    pub(super) fn met(&self, section: &Section<'_>, seat: &FootPoint) -> f64 {
+    pub(super) fn intersection_distance(
+        &self,
+        section: &Section<'_>,
+        foot_point: &FootPoint,
+    ) -> f64 {
         let value = |p: Point| match *self {
             Border::Before { piece, end } | Border::Past { piece, end } => {
                 section.outline[piece].sector(p)[end]
             }
-            Border::UpTo { feature, at } | Border::From { feature, at } => {
-                section.beyond(feature, at, p)
+            Border::UpTo { feature, parameter } | Border::From { feature, parameter } => {
+                section.distance_beyond_normal(feature, parameter, p)
             }
             Border::Inside { .. } | Border::Nearer { .. } => f64::NAN,
         };
-        let (near, far) = (value(seat.at(0.0)), value(seat.at(section.size)));
+        let (near, far) = (value(foot_point.at(0.0)), value(foot_point.at(section.size)));
         section.size * near / (near - far)
     }
 
@@ -83,13 +91,13 @@ impl Border {
         let at_most = |id: Id| Some(Test::AtMost(id));
         match *self {
             Border::Inside { piece } => match &section.outline[piece].circle {
-                Some(circle) if !section.flat(circle) => {
+                Some(circle) if !section.is_flat(circle) => {
                     let square = graph.number(&circle.radius * &circle.radius);
-                    let away = outline::squared(graph, &circle.centre);
+                    let squared_distance = outline::squared_distance(graph, &circle.centre);
                     at_most(if circle.convex {
-                        graph.sub(away, square)
+                        graph.sub(squared_distance, square)
                     } else {
-                        graph.sub(square, away)
+                        graph.sub(square, squared_distance)
                     })
                 }
                 _ => {
@@ -103,9 +111,11 @@ impl Border {
             }
             Border::Past { piece, end } => at_most(section.outline[piece].sides(graph)?[end]),
             Border::Nearer { this, other } => section.nearer(graph, this, other),
-            Border::UpTo { feature, at } => at_most(section.spoke(graph, feature, at)?),
-            Border::From { feature, at } => {
-                let side = section.spoke(graph, feature, at)?;
+            Border::UpTo { feature, parameter } => {
+                at_most(section.normal_function(graph, feature, parameter)?)
+            }
+            Border::From { feature, parameter } => {
+                let side = section.normal_function(graph, feature, parameter)?;
                 at_most(graph.neg(side))
             }
         }
@@ -113,12 +123,12 @@ impl Border {
 }
 
 impl Section<'_> {
-    pub(super) fn flat(&self, circle: &Circle) -> bool {
-        circle.radius.to_f64() > FLAT * self.size
+    pub(super) fn is_flat(&self, circle: &Circle) -> bool {
+        circle.radius.to_f64() > MAX_FLATNESS * self.size
     }
 
-    pub(super) fn corner(&self, behind: Option<usize>) -> &ExactPoint {
-        match behind {
+    pub(super) fn corner(&self, previous: Option<usize>) -> &ExactPoint {
+        match previous {
             Some(piece) => &self.outline[piece].to,
             None => &self.outline[0].from,
         }
@@ -128,7 +138,7 @@ impl Section<'_> {
     pub(super) fn depth(&self, graph: &mut Graph, feature: usize) -> Option<Id> {
         match self.features[feature] {
             Feature::Piece(piece) => self.piece_depth(graph, piece),
-            Feature::Corner(behind) => outline::distance(graph, self.corner(behind)),
+            Feature::Corner(previous) => outline::distance(graph, self.corner(previous)),
         }
     }
 
@@ -139,68 +149,73 @@ impl Section<'_> {
     /// `-(w² + 2 r e·w) / (r + |p - c|)`.
     fn piece_depth(&self, graph: &mut Graph, piece: usize) -> Option<Id> {
         let segment = &self.outline[piece];
-        let Some(circle) = segment.circle.as_ref().filter(|circle| self.flat(circle)) else {
+        let Some(circle) = segment.circle.as_ref().filter(|circle| self.is_flat(circle)) else {
             return segment.depth(graph);
         };
-        let way = [0, 1]
+        let direction = [0, 1]
             .map(|k| &(&(&segment.from[k] + &segment.to[k]) / &Number::int(2)) - &circle.centre[k]);
-        let length = (&(&way[0] * &way[0]) + &(&way[1] * &way[1])).sqrt()?;
-        let out = way.map(|part| &part / &length);
-        let middle = [0, 1].map(|k| &circle.centre[k] + &(&out[k] * &circle.radius));
-        let square = outline::squared(graph, &middle);
-        let rise = outline::linear(graph, out, &middle)?;
+        let length =
+            (&(&direction[0] * &direction[0]) + &(&direction[1] * &direction[1])).sqrt()?;
+        let outward = direction.map(|part| &part / &length);
+        let middle = [0, 1].map(|k| &circle.centre[k] + &(&outward[k] * &circle.radius));
+        let square = outline::squared_distance(graph, &middle);
+        let rise = outline::linear(graph, outward, &middle)?;
         let (per_radius, two) = (graph.number(Number::int(1).over(&circle.radius)?), graph.int(2));
         let (scaled, rise) = (graph.mul(per_radius, square), graph.mul(two, rise));
-        let over = graph.add(scaled, rise);
-        let (away, one) = (outline::distance(graph, &circle.centre)?, graph.int(1));
-        let share = graph.mul(per_radius, away);
-        let share = graph.add(share, one);
-        let out = graph.div(over, share)?;
+        let numerator = graph.add(scaled, rise);
+        let (distance, one) = (outline::distance(graph, &circle.centre)?, graph.int(1));
+        let denominator = graph.mul(per_radius, distance);
+        let denominator = graph.add(denominator, one);
+        let out = graph.div(numerator, denominator)?;
         Some(if circle.convex { graph.neg(out) } else { out })
     }
 
     /// Returns the signed distance of a point beyond the normal of a feature at a parameter.
-    fn beyond(&self, feature: usize, at: f64, p: Point) -> f64 {
-        let (from, way) = self.spoke_line(feature, at);
-        dot(way, minus(p, from))
+    fn distance_beyond_normal(&self, feature: usize, parameter: f64, p: Point) -> f64 {
+        let (from, direction) = self.normal_line(feature, parameter);
+        dot(direction, minus(p, from))
     }
 
     /// Returns a point of a normal, and the direction across it toward larger parameters.
-    fn spoke_line(&self, feature: usize, at: f64) -> (Point, Point) {
-        let seat = self.seat(feature, at);
-        let way = match self.features[feature] {
+    fn normal_line(&self, feature: usize, parameter: f64) -> (Point, Point) {
+        let foot_point = self.foot_point(feature, parameter);
+        let direction = match self.features[feature] {
             Feature::Piece(piece) => match self.outline[piece].round() {
                 None => self.outline[piece].tangent(false),
                 Some((_, _, convex)) => {
                     // Counter-clockwise about the centre of a convex arc, clockwise about that of a concave one.
-                    let out = if convex { [-seat.normal[0], -seat.normal[1]] } else { seat.normal };
+                    let out = if convex {
+                        [-foot_point.normal[0], -foot_point.normal[1]]
+                    } else {
+                        foot_point.normal
+                    };
                     if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
                 }
             },
-            Feature::Corner(_) => [seat.normal[1], -seat.normal[0]],
+            Feature::Corner(_) => [foot_point.normal[1], -foot_point.normal[0]],
         };
-        (seat.foot, way)
+        (foot_point.foot, direction)
     }
 
-    fn spoke(&self, graph: &mut Graph, feature: usize, at: f64) -> Option<Id> {
-        let (from, way) = self.spoke_line(feature, at);
+    fn normal_function(&self, graph: &mut Graph, feature: usize, parameter: f64) -> Option<Id> {
+        let (from, direction) = self.normal_line(feature, parameter);
         let number = |value: f64| Number::from_f64(value);
-        let (from, way) =
-            ([number(from[0])?, number(from[1])?], [number(way[0])?, number(way[1])?]);
-        outline::linear(graph, way, &from)
+        let (from, direction) =
+            ([number(from[0])?, number(from[1])?], [number(direction[0])?, number(direction[1])?]);
+        outline::linear(graph, direction, &from)
     }
 }
 
 /// Returns the direction to a feature's surface, not normalised.
-pub(crate) fn course(
+pub(crate) fn direction_to_surface(
     graph: &mut Graph,
     outline: &[outline::Segment],
     feature: Feature,
 ) -> Option<[Id; 2]> {
-    let from = |graph: &mut Graph, place: &ExactPoint| {
-        let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-        let there = place.clone().map(|part| graph.number(part));
-        [graph.sub(here[0], there[0]), graph.sub(here[1], there[1])]
+    let from = |graph: &mut Graph, point: &ExactPoint| {
+        let coordinates = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let constants = point.clone().map(|part| graph.number(part));
+        [graph.sub(coordinates[0], constants[0]), graph.sub(coordinates[1], constants[1])]
     };
     Some(match feature {
         Feature::Piece(index) => match &outline[index].circle {
@@ -209,16 +224,16 @@ pub(crate) fn course(
                 [graph.number(z), graph.number(-&d)]
             }
             Some(circle) => {
-                let away = from(graph, &circle.centre);
-                if circle.convex { away } else { away.map(|part| graph.neg(part)) }
+                let offset = from(graph, &circle.centre);
+                if circle.convex { offset } else { offset.map(|part| graph.neg(part)) }
             }
         },
-        Feature::Corner(behind) => {
-            let place = match behind {
+        Feature::Corner(previous) => {
+            let point = match previous {
                 Some(piece) => &outline[piece].to,
                 None => &outline.first()?.from,
             };
-            from(graph, place).map(|part| graph.neg(part))
+            from(graph, point).map(|part| graph.neg(part))
         }
     })
 }

@@ -17,7 +17,7 @@ pub(crate) mod smooth;
 use crate::expr::{Graph, Id};
 use crate::geometry::outline::{Point, Segment, turn};
 use curve::Border;
-pub(crate) use curve::{Test, course};
+pub(crate) use curve::{Test, direction_to_surface};
 pub(crate) use section::Feature;
 use section::{Obstacle, Section};
 use slices::Slice;
@@ -59,7 +59,7 @@ impl Partition {
     pub(crate) fn parts(&self, graph: &mut Graph) -> Result<Vec<Derived>, Undivided> {
         let section = Section::new(&self.outline, self.outer);
         let slices = self.slices.iter().enumerate();
-        slices.map(|(feature, slices)| section.part(graph, feature, slices)).collect()
+        slices.map(|(feature, slices)| section.derive_region(graph, feature, slices)).collect()
     }
 
     /// Returns the condition of the interior side of a segment's line or circle.
@@ -84,29 +84,33 @@ impl Partition {
         let section = Section::new(&self.outline, self.outer);
         let piece = |part: usize| match section.features[part] {
             Feature::Piece(piece) => piece,
-            Feature::Corner(behind) => behind.unwrap_or(0),
+            Feature::Corner(previous) => previous.unwrap_or(0),
         };
-        let shell = cells::shell(&section, &self.slices, chords);
+        let shell = cells::surface_layer(&section, &self.slices, chords);
         shell.into_iter().map(|cell| (piece(cell.part), cell)).collect()
     }
 
     /// Returns the number of segments of the outline.
-    pub(crate) fn pieces(&self) -> usize {
+    pub(crate) fn segment_count(&self) -> usize {
         self.outline.len()
     }
 
     /// Returns a point whose distance from the outline, computed by brute force, differs from its distance from the
     /// line, circle or corner of the part assigned to it. `part_at` assigns a part, given the point and its distance.
     /// The points are taken along the normals of all cells, most densely near the ends.
-    pub(crate) fn misplaced(&self, part_at: impl Fn(Point, f64) -> Option<usize>) -> Option<Point> {
+    pub(crate) fn wrongly_assigned_point(
+        &self,
+        part_at: impl Fn(Point, f64) -> Option<usize>,
+    ) -> Option<Point> {
         let section = Section::new(&self.outline, self.outer);
-        let mut probes = self.slices.iter().flatten().flat_map(|slice| slice.probes(&section));
+        let mut probes =
+            self.slices.iter().flatten().flat_map(|slice| slice.sample_points(&section));
         probes.find(|p| {
-            let pieces = self.outline.iter().map(|segment| segment.away(*p));
-            let distance = pieces.fold(f64::INFINITY, f64::min);
+            let distances = self.outline.iter().map(|segment| segment.distance_to(*p));
+            let distance = distances.fold(f64::INFINITY, f64::min);
             let slack = ROUNDING * section.size.max(distance);
-            let off = |part| (section.depth_at(part, *p) - distance).abs();
-            part_at(*p, distance).is_none_or(|part| off(part) > slack)
+            let error = |part| (section.depth_at(part, *p) - distance).abs();
+            part_at(*p, distance).is_none_or(|part| error(part) > slack)
         })
     }
 
@@ -136,18 +140,18 @@ impl Bound {
         if self.unless.is_empty() {
             return Some(border);
         }
-        let mut any = vec![border];
+        let mut alternatives = vec![border];
         for other in &self.unless {
             // Exceptions are strict: on an exception's own border the neighbour's foot is its end point, so the border
             // applies.
-            any.push(Test::Strictly(Box::new(other.test(section, graph)?)));
+            alternatives.push(Test::Strictly(Box::new(other.test(section, graph)?)));
         }
-        Some(Test::Any(any))
+        Some(Test::Any(alternatives))
     }
 }
 
 /// Positions along a slice at which borders are checked.
-const PARTS: [f64; 17] = [
+const SAMPLE_FRACTIONS: [f64; 17] = [
     0.002, 0.01, 0.04, 0.1, 0.17, 0.25, 0.33, 0.42, 0.5, 0.58, 0.67, 0.75, 0.83, 0.9, 0.96, 0.99,
     0.998,
 ];
@@ -159,22 +163,22 @@ impl Section<'_> {
     /// so a border that was crossed is not crossed back. Between the normals at its ends, a cell is therefore the set
     /// of points that no neighbour's border cuts off. A neighbour's line or circle extends beyond its segment; where
     /// the extension would cut into the cell, it is made an exception.
-    fn part(
+    fn derive_region(
         &self,
         graph: &mut Graph,
         feature: usize,
         slices: &[Slice],
     ) -> Result<Derived, Undivided> {
-        let undivided = || Undivided(self.seat(feature, 0.5).at(1e-3 * self.size));
-        let natural = self.neighbours(feature, slices, false);
-        let neighbours = match self.wrong(&natural, slices) {
-            None => natural,
+        let undivided = || Undivided(self.foot_point(feature, 0.5).at(1e-3 * self.size));
+        let by_neighbour_ends = self.neighbours(feature, slices, false);
+        let neighbours = match self.wrong_point(&by_neighbour_ends, slices) {
+            None => by_neighbour_ends,
             Some(_) => {
-                let spokes = self.neighbours(feature, slices, true);
-                if let Some(p) = self.wrong(&spokes, slices) {
+                let own_normals = self.neighbours(feature, slices, true);
+                if let Some(p) = self.wrong_point(&own_normals, slices) {
                     return Err(Undivided(p));
                 }
-                spokes
+                own_normals
             }
         };
         let mut bounds = self.ends(feature, &neighbours);
@@ -189,41 +193,41 @@ impl Section<'_> {
     }
 
     /// Returns the borders to neighbours, each once. Exceptions are the normals at the neighbour's ends or, with
-    /// `spokes`, the feature's own normals at the slices' ends.
-    fn neighbours(&self, feature: usize, slices: &[Slice], spokes: bool) -> Vec<Bound> {
+    /// `own_normals`, the feature's own normals at the slices' ends.
+    fn neighbours(&self, feature: usize, slices: &[Slice], own_normals: bool) -> Vec<Bound> {
         let mut bounds: Vec<Bound> = Vec::new();
         for slice in slices {
-            let Obstacle::Feature(other) = slice.stop else { continue };
+            let Obstacle::Feature(other) = slice.obstacle else { continue };
             let border = Border::Nearer { this: feature, other };
             if bounds.iter().any(|bound| bound.border == border) {
                 continue;
             }
             let mut bound = Bound::always(border);
-            let mine = |s: &&Slice| s.stop == slice.stop;
-            let others = slices.iter().filter(|s| !mine(s));
-            let cut: Vec<Point> = others
-                .flat_map(|s| s.rays(self, 12))
+            let is_same_obstacle = |s: &&Slice| s.obstacle == slice.obstacle;
+            let others = slices.iter().filter(|s| !is_same_obstacle(s));
+            let wrongly_cut: Vec<Point> = others
+                .flat_map(|s| s.points_on_normals(self, 12))
                 .filter(|p| {
                     let own = self.depth_at(feature, *p);
                     own > self.depth_at(other, *p) + 1e-9 * self.size
                 })
                 .collect();
-            if !cut.is_empty() && spokes {
-                let all: Vec<&Slice> = slices.iter().filter(mine).collect();
-                if let (Some(first), Some(last)) = (all.first(), all.last()) {
+            if !wrongly_cut.is_empty() && own_normals {
+                let same_obstacle: Vec<&Slice> = slices.iter().filter(is_same_obstacle).collect();
+                if let (Some(first), Some(last)) = (same_obstacle.first(), same_obstacle.last()) {
                     if first.from > 0.0 {
-                        bound.unless.push(Border::UpTo { feature, at: first.from });
+                        bound.unless.push(Border::UpTo { feature, parameter: first.from });
                     }
                     if last.to < 1.0 {
-                        bound.unless.push(Border::From { feature, at: last.to });
+                        bound.unless.push(Border::From { feature, parameter: last.to });
                     }
                 }
-            } else if !cut.is_empty()
+            } else if !wrongly_cut.is_empty()
                 && let Feature::Piece(piece) = self.features[other]
             {
                 for end in [0, 1] {
                     let past = Border::Past { piece, end };
-                    if cut.iter().any(|p| past.holds(self, *p)) {
+                    if wrongly_cut.iter().any(|p| past.holds(self, *p)) {
                         bound.unless.push(past);
                     }
                 }
@@ -234,36 +238,38 @@ impl Section<'_> {
     }
 
     /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
-    fn wrong(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
+    fn wrong_point(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
         let holds = |p: Point| bounds.iter().all(|bound| bound.holds(self, p));
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
-            for part in PARTS {
-                let seat = self.seat(slice.feature, slice.from + part * (slice.to - slice.from));
+            for part in SAMPLE_FRACTIONS {
+                let foot_point =
+                    self.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
                 let radius = slice.radius(self, part);
-                let own = [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| seat.at(share * radius));
+                let own =
+                    [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
                 if let Some(p) = own.into_iter().find(|p| !holds(*p)) {
                     return Some(p);
                 }
-                if !matches!(slice.stop, Obstacle::Feature(_)) {
+                if !matches!(slice.obstacle, Obstacle::Feature(_)) {
                     continue;
                 }
-                let most = self.focus(slice.feature);
-                let reaches =
+                let max_distance = self.focus(slice.feature);
+                let distances_beyond =
                     [1.0 + 1e-5, 1.05, 1.2, 1.5, 2.0, 3.0, 6.0].map(|times| times * radius);
                 // The points just before and behind the start of an exception.
                 let edges = bounds.iter().flat_map(|bound| &bound.unless).flat_map(|border| {
-                    let r = border.met(self, &seat);
+                    let r = border.intersection_distance(self, &foot_point);
                     [1e-9, 1e-4, -1e-9, -1e-4].map(|step| r + step * self.size)
                 });
-                let beyond = reaches
+                let distances = distances_beyond
                     .into_iter()
                     .chain(edges)
                     .chain([0.5, 1.0, 3.0, 30.0].map(|s| s * self.size));
-                let mut beyond = beyond
-                    .filter(|r| (radius..most.min(100.0 * self.size)).contains(r))
-                    .map(|r| seat.at(r))
+                let mut distances = distances
+                    .filter(|r| (radius..max_distance.min(100.0 * self.size)).contains(r))
+                    .map(|r| foot_point.at(r))
                     .filter(|p| p[0] >= 0.0);
-                if let Some(p) = beyond.find(|p| holds(*p)) {
+                if let Some(p) = distances.find(|p| holds(*p)) {
                     return Some(p);
                 }
             }
@@ -293,7 +299,7 @@ impl Section<'_> {
                 for end in [0, 1] {
                     let next = if end == 1 { Some(piece + 1) } else { piece.checked_sub(1) };
                     let next = next.filter(|next| *next < self.outline.len());
-                    let implied = match next {
+                    let is_implied = match next {
                         Some(next) => {
                             let (low, high) = (piece.min(next), piece.max(next));
                             let convex = turn(
@@ -312,19 +318,19 @@ impl Section<'_> {
                         // At the axis, half of the mirrored corner suffices.
                         None => {
                             let t = segment.tangent(end == 1);
-                            let way = if end == 1 { t } else { [-t[0], -t[1]] };
-                            let turned = turn(way, [way[0], -way[1]]);
-                            let corner = if end == 1 { turned } else { -turned };
+                            let direction = if end == 1 { t } else { [-t[0], -t[1]] };
+                            let mirrored_turn = turn(direction, [direction[0], -direction[1]]);
+                            let corner = if end == 1 { mirrored_turn } else { -mirrored_turn };
                             segment.circle.is_none() && corner >= 0.0
                         }
                     };
-                    if !implied {
+                    if !is_implied {
                         bounds.push(Bound::always(Border::Before { piece, end }));
                     }
                 }
             }
-            Feature::Corner(behind) => {
-                for (piece, end) in self.beside(behind).into_iter().flatten() {
+            Feature::Corner(previous) => {
+                for (piece, end) in self.adjacent_segments(previous).into_iter().flatten() {
                     bounds.push(Bound::always(Border::Past { piece, end }));
                 }
             }

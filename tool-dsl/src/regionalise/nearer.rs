@@ -19,10 +19,10 @@ enum Kind<'o> {
 impl Section<'_> {
     fn kind(&self, feature: usize) -> Kind<'_> {
         match self.features[feature] {
-            Feature::Corner(behind) => Kind::Point(self.corner(behind)),
+            Feature::Corner(previous) => Kind::Point(self.corner(previous)),
             Feature::Piece(piece) => match &self.outline[piece].circle {
                 None => Kind::Line(piece),
-                Some(circle) if self.flat(circle) => Kind::Flat,
+                Some(circle) if self.is_flat(circle) => Kind::Flat,
                 Some(circle) => Kind::Arc(circle),
             },
         }
@@ -37,14 +37,15 @@ impl Section<'_> {
     /// - A corner is nearer than a line where `A ≤ l²`.
     /// - A concave arc is nearer than a line where `A ≤ (l + r)²`.
     /// - A convex arc is nearer than a line where `l ≥ r` or `(r - l)² ≤ A`. If the two are adjacent, this is computed
-    ///   from their common corner ([`from_their_corner`]).
+    ///   from their common corner ([`difference_from_common_corner`]).
     /// - An arc is nearer than a corner where `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`.
-    /// - [`arcs`] has the condition for two arcs.
+    /// - [`compare_arcs`] has the condition for two arcs.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
             (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
             (Kind::Point(p), Kind::Point(q)) => {
-                let (a, b) = (outline::squared(graph, p), outline::squared(graph, q));
+                let (a, b) =
+                    (outline::squared_distance(graph, p), outline::squared_distance(graph, q));
                 let difference = graph.sub(a, b);
                 Test::AtMost(expanded(graph, difference))
             }
@@ -55,21 +56,23 @@ impl Section<'_> {
             }
             (Kind::Arc(arc), Kind::Line(line)) => {
                 let corner = self.joint(this, other);
-                self.arc_line(graph, arc, line, (corner, true))?
+                self.compare_arc_and_line(graph, arc, line, (corner, true))?
             }
             (Kind::Line(line), Kind::Arc(arc)) => {
                 let corner = self.joint(this, other);
-                self.arc_line(graph, arc, line, (corner, false))?
+                self.compare_arc_and_line(graph, arc, line, (corner, false))?
             }
-            (Kind::Arc(arc), Kind::Point(q)) if self.fits(arc, q) => {
-                arc_point(graph, arc, q, true)?
+            (Kind::Arc(arc), Kind::Point(q)) if self.is_accurate_by_squares(arc, q) => {
+                compare_arc_and_point(graph, arc, q, true)?
             }
-            (Kind::Point(q), Kind::Arc(arc)) if self.fits(arc, q) => {
-                arc_point(graph, arc, q, false)?
+            (Kind::Point(q), Kind::Arc(arc)) if self.is_accurate_by_squares(arc, q) => {
+                compare_arc_and_point(graph, arc, q, false)?
             }
-            (Kind::Arc(arc), Kind::Point(q)) => near_arc(graph, arc, q, true)?,
-            (Kind::Point(q), Kind::Arc(arc)) => near_arc(graph, arc, q, false)?,
-            (Kind::Arc(a), Kind::Arc(b)) if self.alike(a, b) => arcs(graph, a, b)?,
+            (Kind::Arc(arc), Kind::Point(q)) => compare_nearby_arc(graph, arc, q, true)?,
+            (Kind::Point(q), Kind::Arc(arc)) => compare_nearby_arc(graph, arc, q, false)?,
+            (Kind::Arc(a), Kind::Arc(b)) if self.are_accurate_by_squares(a, b) => {
+                compare_arcs(graph, a, b)?
+            }
             _ => {
                 let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
                 Test::AtMost(graph.sub(a, b))
@@ -82,46 +85,49 @@ impl Section<'_> {
     fn bisector(&self, graph: &mut Graph, a: usize, b: usize) -> Option<Id> {
         let [first, second] = [a, b].map(|piece| &self.outline[piece]);
         let ([ad, az], [bd, bz]) = (first.direction()?, second.direction()?);
-        let plain = [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
+        let is_axis_parallel =
+            [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
         let sine = &(&ad * &bz) - &(&az * &bd);
-        if plain || sine.to_f64().abs() < 1e-3 {
+        if is_axis_parallel || sine.to_f64().abs() < 1e-3 {
             let (a, b) = (first.depth(graph)?, second.depth(graph)?);
             let difference = graph.sub(a, b);
-            return Some(if plain { expanded(graph, difference) } else { difference });
+            return Some(if is_axis_parallel { expanded(graph, difference) } else { difference });
         }
-        let off = [0, 1].map(|k| &second.from[k] - &first.from[k]);
-        let along = (&(&off[0] * &bz) - &(&off[1] * &bd)).over(&sine)?;
-        let meet = [&ad, &az].map(|way| way * &along);
-        let meet = [0, 1].map(|k| &first.from[k] + &meet[k]);
+        let offset = [0, 1].map(|k| &second.from[k] - &first.from[k]);
+        let along = (&(&offset[0] * &bz) - &(&offset[1] * &bd)).over(&sine)?;
+        let intersection = [&ad, &az].map(|direction| direction * &along);
+        let intersection = [0, 1].map(|k| &first.from[k] + &intersection[k]);
         // Normals are the directions turned left.
-        Some(outline::anchored(graph, [&bz - &az, &ad - &bd], &meet))
+        Some(outline::anchored(graph, [&bz - &az, &ad - &bd], &intersection))
     }
 
     /// Returns `|p - q|² - l²`. For a line parallel to an axis of coordinates, one square cancels.
     fn parabola(&self, graph: &mut Graph, q: &ExactPoint, line: usize) -> Option<Id> {
         let segment = &self.outline[line];
         let [tx, tz] = segment.direction()?;
-        let ways = [-&tz, tx];
-        let off = [0, 1].map(|k| &q[k] - &segment.from[k]);
-        let here = &(&ways[0] * &off[0]) + &(&ways[1] * &off[1]);
-        let locals = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-        let locals = [0, 1].map(|k| {
-            let there = graph.number(q[k].clone());
-            graph.sub(locals[k], there)
+        let normal = [-&tz, tx];
+        let offset = [0, 1].map(|k| &q[k] - &segment.from[k]);
+        let height = &(&normal[0] * &offset[0]) + &(&normal[1] * &offset[1]);
+        let offsets = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let offsets = [0, 1].map(|k| {
+            let coordinate = graph.number(q[k].clone());
+            graph.sub(offsets[k], coordinate)
         });
         for k in 0..2 {
-            if ways[1 - k].is_zero() {
+            if normal[1 - k].is_zero() {
                 // l = here ± u, so u² + v² - l² = v² - here · (here ± 2 u).
-                let square = graph.mul(locals[1 - k], locals[1 - k]);
-                let slope = graph.number(&(&here * &ways[k]) * &Number::int(2));
-                let (rise, constant) = (graph.mul(slope, locals[k]), graph.number(&here * &here));
+                let square = graph.mul(offsets[1 - k], offsets[1 - k]);
+                let slope = graph.number(&(&height * &normal[k]) * &Number::int(2));
+                let (rise, constant) =
+                    (graph.mul(slope, offsets[k]), graph.number(&height * &height));
                 let line = graph.add(rise, constant);
                 return Some(graph.sub(square, line));
             }
         }
-        let (away, depth) = (outline::squared(graph, q), segment.depth(graph)?);
+        let (squared_distance, depth) =
+            (outline::squared_distance(graph, q), segment.depth(graph)?);
         let square = graph.mul(depth, depth);
-        Some(graph.sub(away, square))
+        Some(graph.sub(squared_distance, square))
     }
 
     /// Returns the common corner of two features' segments, if they are adjacent.
@@ -132,7 +138,7 @@ impl Section<'_> {
         (a.abs_diff(b) == 1).then(|| &self.outline[a.min(b)].to)
     }
 
-    fn arc_line(
+    fn compare_arc_and_line(
         &self,
         graph: &mut Graph,
         arc: &Circle,
@@ -141,38 +147,40 @@ impl Section<'_> {
     ) -> Option<Test> {
         let depth = self.outline[line].depth(graph)?;
         let radius = graph.number(arc.radius.clone());
-        let away = outline::squared(graph, &arc.centre);
+        let squared_distance = outline::squared_distance(graph, &arc.centre);
         // The radius minus the signed distance to the line for a convex arc; their sum for a concave one.
-        let rest = if arc.convex { graph.sub(radius, depth) } else { graph.add(depth, radius) };
-        let square = graph.mul(rest, rest);
-        let mut difference = graph.sub(away, square);
+        let offset_distance =
+            if arc.convex { graph.sub(radius, depth) } else { graph.add(depth, radius) };
+        let square = graph.mul(offset_distance, offset_distance);
+        let mut difference = graph.sub(squared_distance, square);
         if let Some(joint) = joint {
-            let anchored = from_their_corner(graph, arc, self.outline[line].direction()?, joint);
-            graph.add_proof_alias(anchored, difference);
-            difference = anchored;
+            let from_corner =
+                difference_from_common_corner(graph, arc, self.outline[line].direction()?, joint);
+            graph.add_proof_alias(from_corner, difference);
+            difference = from_corner;
         }
         let opposite = graph.neg(difference);
         let (less, more) = if nearer { (difference, opposite) } else { (opposite, difference) };
         if !arc.convex {
             return Some(Test::AtMost(less));
         }
-        let edge = if nearer { rest } else { graph.neg(rest) };
-        let both = vec![Test::AtMost(edge), Test::AtMost(more)];
-        Some(if nearer { Test::Any(both) } else { Test::All(both) })
+        let edge = if nearer { offset_distance } else { graph.neg(offset_distance) };
+        let tests = vec![Test::AtMost(edge), Test::AtMost(more)];
+        Some(if nearer { Test::Any(tests) } else { Test::All(tests) })
     }
 
     /// Returns whether an arc and a corner can be compared by squares accurately enough. The error of `L - 2 r √A` is a
     /// rounding error of `r²`; the error of the distances is that divided by their sum.
-    fn fits(&self, arc: &Circle, q: &ExactPoint) -> bool {
+    fn is_accurate_by_squares(&self, arc: &Circle, q: &ExactPoint) -> bool {
         let radius = arc.radius.to_f64();
-        let off = minus(outline::doubles(q), outline::doubles(&arc.centre));
-        let gap = (outline::norm(off) - radius).abs();
+        let offset = minus(outline::doubles(q), outline::doubles(&arc.centre));
+        let gap = (outline::norm(offset) - radius).abs();
         radius * radius <= 0.25 * self.size * gap
     }
 
     /// Returns the same for two arcs. If their convexity differs, the smaller radius is a lower bound of the sum of the
     /// distances.
-    fn alike(&self, a: &Circle, b: &Circle) -> bool {
+    fn are_accurate_by_squares(&self, a: &Circle, b: &Circle) -> bool {
         let [a_radius, b_radius] = [a, b].map(|arc| arc.radius.to_f64());
         let sum = a_radius + b_radius;
         a.convex == b.convex || sum * sum <= 0.25 * self.size * a_radius.min(b_radius)
@@ -181,12 +189,17 @@ impl Section<'_> {
 
 /// Compares an arc with a corner by `(r - √A)² ≤ B`, with the root that the arc's depth needs anyway. With `nearer`,
 /// the condition is for the arc to be nearer, otherwise for the corner.
-fn near_arc(graph: &mut Graph, arc: &Circle, q: &ExactPoint, nearer: bool) -> Option<Test> {
-    let away = outline::distance(graph, &arc.centre)?;
+fn compare_nearby_arc(
+    graph: &mut Graph,
+    arc: &Circle,
+    q: &ExactPoint,
+    nearer: bool,
+) -> Option<Test> {
+    let distance = outline::distance(graph, &arc.centre)?;
     let radius = graph.number(arc.radius.clone());
-    let depth = if arc.convex { graph.sub(radius, away) } else { graph.sub(away, radius) };
+    let depth = if arc.convex { graph.sub(radius, distance) } else { graph.sub(distance, radius) };
     let square = graph.mul(depth, depth);
-    let corner = outline::squared(graph, q);
+    let corner = outline::squared_distance(graph, q);
     Some(Test::AtMost(ordered(graph, square, corner, nearer)))
 }
 
@@ -194,7 +207,12 @@ fn near_arc(graph: &mut Graph, arc: &Circle, q: &ExactPoint, nearer: bool) -> Op
 ///
 /// With `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`. Near the corner its rounding
 /// error is negligible, whatever the radius.
-fn from_their_corner(graph: &mut Graph, arc: &Circle, [td, tz]: [Number; 2], q: &ExactPoint) -> Id {
+fn difference_from_common_corner(
+    graph: &mut Graph,
+    arc: &Circle,
+    [td, tz]: [Number; 2],
+    q: &ExactPoint,
+) -> Id {
     let radius = if arc.convex { arc.radius.clone() } else { -&arc.radius };
     // The normal is the direction turned left.
     let normal = [-&tz, td.clone()];
@@ -219,36 +237,51 @@ fn ordered(graph: &mut Graph, a: Id, b: Id, forward: bool) -> Id {
 }
 
 /// Returns the condition `edge ≤ 0` or `a ≤ b`; if not `positive`, `edge ≥ 0` and `a ≥ b`.
-fn either(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
+fn any_or_all(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
     let curve = ordered(graph, a, b, positive);
     let edge = if positive { edge } else { graph.neg(edge) };
-    let both = vec![Test::AtMost(edge), Test::AtMost(curve)];
-    if positive { Test::Any(both) } else { Test::All(both) }
+    let tests = vec![Test::AtMost(edge), Test::AtMost(curve)];
+    if positive { Test::Any(tests) } else { Test::All(tests) }
 }
 
 /// Returns `|p - a|² - |p - b|² + extra` as a linear expression.
-fn lead(graph: &mut Graph, a: &ExactPoint, b: &ExactPoint, extra: &Number) -> Option<Id> {
+fn linear_difference(
+    graph: &mut Graph,
+    a: &ExactPoint,
+    b: &ExactPoint,
+    extra: &Number,
+) -> Option<Id> {
     let two = Number::int(2);
-    let way = [0, 1].map(|k| &two * &(&b[k] - &a[k]));
-    let apart = &(&way[0] * &way[0]) + &(&way[1] * &way[1]);
-    let rise = outline::linear(graph, way, a)?;
-    let constant = graph.number(extra - &(&apart / &Number::int(4)));
+    let direction = [0, 1].map(|k| &two * &(&b[k] - &a[k]));
+    let squared_length = &(&direction[0] * &direction[0]) + &(&direction[1] * &direction[1]);
+    let rise = outline::linear(graph, direction, a)?;
+    let constant = graph.number(extra - &(&squared_length / &Number::int(4)));
     Some(graph.add(rise, constant))
 }
 
-fn arc_point(graph: &mut Graph, arc: &Circle, q: &ExactPoint, nearer: bool) -> Option<Test> {
+fn compare_arc_and_point(
+    graph: &mut Graph,
+    arc: &Circle,
+    q: &ExactPoint,
+    nearer: bool,
+) -> Option<Test> {
     let square = &arc.radius * &arc.radius;
-    let lead = lead(graph, &arc.centre, q, &square)?;
-    let (left, right) = conic(graph, lead, &arc.radius, &arc.centre);
-    Some(either(graph, lead, (left, right), nearer))
+    let linear_difference = linear_difference(graph, &arc.centre, q, &square)?;
+    let (left, right) = comparison_of_squares(graph, linear_difference, &arc.radius, &arc.centre);
+    Some(any_or_all(graph, linear_difference, (left, right), nearer))
 }
 
 /// Returns the two sides of `lead² ≤ 4 t² |p - c|²`.
-fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &ExactPoint) -> (Id, Id) {
-    let left = graph.mul(lead, lead);
+fn comparison_of_squares(
+    graph: &mut Graph,
+    linear_difference: Id,
+    t: &Number,
+    centre: &ExactPoint,
+) -> (Id, Id) {
+    let left = graph.mul(linear_difference, linear_difference);
     let factor = graph.number(&(t * t) * &Number::int(4));
-    let away = outline::squared(graph, centre);
-    (left, graph.mul(factor, away))
+    let squared_distance = outline::squared_distance(graph, centre);
+    (left, graph.mul(factor, squared_distance))
 }
 
 /// Returns the condition for one arc to be no farther than another.
@@ -257,25 +290,30 @@ fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &ExactPoint) -> (Id, I
 /// - Both concave: the second is nearer where `M ≤ 0` or `M² ≤ 4 D² A`.
 /// - The first convex, the second concave, with `T = r₁ + r₂` and `L = T² + A - B`: the second is nearer where `L ≥ 0`
 ///   and `L² ≥ 4 T² A`.
-fn arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
+fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
     if this.convex != other.convex {
         let (first, second) = if this.convex { (this, other) } else { (other, this) };
         let sum = &first.radius + &second.radius;
-        let lead = lead(graph, &first.centre, &second.centre, &(&sum * &sum))?;
-        let (left, right) = conic(graph, lead, &sum, &first.centre);
+        let linear_difference =
+            linear_difference(graph, &first.centre, &second.centre, &(&sum * &sum))?;
+        let (left, right) = comparison_of_squares(graph, linear_difference, &sum, &first.centre);
         // The first is nearer where L ≤ 0 or L² ≤ 4 T² A.
-        return Some(either(graph, lead, (left, right), this.convex));
+        return Some(any_or_all(graph, linear_difference, (left, right), this.convex));
     }
     let swapped = this.radius > other.radius;
     let (first, second) = if swapped { (other, this) } else { (this, other) };
     let difference = &second.radius - &first.radius;
     let square = &difference * &difference;
-    let lead = lead(graph, &second.centre, &first.centre, &-&square)?;
+    let linear_difference = linear_difference(graph, &second.centre, &first.centre, &-&square)?;
     // Where M ≤ 0, the second is nearer if both are concave, the first if both are convex.
     let positive = swapped != this.convex;
     if difference.is_zero() {
-        return Some(Test::AtMost(if positive { lead } else { graph.neg(lead) }));
+        return Some(Test::AtMost(if positive {
+            linear_difference
+        } else {
+            graph.neg(linear_difference)
+        }));
     }
-    let (left, right) = conic(graph, lead, &difference, &first.centre);
-    Some(either(graph, lead, (left, right), positive))
+    let (left, right) = comparison_of_squares(graph, linear_difference, &difference, &first.centre);
+    Some(any_or_all(graph, linear_difference, (left, right), positive))
 }

@@ -6,7 +6,7 @@ use crate::expr::polynomial::Polynomials;
 use crate::formula::Curve;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
-use crate::geometry::outline::{Point, Segment, minus, norm, reach};
+use crate::geometry::outline::{Point, Segment, bounding_box, minus, norm};
 use crate::geometry::shape::CurveFunction;
 
 /// Returns a cell as a polygon whose curved edges refer to their curves.
@@ -18,18 +18,18 @@ pub(crate) fn piece(
 ) -> Piece {
     let count = cell.vertices.len();
     let mut edges = vec![Edge::Straight; count];
-    let mut run: Vec<usize> = Vec::new();
+    let mut curved_edges: Vec<usize> = Vec::new();
     for k in 0..=count {
         if k < count && !cell.straight[k] {
-            run.push(k);
-        } else if !run.is_empty() {
-            let on = |shape: &CurveFunction<'_>| {
-                run.iter().all(|k| {
+            curved_edges.push(k);
+        } else if !curved_edges.is_empty() {
+            let is_on_curve = |shape: &CurveFunction<'_>| {
+                curved_edges.iter().all(|k| {
                     [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
                 })
             };
-            let edge = shapes.iter().position(on).map_or(Edge::Chord, Edge::Along);
-            run.drain(..).for_each(|k| edges[k] = edge);
+            let edge = shapes.iter().position(is_on_curve).map_or(Edge::Chord, Edge::Along);
+            curved_edges.drain(..).for_each(|k| edges[k] = edge);
         }
     }
     Piece { owner, origin: 0, vertices: cell.vertices.clone(), edges }
@@ -50,20 +50,21 @@ pub(crate) fn divided(
 
 /// The signs of the curves on a whole polygon, and the number of conditions, from the first on, that they decide. Signs
 /// are only added, so decided conditions stay decided.
-type Known = (Vec<Signs>, usize);
+type DecidedSigns = (Vec<Signs>, usize);
 
 fn divide(
     piece: Piece,
-    (mut signs, mut decided): Known,
+    (mut signs, mut decided): DecidedSigns,
     conditions: &[Formula],
     shapes: &[CurveFunction<'_>],
     size: f64,
     parts: &mut Vec<(Piece, Vec<usize>)>,
 ) {
     loop {
-        let open = conditions[decided..].iter().enumerate();
-        let mut open = open.filter_map(|(k, condition)| Some((k, condition.first_open(&signs)?)));
-        let Some((before, curve)) = open.next() else {
+        let undecided = conditions[decided..].iter().enumerate();
+        let mut undecided =
+            undecided.filter_map(|(k, condition)| Some((k, condition.first_open(&signs)?)));
+        let Some((before, curve)) = undecided.next() else {
             let holds = |k: &usize| conditions[*k].decided(&signs) == Some(true);
             parts.push((piece, (0..conditions.len()).filter(holds).collect()));
             return;
@@ -91,9 +92,9 @@ pub(crate) struct Overlay {
     /// Indices of part and condition.
     pub(crate) pairs: Vec<(usize, usize)>,
     /// A point at which no condition holds.
-    pub(crate) bare: Option<Point>,
+    pub(crate) uncovered: Option<Point>,
     /// Two conditions, and a point where both hold.
-    pub(crate) double: Option<(usize, usize, Point)>,
+    pub(crate) doubly_covered: Option<(usize, usize, Point)>,
 }
 
 /// Intersects conditions with the cells of parts. The area between a curve and its chord counts only if a point of it
@@ -105,7 +106,7 @@ pub(crate) fn overlay(
     shapes: &[CurveFunction<'_>],
     size: f64,
 ) -> Overlay {
-    let mut found = Overlay { pairs: Vec::new(), bare: None, double: None };
+    let mut result = Overlay { pairs: Vec::new(), uncovered: None, doubly_covered: None };
     // A point within rounding of a curve counts as inside only if it is so for both signs of the curve.
     let inside = |formula: &Formula, p: Point| {
         let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
@@ -115,33 +116,34 @@ pub(crate) fn overlay(
         [-1.0, 1.0].into_iter().all(|sign| formula.holds(&|curve| value(curve, sign)))
     };
     for cell in cells {
-        let whole = piece(cell, Some(cell.part), shapes, size);
-        for (part, holding) in divided(whole, conditions, shapes, size) {
+        let cell_piece = piece(cell, Some(cell.part), shapes, size);
+        for (part, holding) in divided(cell_piece, conditions, shapes, size) {
             let middle = part.middle();
             if part.is_sliver() {
                 let Some(first) = holding.first() else { continue };
-                let both = [parts[cell.part], &conditions[*first]];
-                let clear = |p: &Point| both.into_iter().all(|formula| inside(formula, *p));
-                if !part.chords().any(|p| clear(&p)) {
+                let formulas = [parts[cell.part], &conditions[*first]];
+                let is_clearly_inside =
+                    |p: &Point| formulas.into_iter().all(|formula| inside(formula, *p));
+                if !part.chords().any(|p| is_clearly_inside(&p)) {
                     continue;
                 }
             }
             match holding.as_slice() {
-                [] => found.bare = found.bare.or(Some(middle)),
+                [] => result.uncovered = result.uncovered.or(Some(middle)),
                 [first, rest @ ..] => {
-                    if let (Some(second), None) = (rest.first(), found.double) {
-                        found.double = Some((*first, *second, middle));
+                    if let (Some(second), None) = (rest.first(), result.doubly_covered) {
+                        result.doubly_covered = Some((*first, *second, middle));
                     }
                     let pair = (cell.part, *first);
-                    if !found.pairs.contains(&pair) {
-                        found.pairs.push(pair);
+                    if !result.pairs.contains(&pair) {
+                        result.pairs.push(pair);
                     }
                 }
             }
         }
     }
-    found.pairs.sort_by_key(|(part, condition)| (*condition, *part));
-    found
+    result.pairs.sort_by_key(|(part, condition)| (*condition, *part));
+    result
 }
 
 /// Returns curves as shapes about the centre of the outline's bounding box, and the diagonal of that box.
@@ -150,7 +152,7 @@ pub(crate) fn shapes<'g>(
     curves: &[Curve],
     outline: &[Segment],
 ) -> (Vec<CurveFunction<'g>>, f64) {
-    let [low, high] = reach(outline);
+    let [low, high] = bounding_box(outline);
     let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
     let mut polynomials = Polynomials::default();
     let shape = |curve: &Curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials);

@@ -1,7 +1,7 @@
 //! One side of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
 //! feature grows before it touches another.
 
-use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm, reach, turn};
+use crate::geometry::outline::{Point, Segment, bounding_box, cross, dot, minus, norm, turn};
 use std::f64::consts::PI;
 
 /// A feature to which a point can be nearest.
@@ -41,11 +41,11 @@ pub(super) enum Obstacle {
 }
 
 /// The outer limit of the partition of the outside, in sizes of the outline.
-const FAR: f64 = 64.0;
+const OUTER_DISTANCE_IN_SIZES: f64 = 64.0;
 /// Tolerance, in sizes, for a contact to count as on a segment near its end.
-const CLOSE: f64 = 1e-13;
+const COINCIDENCE_FRACTION: f64 = 1e-13;
 /// Distance from a smooth joint, relative to the segments' chords, within which rounding decides between its segments.
-const JOINT: f64 = 1e-5;
+const JOINT_FRACTION: f64 = 1e-5;
 
 /// An outline whose left side is partitioned, with the features of that side.
 pub(super) struct Section<'o> {
@@ -61,7 +61,7 @@ pub(super) struct Section<'o> {
 
 impl<'o> Section<'o> {
     pub(super) fn new(outline: &'o [Segment], outer: bool) -> Section<'o> {
-        let [low, high] = reach(outline);
+        let [low, high] = bounding_box(outline);
         let size = norm(minus(high, low));
         let mut section = Section { outline, features: Vec::new(), fans: Vec::new(), size, outer };
         section.find_features();
@@ -74,44 +74,44 @@ impl<'o> Section<'o> {
         let mirrored = |t: Point| [t[0], -t[1]];
         let (Some(first), Some(last)) = (self.outline.first(), self.outline.last()) else { return };
         let start = first.tangent(false);
-        self.meet(None, mirrored(start), start);
+        self.add_corner(None, mirrored(start), start);
         for (index, segment) in self.outline.iter().enumerate() {
             self.features.push(Feature::Piece(index));
             self.fans.push([0.0; 2]);
             let end = segment.tangent(true);
             let next = self.outline.get(index + 1);
             let next = next.map_or(mirrored(last.tangent(true)), |next| next.tangent(false));
-            self.meet(Some(index), end, next);
+            self.add_corner(Some(index), end, next);
         }
     }
 
-    fn meet(&mut self, behind: Option<usize>, incoming: Point, outgoing: Point) {
+    fn add_corner(&mut self, previous: Option<usize>, incoming: Point, outgoing: Point) {
         if turn(incoming, outgoing) >= 0.0 {
             return;
         }
         let normal = [-incoming[1], incoming[0]];
         let mut from = normal[1].atan2(normal[0]);
         let mut sweep = cross(incoming, outgoing).atan2(dot(incoming, outgoing));
-        if behind.is_none() {
+        if previous.is_none() {
             (from, sweep) = (from + sweep / 2.0, sweep / 2.0);
-        } else if behind == Some(self.outline.len() - 1) {
+        } else if previous == Some(self.outline.len() - 1) {
             sweep /= 2.0;
         }
-        self.features.push(Feature::Corner(behind));
+        self.features.push(Feature::Corner(previous));
         self.fans.push([from, sweep]);
     }
 
     /// Returns the position of a corner.
-    pub(super) fn corner_at(&self, behind: Option<usize>) -> Point {
-        match behind {
+    pub(super) fn corner_at(&self, previous: Option<usize>) -> Point {
+        match previous {
             Some(piece) => self.outline[piece].ends()[1],
             None => self.outline[0].ends()[0],
         }
     }
 
     /// Returns the segments that end in a corner, each with the end that does: 0 for its start, 1 for its end.
-    pub(super) fn beside(&self, behind: Option<usize>) -> [Option<(usize, usize)>; 2] {
-        match behind {
+    pub(super) fn adjacent_segments(&self, previous: Option<usize>) -> [Option<(usize, usize)>; 2] {
+        match previous {
             None => [None, Some((0, 0))],
             Some(piece) => {
                 let next = (piece + 1 < self.outline.len()).then_some((piece + 1, 0));
@@ -122,7 +122,7 @@ impl<'o> Section<'o> {
 
     /// Returns the point and normal of a feature at a parameter from 0 to 1, which is linear along a line and in the
     /// angle of an arc or fan.
-    pub(super) fn seat(&self, feature: usize, t: f64) -> FootPoint {
+    pub(super) fn foot_point(&self, feature: usize, t: f64) -> FootPoint {
         match self.features[feature] {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
@@ -142,18 +142,18 @@ impl<'o> Section<'o> {
                     }
                 }
             }
-            Feature::Corner(behind) => {
+            Feature::Corner(previous) => {
                 let [from, sweep] = self.fans[feature];
                 let (sin, cos) = (from + t * sweep).sin_cos();
-                FootPoint { foot: self.corner_at(behind), normal: [cos, sin] }
+                FootPoint { foot: self.corner_at(previous), normal: [cos, sin] }
             }
         }
     }
 
     /// Returns the parameter of the normal on which a point lies; outside [0, 1] if the feature has no such normal.
     pub(super) fn parameter(&self, feature: usize, p: Point) -> f64 {
-        let turned = |from: f64, sweep: f64, way: Point| {
-            let angle = way[1].atan2(way[0]) - from;
+        let wrapped_parameter = |from: f64, sweep: f64, offset: Point| {
+            let angle = offset[1].atan2(offset[0]) - from;
             let wrapped = angle - 2.0 * PI * ((angle - sweep / 2.0) / (2.0 * PI)).round();
             wrapped / sweep
         };
@@ -163,18 +163,18 @@ impl<'o> Section<'o> {
                 let [from, to] = segment.ends();
                 match segment.round() {
                     None => {
-                        let way = minus(to, from);
-                        dot(minus(p, from), way) / dot(way, way)
+                        let offset = minus(to, from);
+                        dot(minus(p, from), offset) / dot(offset, offset)
                     }
                     Some((centre, ..)) => {
                         let [start, sweep] = segment.angles();
-                        turned(start, sweep, minus(p, centre))
+                        wrapped_parameter(start, sweep, minus(p, centre))
                     }
                 }
             }
-            Feature::Corner(behind) => {
+            Feature::Corner(previous) => {
                 let [from, sweep] = self.fans[feature];
-                turned(from, sweep, minus(p, self.corner_at(behind)))
+                wrapped_parameter(from, sweep, minus(p, self.corner_at(previous)))
             }
         }
     }
@@ -183,35 +183,44 @@ impl<'o> Section<'o> {
     pub(super) fn depth_at(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {
             Feature::Piece(piece) => self.outline[piece].signed(p),
-            Feature::Corner(behind) => norm(minus(p, self.corner_at(behind))),
+            Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
         }
     }
 
-    /// Returns the radius to which a ball that touches a feature at `seat` grows, and the obstacle that stops it.
-    pub(super) fn growth(&self, feature: usize, seat: &FootPoint) -> (f64, Obstacle) {
-        let (mut most, mut stop) = (f64::INFINITY, Obstacle::Far);
+    /// Returns the radius to which a ball that touches a feature at `foot_point` grows, and the obstacle that stops it.
+    pub(super) fn grow_ball(&self, feature: usize, foot_point: &FootPoint) -> (f64, Obstacle) {
+        let (mut min_radius, mut obstacle) = (f64::INFINITY, Obstacle::Far);
         for other in [Obstacle::Far, Obstacle::Axis, Obstacle::Centre] {
-            let grown = self.grown(feature, seat, other);
-            if grown < most || (other == Obstacle::Centre && grown <= most && grown.is_finite()) {
-                (most, stop) = (grown, other);
+            let radius = self.growth_to(feature, foot_point, other);
+            if radius < min_radius
+                || (other == Obstacle::Centre && radius <= min_radius && radius.is_finite())
+            {
+                (min_radius, obstacle) = (radius, other);
             }
         }
         for other in 0..self.features.len() {
             if other != feature {
-                let grown = self.reach(seat, other);
-                if grown < most && self.touches(feature, seat, other, grown) {
-                    (most, stop) = (grown, Obstacle::Feature(other));
+                let radius = self.growth_to_extension(foot_point, other);
+                if radius < min_radius && self.touches(feature, foot_point, other, radius) {
+                    (min_radius, obstacle) = (radius, Obstacle::Feature(other));
                 }
             }
         }
-        (most, stop)
+        (min_radius, obstacle)
     }
 
     /// Returns the radius at which a given obstacle stops the ball; infinite if it never does.
-    pub(super) fn grown(&self, feature: usize, seat: &FootPoint, stop: Obstacle) -> f64 {
-        match stop {
-            Obstacle::Far if self.outer => FAR * self.size,
-            Obstacle::Axis if seat.normal[0] < 0.0 => -seat.foot[0] / seat.normal[0],
+    pub(super) fn growth_to(
+        &self,
+        feature: usize,
+        foot_point: &FootPoint,
+        obstacle: Obstacle,
+    ) -> f64 {
+        match obstacle {
+            Obstacle::Far if self.outer => OUTER_DISTANCE_IN_SIZES * self.size,
+            Obstacle::Axis if foot_point.normal[0] < 0.0 => {
+                -foot_point.foot[0] / foot_point.normal[0]
+            }
             Obstacle::Centre => match self.features[feature] {
                 Feature::Piece(piece) => match self.outline[piece].round() {
                     Some((_, radius, true)) => radius,
@@ -221,88 +230,98 @@ impl<'o> Section<'o> {
             },
             Obstacle::Far | Obstacle::Axis => f64::INFINITY,
             Obstacle::Feature(other) => {
-                let grown = self.reach(seat, other);
-                let stops = grown.is_finite() && self.touches(feature, seat, other, grown);
-                if stops { grown } else { f64::INFINITY }
+                let ball_radius = self.growth_to_extension(foot_point, other);
+                let is_stopped = ball_radius.is_finite()
+                    && self.touches(feature, foot_point, other, ball_radius);
+                if is_stopped { ball_radius } else { f64::INFINITY }
             }
         }
     }
 
     /// Returns the radius at which the ball touches the whole line or circle of another feature, or a corner; infinite
     /// if it never does.
-    fn reach(&self, seat: &FootPoint, other: usize) -> f64 {
-        let (p, n) = (seat.foot, seat.normal);
-        let grown = match self.features[other] {
-            Feature::Corner(behind) => {
-                let way = minus(self.corner_at(behind), p);
-                dot(way, way) / (2.0 * dot(n, way))
+    fn growth_to_extension(&self, foot_point: &FootPoint, other: usize) -> f64 {
+        let (p, n) = (foot_point.foot, foot_point.normal);
+        let ball_radius = match self.features[other] {
+            Feature::Corner(previous) => {
+                let offset = minus(self.corner_at(previous), p);
+                dot(offset, offset) / (2.0 * dot(n, offset))
             }
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
                 match segment.round() {
                     None => {
                         let along = segment.tangent(false);
-                        let apart = minus(n, [-along[1], along[0]]);
-                        2.0 * segment.signed(p) / dot(apart, apart)
+                        let normal_difference = minus(n, [-along[1], along[0]]);
+                        2.0 * segment.signed(p) / dot(normal_difference, normal_difference)
                     }
                     Some((centre, radius, convex)) => {
                         let a = minus(p, centre);
-                        let (off, out) = (radius * radius - dot(a, a), dot(a, n));
+                        let (power, radial) = (radius * radius - dot(a, a), dot(a, n));
                         if convex {
-                            off / (2.0 * (radius + out))
+                            power / (2.0 * (radius + radial))
                         } else {
-                            -off / (2.0 * (radius - out))
+                            -power / (2.0 * (radius - radial))
                         }
                     }
                 }
             }
         };
-        if grown >= 0.0 { grown } else { f64::INFINITY }
+        if ball_radius >= 0.0 { ball_radius } else { f64::INFINITY }
     }
 
-    /// Returns whether the ball of radius `grown` touches the other feature itself, and not only its extension beyond
+    /// Returns whether the ball of radius `ball_radius` touches the other feature itself, and not only its extension beyond
     /// its ends or the joint of the two features.
-    fn touches(&self, feature: usize, seat: &FootPoint, other: usize, grown: f64) -> bool {
-        let middle = seat.at(grown);
-        let within = match self.features[other] {
-            Feature::Corner(behind) => self.in_fan(behind, middle),
+    fn touches(
+        &self,
+        feature: usize,
+        foot_point: &FootPoint,
+        other: usize,
+        ball_radius: f64,
+    ) -> bool {
+        let middle = foot_point.at(ball_radius);
+        let is_within_ends = match self.features[other] {
+            Feature::Corner(previous) => self.in_fan(previous, middle),
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
-                let slack = CLOSE * self.size;
+                let slack = COINCIDENCE_FRACTION * self.size;
                 let [start, end] = segment.sector(middle);
                 match segment.round() {
                     None => start >= -slack && end >= -slack,
                     Some((centre, radius, convex)) => {
-                        let slack = CLOSE * norm(minus(middle, centre)).max(slack);
-                        (!convex || grown <= radius * (1.0 + CLOSE))
+                        let slack = COINCIDENCE_FRACTION * norm(minus(middle, centre)).max(slack);
+                        (!convex || ball_radius <= radius * (1.0 + COINCIDENCE_FRACTION))
                             && start >= -slack
                             && end >= -slack
                     }
                 }
             }
         };
-        within && !self.shares_end(feature, seat, other)
+        is_within_ends && !self.shares_end(feature, foot_point, other)
     }
 
     /// Returns whether a point lies between the end normals of the segments at a corner. Near these normals a corner
     /// and its segments are equally near, so only the foot points decide.
-    fn in_fan(&self, behind: Option<usize>, p: Point) -> bool {
-        let off = minus(p, self.corner_at(behind));
-        self.beside(behind).into_iter().flatten().all(|(piece, end)| {
-            let past = dot(off, self.outline[piece].tangent(end == 1));
-            let past = if end == 1 { past } else { -past };
-            past >= -CLOSE * self.size
+    fn in_fan(&self, previous: Option<usize>, p: Point) -> bool {
+        let offset = minus(p, self.corner_at(previous));
+        self.adjacent_segments(previous).into_iter().flatten().all(|(piece, end)| {
+            let distance_past = dot(offset, self.outline[piece].tangent(end == 1));
+            let distance_past = if end == 1 { distance_past } else { -distance_past };
+            distance_past >= -COINCIDENCE_FRACTION * self.size
         })
     }
 
-    /// Returns whether two features touch only where they join, as far as a ball at `seat` can tell.
-    fn shares_end(&self, feature: usize, seat: &FootPoint, other: usize) -> bool {
-        let joins = |piece: usize, behind: Option<usize>| {
-            self.beside(behind).into_iter().flatten().any(|(beside, _)| beside == piece)
+    /// Returns whether two features touch only where they join, as far as a ball at `foot_point` can tell.
+    fn shares_end(&self, feature: usize, foot_point: &FootPoint, other: usize) -> bool {
+        let are_joined = |piece: usize, previous: Option<usize>| {
+            self.adjacent_segments(previous)
+                .into_iter()
+                .flatten()
+                .any(|(adjacent, _)| adjacent == piece)
         };
         match (self.features[feature], self.features[other]) {
-            (Feature::Piece(piece), Feature::Corner(behind))
-            | (Feature::Corner(behind), Feature::Piece(piece)) => joins(piece, behind),
+            (Feature::Piece(piece), Feature::Corner(previous))
+            | (Feature::Corner(previous), Feature::Piece(piece)) => are_joined(piece, previous),
             (Feature::Piece(a), Feature::Piece(b)) if a.abs_diff(b) == 1 => {
                 let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
                 if turn(low.tangent(true), high.tangent(false)) != 0.0 {
@@ -311,8 +330,8 @@ impl<'o> Section<'o> {
                 // Across a tangent joint, only a segment of smaller radius can stop a ball.
                 match (self.outline[a].round(), self.outline[b].round()) {
                     (Some((_, own, true)), Some((_, radius, true))) if radius < own => {
-                        let joint = norm(minus(seat.foot, low.ends()[1]));
-                        joint < JOINT * low.chord().min(high.chord())
+                        let joint = norm(minus(foot_point.foot, low.ends()[1]));
+                        joint < JOINT_FRACTION * low.chord().min(high.chord())
                     }
                     _ => true,
                 }

@@ -46,9 +46,10 @@ pub(crate) fn rounded(
             [before.as_ref().map(|c| c.taken[1]), after.as_ref().map(|c| c.taken[0])];
         before.unwrap_or(0.0) + after.unwrap_or(0.0)
     };
-    let room = |k: &usize| size(&outline[*k]) / taken(*k);
-    if let Some(tightest) = (0..count).min_by(|a, b| room(a).total_cmp(&room(b)))
-        && 1.0 > room(&tightest) * (1.0 + ROUNDING)
+    let fraction_available = |k: &usize| size(&outline[*k]) / taken(*k);
+    if let Some(tightest) =
+        (0..count).min_by(|a, b| fraction_available(a).total_cmp(&fraction_available(b)))
+        && 1.0 > fraction_available(&tightest) * (1.0 + ROUNDING)
     {
         let fans = corners[tightest..].iter().take(2).flatten().count();
         return Err(Rough::Short(tightest, size(&outline[tightest]), fans));
@@ -61,12 +62,13 @@ pub(crate) fn rounded(
         {
             pieces.push((corner.arc(segment), Origin::Fan(None)));
         }
-        if room(&k) * (1.0 - ROUNDING) > 1.0 {
+        if fraction_available(&k) * (1.0 - ROUNDING) > 1.0 {
             let from = before.as_ref().map_or(&segment.from, |corner| &corner.to);
             let to = after.as_ref().map_or(&segment.to, |corner| &corner.from);
             let ends = [from.clone(), to.clone()];
-            let whole = Segment::new(ends, segment.circle.clone(), segment.surface, segment.span);
-            pieces.push((whole, Origin::Piece(k)));
+            let shortened =
+                Segment::new(ends, segment.circle.clone(), segment.surface, segment.span);
+            pieces.push((shortened, Origin::Piece(k)));
         }
         if let Some(corner) = after {
             pieces.push((corner.arc(segment), Origin::Fan(Some(k))));
@@ -77,17 +79,18 @@ pub(crate) fn rounded(
 
 /// Returns a length below `length` for which the outline can be rounded, usually close to the largest such number of
 /// six digits.
-pub(crate) fn fitting(outline: &[Segment], length: &Number) -> Option<String> {
-    let fits = |length: f64| Number::from_f64(length).is_some_and(|w| rounded(outline, &w).is_ok());
+pub(crate) fn largest_fitting_length(outline: &[Segment], length: &Number) -> Option<String> {
+    let is_roundable =
+        |length: f64| Number::from_f64(length).is_some_and(|w| rounded(outline, &w).is_ok());
     let halves = (1..64).map(|k| length.to_f64() / f64::from(k).exp2());
-    let mut low = halves.into_iter().find(|length| fits(*length))?;
+    let mut low = halves.into_iter().find(|length| is_roundable(*length))?;
     let mut high = 2.0 * low;
     while high - low > 1e-9 * high {
         let middle = f64::midpoint(low, high);
-        if fits(middle) { low = middle } else { high = middle }
+        if is_roundable(middle) { low = middle } else { high = middle }
     }
     let shown = [low, low * (1.0 - 1e-5)].map(format_number);
-    shown.into_iter().find(|text| text.parse().is_ok_and(fits))
+    shown.into_iter().find(|text| text.parse().is_ok_and(is_roundable))
 }
 
 /// Returns the length along a segment.
@@ -138,8 +141,8 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
             fan(&before, &after, length)
                 .or_else(|| fan(&after, &before, length).map(Corner::turned))
         }
-        (None, Some(after)) => arm(after, false).to_axis(length),
-        (Some(before), None) => arm(before, true).to_axis(length).map(Corner::turned),
+        (None, Some(after)) => arm(after, false).half_arc_on_axis(length),
+        (Some(before), None) => arm(before, true).half_arc_on_axis(length).map(Corner::turned),
         (None, None) => return Ok(None),
     };
     found.map(Some).ok_or(Rough::Untouched(behind))
@@ -165,21 +168,21 @@ impl Arm<'_> {
     }
 
     /// Returns the unit direction of a line, away from the corner.
-    fn away(&self) -> Option<ExactPoint> {
-        let way = self.segment.direction()?;
-        Some(if self.at_end { way.map(|part| -&part) } else { way })
+    fn direction_from_corner(&self) -> Option<ExactPoint> {
+        let direction = self.segment.direction()?;
+        Some(if self.at_end { direction.map(|part| -&part) } else { direction })
     }
 
     /// Returns the unit normal at a point, toward the centre of the corner's arc.
-    fn normal(&self, at: &ExactPoint) -> Option<ExactPoint> {
+    fn normal(&self, point: &ExactPoint) -> Option<ExactPoint> {
         let (normal, inward) = match &self.segment.circle {
             None => {
                 let [d, z] = self.segment.direction()?;
                 ([-&z, d], true)
             }
             Some(circle) => {
-                let out = off(at, &circle.centre).map(|part| part.over(&circle.radius));
-                let [Some(d), Some(z)] = out else { return None };
+                let radial = offset(point, &circle.centre).map(|part| part.over(&circle.radius));
+                let [Some(d), Some(z)] = radial else { return None };
                 ([d, z], !circle.convex)
             }
         };
@@ -193,10 +196,10 @@ impl Arm<'_> {
 
     /// Returns the point at a length from the corner along the segment's whole line or circle; `None` if that is half a
     /// circle or more.
-    fn at(&self, length: &Number) -> Option<ExactPoint> {
+    fn point(&self, length: &Number) -> Option<ExactPoint> {
         let corner = self.corner();
         let Some(circle) = &self.segment.circle else {
-            return Some(along(corner, &self.away()?, length));
+            return Some(point_along(corner, &self.direction_from_corner()?, length));
         };
         let angle = length.over(&circle.radius)?;
         if angle.to_f64() >= PI {
@@ -205,19 +208,20 @@ impl Arm<'_> {
         // From the end of a convex arc, away from the corner is clockwise.
         let (cos, sin) = (angle.cos(), angle.sin());
         let sin = if circle.convex == self.at_end { -&sin } else { sin };
-        let [d, z] = off(corner, &circle.centre);
+        let [d, z] = offset(corner, &circle.centre);
         let turned = [&(&cos * &d) - &(&sin * &z), &(&sin * &d) + &(&cos * &z)];
         Some([0, 1].map(|k| &circle.centre[k] + &turned[k]))
     }
 
     /// Returns the distance of a point of the segment's line or circle from the corner, along it; negative on the other
     /// side.
-    fn distance(&self, at: &ExactPoint) -> Option<f64> {
-        let way = doubles(&off(at, self.corner()));
+    fn distance(&self, point: &ExactPoint) -> Option<f64> {
+        let direction = doubles(&offset(point, self.corner()));
         Some(match self.segment.round() {
-            None => dot(way, doubles(&self.away()?)),
+            None => dot(direction, doubles(&self.direction_from_corner()?)),
             Some((centre, radius, convex)) => {
-                let [from, to] = [self.corner(), at].map(|place| minus(doubles(place), centre));
+                let [from, to] =
+                    [self.corner(), point].map(|end_point| minus(doubles(end_point), centre));
                 let turn = cross(from, to).atan2(dot(from, to)) * radius;
                 if convex == self.at_end { -turn } else { turn }
             }
@@ -226,55 +230,59 @@ impl Arm<'_> {
 
     /// Returns the radius of the circle that touches another segment at a point with this normal, and also touches this
     /// segment.
-    fn radius(&self, at: &ExactPoint, normal: &ExactPoint) -> Option<Number> {
+    fn radius(&self, point: &ExactPoint, normal: &ExactPoint) -> Option<Number> {
         match &self.segment.circle {
             None => {
                 let own = self.normal(self.corner())?;
-                let height = product(&off(at, self.corner()), &own);
+                let height = product(&offset(point, self.corner()), &own);
                 height.over(&(&Number::int(1) - &product(normal, &own)))
             }
             Some(circle) => {
-                let off = off(at, &circle.centre);
-                let short = &(&circle.radius * &circle.radius) - &product(&off, &off);
-                let out = product(&off, normal);
+                let offset = offset(point, &circle.centre);
+                let numerator = &(&circle.radius * &circle.radius) - &product(&offset, &offset);
+                let radial = product(&offset, normal);
                 let two = Number::int(2);
                 if self.is_alike(circle) {
-                    short.over(&(&two * &(&circle.radius + &out)))
+                    numerator.over(&(&two * &(&circle.radius + &radial)))
                 } else {
-                    (-&short).over(&(&two * &(&circle.radius - &out)))
+                    (-&numerator).over(&(&two * &(&circle.radius - &radial)))
                 }
             }
         }
     }
 
     /// Returns the point at which a circle that touches the segment does so.
-    fn touched(&self, centre: &ExactPoint, radius: &Number) -> Option<ExactPoint> {
+    fn contact_point(&self, centre: &ExactPoint, radius: &Number) -> Option<ExactPoint> {
         let Some(circle) = &self.segment.circle else {
-            let (corner, way) = (self.corner(), self.away()?);
-            return Some(along(corner, &way, &product(&off(centre, corner), &way)));
+            let (corner, direction) = (self.corner(), self.direction_from_corner()?);
+            return Some(point_along(
+                corner,
+                &direction,
+                &product(&offset(centre, corner), &direction),
+            ));
         };
-        let reach = if self.is_alike(circle) { -radius } else { radius.clone() };
-        let share = circle.radius.over(&(&circle.radius + &reach))?;
-        Some(along(&circle.centre, &off(centre, &circle.centre), &share))
+        let signed_radius = if self.is_alike(circle) { -radius } else { radius.clone() };
+        let ratio = circle.radius.over(&(&circle.radius + &signed_radius))?;
+        Some(point_along(&circle.centre, &offset(centre, &circle.centre), &ratio))
     }
 
     /// Returns whether a circle that touches the segment from the inside is smaller than the segment's own circle.
-    fn holds(&self, radius: &Number) -> bool {
+    fn admits_radius(&self, radius: &Number) -> bool {
         let circle = self.segment.circle.as_ref();
         circle.is_none_or(|circle| !self.is_alike(circle) || *radius < circle.radius)
     }
 
     /// Returns half the arc of a corner on the axis, from the axis to the point at which it touches the segment.
-    fn to_axis(&self, length: &Number) -> Option<Corner> {
-        let to = self.at(length)?;
+    fn half_arc_on_axis(&self, length: &Number) -> Option<Corner> {
+        let to = self.point(length)?;
         let normal = self.normal(&to)?;
         let radius = (-&to[0]).over(&normal[0])?;
-        if radius.to_f64() <= 0.0 || !self.holds(&radius) {
+        if radius.to_f64() <= 0.0 || !self.admits_radius(&radius) {
             return None;
         }
         let centre = [Number::int(0), &to[1] + &(&radius * &normal[1])];
-        let up = self.at_end == self.convex;
-        let pole = if up { &centre[1] + &radius } else { &centre[1] - &radius };
+        let is_upper = self.at_end == self.convex;
+        let pole = if is_upper { &centre[1] + &radius } else { &centre[1] - &radius };
         let from = [Number::int(0), pole];
         let circle = Circle { centre, radius, convex: self.convex };
         Some(Corner { from, to, circle, taken: [0.0, length.to_f64()] })
@@ -283,26 +291,26 @@ impl Arm<'_> {
 
 /// Returns the arc that touches the first segment of a corner at `length` from it, and the second one no farther away.
 fn fan(first: &Arm<'_>, second: &Arm<'_>, length: &Number) -> Option<Corner> {
-    let from = first.at(length)?;
+    let from = first.point(length)?;
     let normal = first.normal(&from)?;
     let radius = second.radius(&from, &normal)?;
-    if radius.to_f64() <= 0.0 || !first.holds(&radius) || !second.holds(&radius) {
+    if radius.to_f64() <= 0.0 || !first.admits_radius(&radius) || !second.admits_radius(&radius) {
         return None;
     }
-    let centre = along(&from, &normal, &radius);
-    let to = second.touched(&centre, &radius)?;
-    let (most, other) = (length.to_f64(), second.distance(&to)?);
+    let centre = point_along(&from, &normal, &radius);
+    let to = second.contact_point(&centre, &radius)?;
+    let (max_length, other) = (length.to_f64(), second.distance(&to)?);
     let circle = Circle { centre, radius, convex: first.convex };
-    let near = other > 0.0 && other <= most * (1.0 + ROUNDING);
-    near.then_some(Corner { from, to, circle, taken: [most, other] })
+    let is_near = other > 0.0 && other <= max_length * (1.0 + ROUNDING);
+    is_near.then_some(Corner { from, to, circle, taken: [max_length, other] })
 }
 
-fn off(to: &ExactPoint, from: &ExactPoint) -> ExactPoint {
+fn offset(to: &ExactPoint, from: &ExactPoint) -> ExactPoint {
     [0, 1].map(|k| &to[k] - &from[k])
 }
 
-fn along(from: &ExactPoint, way: &ExactPoint, by: &Number) -> ExactPoint {
-    [0, 1].map(|k| &from[k] + &(&way[k] * by))
+fn point_along(from: &ExactPoint, direction: &ExactPoint, by: &Number) -> ExactPoint {
+    [0, 1].map(|k| &from[k] + &(&direction[k] * by))
 }
 
 fn product(a: &ExactPoint, b: &ExactPoint) -> Number {

@@ -12,7 +12,7 @@ use crate::number::Number;
 use crate::syntax::tree::{Definition, Expr, Item, Name, Tool};
 
 /// An argument of a `param`, evaluated where it is given.
-pub(super) struct Given<'t> {
+pub(super) struct Argument<'t> {
     setting: &'t Definition,
     value: Number,
     dimension: Dimension,
@@ -25,8 +25,8 @@ pub(super) fn from_outside<'t>(
     settings: &'t [Definition],
     (domain, unit): (Domain, Unit),
     diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<Given<'t>> {
-    given(settings, &mut Lowering::new(domain, unit), diagnostics, |mut diagnostic| {
+) -> Vec<Argument<'t>> {
+    read_arguments(settings, &mut Lowering::new(domain, unit), diagnostics, |mut diagnostic| {
         if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind {
             *remedy = NameRemedy::Constant;
         }
@@ -39,20 +39,20 @@ pub(super) fn from_mount<'t>(
     settings: &'t [Definition],
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<Given<'t>> {
-    given(settings, lowering, diagnostics, |diagnostic| diagnostic)
+) -> Vec<Argument<'t>> {
+    read_arguments(settings, lowering, diagnostics, |diagnostic| diagnostic)
 }
 
-fn given<'t>(
+fn read_arguments<'t>(
     settings: &'t [Definition],
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
-    said: impl Fn(Diagnostic) -> Diagnostic,
-) -> Vec<Given<'t>> {
-    let mut given: Vec<Given<'t>> = Vec::new();
+    adapt: impl Fn(Diagnostic) -> Diagnostic,
+) -> Vec<Argument<'t>> {
+    let mut arguments: Vec<Argument<'t>> = Vec::new();
     for setting in settings {
         let name = &setting.name;
-        if let Some(first) = given.iter().find(|other| other.setting.name.word == name.word) {
+        if let Some(first) = arguments.iter().find(|other| other.setting.name.word == name.word) {
             diagnostics.push(
                 Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
                     .and(first.setting.name.span, "first here"),
@@ -61,41 +61,41 @@ fn given<'t>(
         }
         match lowering.constant(&setting.value, Role::Param) {
             Ok((value, dimension)) => {
-                given.push(Given { setting, value, dimension, unit: lowering.unit });
+                arguments.push(Argument { setting, value, dimension, unit: lowering.unit });
             }
-            Err(diagnostic) => diagnostics.push(said(diagnostic)),
+            Err(diagnostic) => diagnostics.push(adapt(diagnostic)),
         }
     }
-    given
+    arguments
 }
 
 /// Returns the value of a `param`: its argument, otherwise its default.
 pub(super) fn value_of(
     param: &Definition,
     default: (Number, Dimension),
-    given: &[Given<'_>],
+    arguments: &[Argument<'_>],
     unit: Unit,
 ) -> Result<(Number, Dimension), Diagnostic> {
-    match given.iter().find(|given| given.setting.name.word == param.name.word) {
-        Some(given) => given.replacing(&param.value, default.1, unit),
+    match arguments.iter().find(|argument| argument.setting.name.word == param.name.word) {
+        Some(argument) => argument.replace_default(&param.value, default.1, unit),
         None => Ok(default),
     }
 }
 
-impl Given<'_> {
-    fn replacing(
+impl Argument<'_> {
+    fn replace_default(
         &self,
         default: &Expr,
-        of_default: Dimension,
+        default_dimension: Dimension,
         unit: Unit,
     ) -> Result<(Number, Dimension), Diagnostic> {
         let Definition { name: Name { word, .. }, value } = self.setting;
-        let Some(dimension) = of_default.alike(self.dimension) else {
+        let Some(dimension) = default_dimension.common(self.dimension) else {
             let diagnostic = Diagnostic::new(
                 value.span,
                 ValueKind::GivenDimension {
                     word: word.clone(),
-                    wanted: of_default,
+                    wanted: default_dimension,
                     found: self.dimension,
                 },
             )
@@ -132,7 +132,11 @@ fn scale(from: Unit, to: Unit, power: f64) -> Number {
 }
 
 /// Reports arguments that no `param` takes.
-pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], diagnostics: &mut Vec<Diagnostic>) {
+pub(super) fn report_unknown_params(
+    tool: &Tool,
+    arguments: &[Argument<'_>],
+    diagnostics: &mut Vec<Diagnostic>,
+) {
     let params: Vec<&str> = tool
         .items
         .iter()
@@ -141,7 +145,7 @@ pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], diagnostics: &mut Vec<Di
             _ => None,
         })
         .collect();
-    for Given { setting: Definition { name, .. }, .. } in given {
+    for Argument { setting: Definition { name, .. }, .. } in arguments {
         let word = name.word.as_str();
         if params.contains(&word) {
             continue;

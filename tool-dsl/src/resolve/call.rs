@@ -1,6 +1,6 @@
 //! Lowers function calls: their arguments, dimensions and results.
 
-use super::lower::{Lowered, Lowering, May};
+use super::lower::{Allowed, Lowered, Lowering};
 use crate::diagnostic::{Diagnostic, ValueKind, nearest};
 use crate::dimension::Dimension;
 use crate::source::Span;
@@ -15,10 +15,10 @@ impl Lowering {
         name: &Name,
         arguments: &[Expr],
         span: Span,
-        may: May,
+        may: Allowed,
     ) -> Lowered {
         let word = name.word.as_str();
-        let wanted = match word {
+        let expected_count = match word {
             "min" | "max" | "hypot" => 2..=usize::MAX,
             "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
             _ => {
@@ -27,8 +27,8 @@ impl Lowering {
                 return Err(Diagnostic::new(name.span, kind));
             }
         };
-        if !wanted.contains(&arguments.len()) {
-            let (word, several) = (word.to_owned(), *wanted.start() == 2);
+        if !expected_count.contains(&arguments.len()) {
+            let (word, several) = (word.to_owned(), *expected_count.start() == 2);
             let kind = ValueKind::WrongArguments { word, several, count: arguments.len() };
             return Err(Diagnostic::new(span, kind));
         }
@@ -53,7 +53,7 @@ impl Lowering {
         }
         for argument in &arguments[1..] {
             let (other, of_other) = self.lower(argument, may)?;
-            dimension = dimension.alike(of_other).ok_or_else(|| {
+            dimension = dimension.common(of_other).ok_or_else(|| {
                 Diagnostic::new(
                     argument.span,
                     ValueKind::UnlikeArguments {
@@ -78,7 +78,7 @@ impl Lowering {
         Ok((id, dimension))
     }
 
-    fn trigonometric(&mut self, word: &str, argument: &Expr, span: Span, may: May) -> Lowered {
+    fn trigonometric(&mut self, word: &str, argument: &Expr, span: Span, may: Allowed) -> Lowered {
         let (id, dimension) = self.lower(argument, may)?;
         let Some(angle) = self.graph.constant(id).cloned() else {
             return Err(Diagnostic::new(

@@ -7,7 +7,7 @@ use crate::formula::{CurveIndex, Formula};
 use std::collections::BTreeMap;
 
 /// The maximum number of times that one condition may be split at `min`, `max` and `abs`.
-const PARTS: usize = 64;
+const MAX_SPLITS: usize = 64;
 
 /// The curves found so far.
 #[derive(Default)]
@@ -70,7 +70,7 @@ impl Curves {
     /// Returns the formula of `low ≤ high`.
     pub(super) fn at_most(&mut self, graph: &mut Graph, low: Id, high: Id) -> Formula {
         let value = graph.sub(low, high);
-        self.side(graph, value, true, &mut PARTS.clone())
+        self.side(graph, value, true, &mut MAX_SPLITS.clone())
     }
 
     fn side(&mut self, graph: &mut Graph, value: Id, below: bool, parts: &mut usize) -> Formula {

@@ -6,7 +6,7 @@ use crate::syntax::tree::{Definition, Expr, ExprKind};
 use std::collections::BTreeMap;
 
 /// The maximum number of links of a cycle that a message lists.
-const LISTED: usize = 64;
+const MAX_LISTED_LINKS: usize = 64;
 
 /// Reports each cycle of definitions once, with its links, and returns the names on the cycles. If a name is defined
 /// twice, the first definition counts.
@@ -32,7 +32,7 @@ pub(super) fn refused<'t>(
         done.insert(&root.name.word, false);
         let mut path = vec![Step::new(root, root.name.span)];
         while let Some(step) = path.last_mut() {
-            let Some((word, place)) = step.open.pop() else {
+            let Some((word, span)) = step.pending.pop() else {
                 done.insert(&step.definition.name.word, true);
                 path.pop();
                 continue;
@@ -45,13 +45,13 @@ pub(super) fn refused<'t>(
                     let cycle = &path[first.unwrap_or_default()..];
                     let known = cycle.iter().any(|step| refused.contains_key(step.word()));
                     if !known {
-                        let reported = Reported::push(diagnostics, circular(cycle, place));
+                        let reported = Reported::push(diagnostics, circular(cycle, span));
                         refused.extend(cycle.iter().map(|step| (step.word().to_owned(), reported)));
                     }
                 }
                 None => {
                     done.insert(word, false);
-                    path.push(Step::new(next, place));
+                    path.push(Step::new(next, span));
                 }
             }
         }
@@ -62,15 +62,15 @@ pub(super) fn refused<'t>(
 /// A definition on the path, the span at which the previous one mentions it, and the names that it mentions itself.
 struct Step<'t> {
     definition: &'t Definition,
-    place: Span,
-    open: Vec<(&'t str, Span)>,
+    span: Span,
+    pending: Vec<(&'t str, Span)>,
 }
 
 impl<'t> Step<'t> {
-    fn new(definition: &'t Definition, place: Span) -> Step<'t> {
-        let mut open = mentioned(&definition.value);
-        open.reverse();
-        Step { definition, place, open }
+    fn new(definition: &'t Definition, span: Span) -> Step<'t> {
+        let mut pending = mentioned(&definition.value);
+        pending.reverse();
+        Step { definition, span, pending }
     }
 
     fn word(&self) -> &'t str {
@@ -81,30 +81,30 @@ impl<'t> Step<'t> {
 /// Returns the names that an expression mentions, in the order of the text.
 fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
     let mut names = Vec::new();
-    let mut open = vec![expr];
-    while let Some(expr) = open.pop() {
+    let mut pending = vec![expr];
+    while let Some(expr) = pending.pop() {
         match &expr.kind {
             ExprKind::Number(..) => {}
             ExprKind::Name(word) => names.push((word.as_str(), expr.span)),
-            ExprKind::Call(_, arguments) => open.extend(arguments.iter().rev()),
-            ExprKind::Neg(inner) => open.push(inner),
-            ExprKind::Binary(_, left, right) => open.extend([&**right, &**left]),
+            ExprKind::Call(_, arguments) => pending.extend(arguments.iter().rev()),
+            ExprKind::Neg(inner) => pending.push(inner),
+            ExprKind::Binary(_, left, right) => pending.extend([&**right, &**left]),
         }
     }
     names
 }
 
-/// Returns the error for a cycle. `place` is the span at which its last definition mentions the first one.
-fn circular(cycle: &[Step<'_>], place: Span) -> Diagnostic {
+/// Returns the error for a cycle. `span` is where its last definition mentions the first one.
+fn circular(cycle: &[Step<'_>], span: Span) -> Diagnostic {
     let word = cycle[0].word().to_owned();
     let [_, second, ..] = cycle else {
         let kind = ValueKind::DefinedByItself { word, links: Links(Vec::new()), more: 0 };
-        return Diagnostic::new(place, kind);
+        return Diagnostic::new(span, kind);
     };
     let next = cycle.iter().skip(1).chain(&cycle[..1]);
     let link = |(step, next): (&Step<'_>, &Step<'_>)| [step.word(), next.word()].map(str::to_owned);
-    let links: Vec<[String; 2]> = cycle.iter().zip(next).take(LISTED).map(link).collect();
+    let links: Vec<[String; 2]> = cycle.iter().zip(next).take(MAX_LISTED_LINKS).map(link).collect();
     let more = cycle.len() - links.len();
     let kind = ValueKind::DefinedByItself { word, links: Links(links), more };
-    Diagnostic::new(place, kind).and(second.place, "the first link")
+    Diagnostic::new(span, kind).and(second.span, "the first link")
 }

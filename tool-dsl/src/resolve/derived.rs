@@ -1,11 +1,11 @@
 //! Derives the regions of a profile, names them, and applies their laws.
 
 use super::condition::Curves;
-use super::direction::Course;
+use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::{Conditions, Divider};
-use super::region::{Bare, RegionResolver, noted};
+use super::region::{RegionHead, RegionResolver, or_report};
 use crate::diagnostic::{Diagnostic, ProfileKind};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
@@ -24,21 +24,21 @@ pub(super) struct FromProfile {
 }
 
 /// A part of the inside, in which one feature is nearest.
-pub(super) struct Part {
+pub(super) struct DerivedPart {
     pub(super) feature: Feature,
     pub(super) inside: Formula,
     pub(super) depth: Id,
-    pub(super) course: [Id; 3],
+    pub(super) direction: [Id; 3],
     pub(super) name: String,
     /// Index of its surface.
     pub(super) owner: usize,
     pub(super) span: Span,
 }
 
-impl Part {
+impl DerivedPart {
     /// Returns the shortest direction to the feature.
-    pub(super) fn own_course(&self) -> Course {
-        Course { parts: self.course, span: self.span, source: DirectionSource::Derived }
+    pub(super) fn own_direction(&self) -> RawDirection {
+        RawDirection { parts: self.direction, span: self.span, source: DirectionSource::Derived }
     }
 }
 
@@ -52,7 +52,7 @@ pub(super) fn derived(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> FromProfile {
     laws.check(&surfaces, diagnostics);
-    if let Err(diagnostic) = divider.in_limits(&outline) {
+    if let Err(diagnostic) = divider.check_limits(&outline) {
         diagnostics.push(diagnostic);
         return FromProfile::default();
     }
@@ -72,18 +72,18 @@ pub(super) fn derived(
         }
     };
     let parts = parts(&derived, &outline, &surfaces, lowering, curves);
-    let whole = (outline.as_slice(), &inner);
+    let profile = (outline.as_slice(), &inner);
     let mut regions = Vec::new();
     let before = diagnostics.len();
-    let conditions = divider.conditions(whole, &surfaces, lowering, curves, diagnostics);
+    let conditions = divider.conditions(profile, &surfaces, lowering, curves, diagnostics);
     let mut over = None;
     match conditions {
         None => {
             for part in &parts {
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
-                let course = part.own_course();
-                regions.extend(noted(evaluation.of_part(part, said, course), diagnostics));
+                let head = (part.name.clone(), part.span, part.owner, part.inside.clone());
+                let direction = part.own_direction();
+                regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
         }
         Some(conditions) if diagnostics.len() == before => {
@@ -117,7 +117,7 @@ fn parts(
     surfaces: &[Surface],
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Vec<Part> {
+) -> Vec<DerivedPart> {
     let names = names(outline, surfaces, derived);
     let graph = &mut lowering.graph;
     let zero = graph.int(0);
@@ -126,9 +126,18 @@ fn parts(
         .zip(names)
         .map(|(part, (name, owner, span))| {
             let inside = formula(&part.inside, curves, graph);
-            let course = regionalise::course(graph, outline, part.feature).unwrap_or([zero, zero]);
-            let course = Domain::HalfPlane.vector(graph, &course);
-            Part { feature: part.feature, inside, depth: part.depth, course, name, owner, span }
+            let direction = regionalise::direction_to_surface(graph, outline, part.feature)
+                .unwrap_or([zero, zero]);
+            let direction = Domain::HalfPlane.vector(graph, &direction);
+            DerivedPart {
+                feature: part.feature,
+                inside,
+                depth: part.depth,
+                direction,
+                name,
+                owner,
+                span,
+            }
         })
         .collect()
 }
@@ -138,7 +147,9 @@ pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Fo
     let zero = graph.int(0);
     match test {
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
-        Test::All(all) => Formula::All(all.iter().map(|t| formula(t, curves, graph)).collect()),
+        Test::All(segment_count) => {
+            Formula::All(segment_count.iter().map(|t| formula(t, curves, graph)).collect())
+        }
         Test::Any(any) => Formula::Any(any.iter().map(|t| formula(t, curves, graph)).collect()),
         Test::Strictly(test) => match formula(test, curves, graph) {
             Formula::Atom { curve, below, .. } => Formula::Atom { curve, below, strict: true },
@@ -159,10 +170,10 @@ fn names(
     let name = |piece: usize| {
         let surface = outline[piece].surface;
         let of_surface = |other: &&Segment| other.surface == surface;
-        let all = outline.iter().filter(of_surface).count();
+        let segment_count = outline.iter().filter(of_surface).count();
         let before = outline[..=piece].iter().filter(of_surface).count();
         let word = &surfaces[surface].name;
-        if all > 1 { format!("{word}.{before}") } else { word.clone() }
+        if segment_count > 1 { format!("{word}.{before}") } else { word.clone() }
     };
     let mut fans = std::collections::BTreeMap::new();
     parts
@@ -187,13 +198,13 @@ impl RegionResolver<'_> {
     /// Returns the region of a part, with the laws for its surface.
     pub(super) fn of_part(
         mut self,
-        part: &Part,
+        part: &DerivedPart,
         (name, span, owner, inside): (String, Span, usize, Formula),
-        course: Course,
+        direction: RawDirection,
     ) -> Result<Region, Diagnostic> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;
-        let bare = Bare { name, span, owner, inside };
-        self.finish(bare, (part.depth, span), (magnitude, niceness), course)
+        let head = RegionHead { name, span, owner, inside };
+        self.finish(head, (part.depth, span), (magnitude, niceness), direction)
     }
 }

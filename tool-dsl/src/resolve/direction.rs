@@ -1,6 +1,6 @@
 //! Points and directions as tuples: two components in a tool, three in a solid.
 
-use super::lower::May;
+use super::lower::Allowed;
 use super::region::RegionResolver;
 use crate::diagnostic::{Diagnostic, RegionKind, Role};
 use crate::dimension::Dimension;
@@ -12,7 +12,7 @@ use crate::syntax::tree::{Direction, Expr, Region, Tuple};
 
 /// A direction that is not yet normalised, with its span and its source.
 #[derive(Clone, Copy)]
-pub(super) struct Course {
+pub(super) struct RawDirection {
     pub(super) parts: [Id; 3],
     pub(super) span: Span,
     pub(super) source: DirectionSource,
@@ -20,13 +20,16 @@ pub(super) struct Course {
 
 impl RegionResolver<'_> {
     /// Returns the direction that a region writes, if it does.
-    pub(super) fn course(&mut self, written: &Region) -> Result<Option<Course>, Diagnostic> {
+    pub(super) fn resolve_direction(
+        &mut self,
+        written: &Region,
+    ) -> Result<Option<RawDirection>, Diagnostic> {
         match written.direction.as_slice() {
             [] => Ok(None),
-            [course] => Ok(Some(Course {
-                parts: self.direction(&course.direction)?,
-                span: course.span,
-                source: match course.oblique {
+            [resolve_direction] => Ok(Some(RawDirection {
+                parts: self.direction(&resolve_direction.direction)?,
+                span: resolve_direction.span,
+                source: match resolve_direction.oblique {
                     true => DirectionSource::Oblique,
                     false => DirectionSource::Written,
                 },
@@ -40,10 +43,10 @@ impl RegionResolver<'_> {
     fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Diagnostic> {
         match direction {
             Direction::Along(tuple) => self.along(tuple),
-            Direction::AwayFrom(tuple) => self.away_from(tuple),
+            Direction::AwayFrom(tuple) => self.direction_from_point(tuple),
             Direction::Toward(tuple) => {
-                let away = self.away_from(tuple)?;
-                Ok(away.map(|part| self.lowering.graph.neg(part)))
+                let from_point = self.direction_from_point(tuple)?;
+                Ok(from_point.map(|part| self.lowering.graph.neg(part)))
             }
         }
     }
@@ -52,9 +55,9 @@ impl RegionResolver<'_> {
         let domain = self.lowering.domain;
         let (mut parts, mut dimension) = (Vec::new(), Dimension::Bare);
         for part in components(tuple, domain, Role::Direction)? {
-            let (id, of_part) = self.lowering.lower(part, May::Coordinates)?;
-            let alike = dimension.alike(of_part).filter(|d| *d != Dimension::Angle);
-            dimension = alike.ok_or_else(|| {
+            let (id, of_part) = self.lowering.lower(part, Allowed::Coordinates)?;
+            let common_dimension = dimension.common(of_part).filter(|d| *d != Dimension::Angle);
+            dimension = common_dimension.ok_or_else(|| {
                 Diagnostic::new(
                     tuple.span,
                     RegionKind::UnlikeParts { first: dimension, other: of_part },
@@ -69,20 +72,20 @@ impl RegionResolver<'_> {
     }
 
     /// Returns the vector from a fixed point to the evaluated point.
-    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
+    fn direction_from_point(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
         let domain = self.lowering.domain;
         let mut parts = Vec::new();
         for (part, (coord, ..)) in
             components(tuple, domain, Role::Point)?.into_iter().zip(domain.coordinates())
         {
-            let there = self.lowering.length(part, Role::Point)?;
-            let there = match coord {
-                Coord::Z => self.lowering.frame.to_tool(&there),
-                _ => there,
+            let constant = self.lowering.length(part, Role::Point)?;
+            let constant = match coord {
+                Coord::Z => self.lowering.frame.to_tool(&constant),
+                _ => constant,
             };
             let graph = &mut self.lowering.graph;
-            let (here, there) = (graph.coord(*coord), graph.number(there));
-            parts.push(graph.sub(here, there));
+            let (coordinate, constant) = (graph.coord(*coord), graph.number(constant));
+            parts.push(graph.sub(coordinate, constant));
         }
         Ok(domain.vector(&mut self.lowering.graph, &parts))
     }

@@ -6,11 +6,11 @@ use crate::number::Number;
 /// Lengths below this fraction of the tool's size are rounding errors.
 const ROUNDING: f64 = 1e-12;
 /// The largest distance of a tool's end from its stated tip, in sizes of the tool.
-pub(super) const OFF_TIP: f64 = 1e-6;
+pub(super) const TIP_TOLERANCE_FRACTION: f64 = 1e-6;
 
 /// The reason why two outlines cannot be joined at a plane.
 #[derive(Debug)]
-pub(super) enum Unjoined {
+pub(super) enum JoinError {
     /// The lower outline ends below the plane.
     Short,
     /// The lower outline meets the axis at the plane.
@@ -23,23 +23,23 @@ pub(super) enum Unjoined {
 
 /// Returns an outline with its lengths multiplied by `scale`, then moved along the axis by `by`. Surface indices are
 /// increased by `first`.
-pub(super) fn moved(
+pub(super) fn transformed_outline(
     outline: &[Segment],
     scale: &Number,
     by: &Number,
     first: usize,
 ) -> Vec<Segment> {
-    let place = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
-    let moved = |segment: &Segment| {
+    let transformed = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
+    let transformed_outline = |segment: &Segment| {
         let circle = segment.circle.as_ref().map(|circle| Circle {
-            centre: place(&circle.centre),
+            centre: transformed(&circle.centre),
             radius: &circle.radius * scale,
             convex: circle.convex,
         });
-        let ends = [place(&segment.from), place(&segment.to)];
+        let ends = [transformed(&segment.from), transformed(&segment.to)];
         Segment::new(ends, circle, segment.surface + first, segment.span)
     };
-    outline.iter().map(moved).collect()
+    outline.iter().map(transformed_outline).collect()
 }
 
 /// Returns the outline of the solid `lower` below a plane across the axis and of the solid `upper` above it. `upper`
@@ -52,15 +52,15 @@ pub(super) fn join(
     lower: &[Segment],
     upper: &[Segment],
     plane: &Number,
-) -> Result<Vec<Segment>, Unjoined> {
+) -> Result<Vec<Segment>, JoinError> {
     let slack = ROUNDING * size(lower).max(size(upper));
     let mut joined = below(lower, plane, slack)?;
-    let Some(last) = joined.last() else { return Err(Unjoined::Short) };
+    let Some(last) = joined.last() else { return Err(JoinError::Short) };
     let (radius, ring) = (last.to[0].clone(), (last.surface, last.span));
     if radius.to_f64() <= slack {
-        return Err(Unjoined::Point);
+        return Err(JoinError::Point);
     }
-    let (height, off_tip) = (plane.to_f64(), OFF_TIP * size(upper));
+    let (height, off_tip) = (plane.to_f64(), TIP_TOLERANCE_FRACTION * size(upper));
     let flat = |segment: &&Segment| {
         let [[inner, a], [outer, b]] = segment.ends();
         let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
@@ -69,7 +69,7 @@ pub(super) fn join(
     let faces = upper.iter().take_while(flat).count();
     let (face, rest) = upper.split_at(faces);
     let (Some(rim), Some((wall, rest))) = (face.last(), rest.split_first()) else {
-        return Err(Unjoined::NoFace(Box::new(upper.first().unwrap_or(last).clone())));
+        return Err(JoinError::NoFace(Box::new(upper.first().unwrap_or(last).clone())));
     };
     let on_plane = |d: &Number| [d.clone(), plane.clone()];
     let mut at = on_plane(&radius);
@@ -96,52 +96,52 @@ fn size(outline: &[Segment]) -> f64 {
 }
 
 /// Returns the part of an outline up to a plane, which it has to cross exactly once.
-fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, Unjoined> {
+fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, JoinError> {
     let height = plane.to_f64();
     let side = |z: f64| match z - height {
         off if off.abs() <= slack => 0,
         off if off < 0.0 => -1,
         _ => 1,
     };
-    let mut walked: Vec<Segment> = Vec::new();
+    let mut lower_outline: Vec<Segment> = Vec::new();
     let mut reached = false;
     for segment in outline {
-        let stops = stops(segment);
+        let turning_heights = turning_heights(segment);
         if reached {
-            if stops.iter().any(|z| side(*z) < 0) {
-                return Err(Unjoined::Back(Box::new(segment.clone())));
+            if turning_heights.iter().any(|z| side(*z) < 0) {
+                return Err(JoinError::Back(Box::new(segment.clone())));
             }
             continue;
         }
-        match stops.iter().position(|z| side(*z) >= 0) {
-            None => walked.push(segment.clone()),
+        match turning_heights.iter().position(|z| side(*z) >= 0) {
+            None => lower_outline.push(segment.clone()),
             // The plane goes through the first corner of the outline, so nothing lies below it.
-            Some(0) => return Err(Unjoined::Point),
+            Some(0) => return Err(JoinError::Point),
             Some(stop) => {
-                if stops[stop..].iter().any(|z| side(*z) < 0) {
-                    return Err(Unjoined::Back(Box::new(segment.clone())));
+                if turning_heights[stop..].iter().any(|z| side(*z) < 0) {
+                    return Err(JoinError::Back(Box::new(segment.clone())));
                 }
-                let at_end = stop + 1 == stops.len() && side(stops[stop]) == 0;
+                let at_end = stop + 1 == turning_heights.len() && side(turning_heights[stop]) == 0;
                 let d = if at_end { segment.to[0].clone() } else { crossing(segment, plane) };
                 let ends = [segment.from.clone(), [d, plane.clone()]];
                 let circle = segment.circle.clone();
-                walked.push(Segment::new(ends, circle, segment.surface, segment.span));
+                lower_outline.push(Segment::new(ends, circle, segment.surface, segment.span));
                 reached = true;
             }
         }
     }
-    if reached { Ok(walked) } else { Err(Unjoined::Short) }
+    if reached { Ok(lower_outline) } else { Err(JoinError::Short) }
 }
 
 /// Returns the z of a segment's ends and, between them, the z at which an arc reverses along the axis.
-fn stops(segment: &Segment) -> Vec<f64> {
+fn turning_heights(segment: &Segment) -> Vec<f64> {
     let [from, to] = segment.ends().map(|end| end[1]);
     let turns = segment.circle.as_ref().and_then(|circle| {
         let ([_, centre], radius) = (doubles(&circle.centre), circle.radius.to_f64());
         [centre - radius, centre + radius].into_iter().find(|z| {
             let strictly = [from, to].iter().all(|end| (end - z).abs() > ROUNDING * radius);
-            let way = [doubles(&circle.centre)[0], *z];
-            strictly && segment.sector(way).iter().all(|side| *side > 0.0)
+            let point = [doubles(&circle.centre)[0], *z];
+            strictly && segment.sector(point).iter().all(|side| *side > 0.0)
         })
     });
     [Some(from), turns, Some(to)].into_iter().flatten().collect()
@@ -156,12 +156,12 @@ fn crossing(segment: &Segment, plane: &Number) -> Number {
             d + &(&part * &(to_d - d))
         }
         Some(circle) => {
-            let up = plane - &circle.centre[1];
-            let square = &(&circle.radius * &circle.radius) - &(&up * &up);
-            let off = square.sqrt().unwrap_or_else(|| Number::int(0));
+            let height = plane - &circle.centre[1];
+            let square = &(&circle.radius * &circle.radius) - &(&height * &height);
+            let offset = square.sqrt().unwrap_or_else(|| Number::int(0));
             // The material is on the left, which is toward the axis where the outline rises.
-            let off = if circle.convex { off } else { -&off };
-            &circle.centre[0] + &off
+            let offset = if circle.convex { offset } else { -&offset };
+            &circle.centre[0] + &offset
         }
     }
 }

@@ -11,12 +11,15 @@ use std::collections::BTreeMap;
 pub(super) struct Laws<'t> {
     own: &'t [&'t Law],
     /// The niceness laws that come with the surfaces of mounted files, by surface.
-    pub(super) along: BTreeMap<String, MountedNiceness>,
+    pub(super) niceness_by_surface: BTreeMap<String, MountedNiceness>,
 }
 
 impl<'t> Laws<'t> {
-    pub(super) fn new(own: &'t [&'t Law], along: BTreeMap<String, MountedNiceness>) -> Laws<'t> {
-        Laws { own, along }
+    pub(super) fn new(
+        own: &'t [&'t Law],
+        niceness_by_surface: BTreeMap<String, MountedNiceness>,
+    ) -> Laws<'t> {
+        Laws { own, niceness_by_surface }
     }
 
     /// Returns the law for a surface: one for the surface itself, otherwise one for `cutting`, otherwise one for all
@@ -36,7 +39,7 @@ impl<'t> Laws<'t> {
 
     /// Reports errors in the laws themselves.
     pub(super) fn check(&self, surfaces: &[Surface], diagnostics: &mut Vec<Diagnostic>) {
-        let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
+        let mut known_laws: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.own {
             if enough(diagnostics) {
                 return;
@@ -52,7 +55,7 @@ impl<'t> Laws<'t> {
             };
             for (word, span) in words {
                 if let Some((.., first)) =
-                    seen.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
+                    known_laws.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
                 {
                     let surface = (!word.is_empty()).then(|| word.to_owned());
                     diagnostics.push(
@@ -60,7 +63,7 @@ impl<'t> Laws<'t> {
                             .and(*first, "the first"),
                     );
                 }
-                seen.push((law.quantity, word, span));
+                known_laws.push((law.quantity, word, span));
                 let surface = surfaces.iter().find(|surface| surface.name == word);
                 if word.is_empty() || word == "cutting" {
                     continue;
@@ -70,8 +73,8 @@ impl<'t> Laws<'t> {
                         let known = surfaces.iter().map(|s| s.name.as_str());
                         // The part may have been omitted from the name of a part's surface.
                         let of_part = format!(".{word}");
-                        let whole = known.clone().find(|name| name.ends_with(&of_part));
-                        let remedy = match whole.or(nearest(word, known)) {
+                        let qualified_name = known.clone().find(|name| name.ends_with(&of_part));
+                        let remedy = match qualified_name.or(nearest(word, known)) {
                             Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
                             None => named(word, surfaces),
                         };

@@ -10,7 +10,7 @@ use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::source::Span;
-use crate::syntax::TALLEST;
+use crate::syntax::MAX_HEIGHT;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub(super) struct Value {
 
 /// The names that an expression may mention, by its context.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum May {
+pub(super) enum Allowed {
     /// Constants only, in this role.
     Constants(Role),
     /// Coordinates too.
@@ -55,7 +55,7 @@ pub(super) struct Lowering {
 }
 
 /// The largest intermediate constant, 2^1000, large enough for powers of lengths.
-const LARGEST: f64 = 1.071508607186267e301;
+const MAX_CONSTANT: f64 = 1.071508607186267e301;
 
 pub(super) type Lowered = Result<(Id, Dimension), Diagnostic>;
 
@@ -96,7 +96,7 @@ impl Lowering {
     }
 
     /// Reports a rejected definition, and records its name.
-    pub(super) fn note(
+    pub(super) fn report(
         &mut self,
         name: &Name,
         defined: Result<(), Diagnostic>,
@@ -114,7 +114,7 @@ impl Lowering {
         expr: &Expr,
         role: Role,
     ) -> Result<(Number, Dimension), Diagnostic> {
-        let (id, dimension) = self.lower(expr, May::Constants(role))?;
+        let (id, dimension) = self.lower(expr, Allowed::Constants(role))?;
         match self.graph.constant(id) {
             Some(value) => Ok((value.clone(), dimension)),
             None => Err(not_constant(expr.span, None, role)),
@@ -132,20 +132,20 @@ impl Lowering {
     }
 
     /// Lowers any expression.
-    pub(super) fn lower(&mut self, expr: &Expr, may: May) -> Lowered {
+    pub(super) fn lower(&mut self, expr: &Expr, may: Allowed) -> Lowered {
         let (id, dimension) = self.node(expr, may)?;
         // Constants are checked at every step, before anything overflows.
         let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
-        if size > LARGEST {
+        if size > MAX_CONSTANT {
             return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
         }
-        if self.graph.height(id) > TALLEST {
-            return Err(Diagnostic::new(expr.span, ValueKind::TooManySteps { most: TALLEST }));
+        if self.graph.height(id) > MAX_HEIGHT {
+            return Err(Diagnostic::new(expr.span, ValueKind::TooManySteps { most: MAX_HEIGHT }));
         }
         Ok((id, dimension))
     }
 
-    fn node(&mut self, expr: &Expr, may: May) -> Lowered {
+    fn node(&mut self, expr: &Expr, may: Allowed) -> Lowered {
         match &expr.kind {
             ExprKind::Number(value, None) => {
                 Ok((self.graph.number(value.clone()), Dimension::Bare))
@@ -196,14 +196,14 @@ impl Lowering {
         }
     }
 
-    fn name(&mut self, word: &str, span: Span, may: May) -> Lowered {
+    fn name(&mut self, word: &str, span: Span, may: Allowed) -> Lowered {
         let coordinate = match word {
             "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Bare)),
             "depth" => {
                 return match may {
-                    May::Depth(depth) => Ok((depth, LENGTH)),
-                    May::Coordinates => Err(Diagnostic::new(span, ValueKind::DepthUnknown)),
-                    May::Constants(role) => Err(not_constant(span, Some(word), role)),
+                    Allowed::Depth(depth) => Ok((depth, LENGTH)),
+                    Allowed::Coordinates => Err(Diagnostic::new(span, ValueKind::DepthUnknown)),
+                    Allowed::Constants(role) => Err(not_constant(span, Some(word), role)),
                 };
             }
             _ => self.domain.coordinates().iter().find(|(.., name)| *name == word),
@@ -215,7 +215,7 @@ impl Lowering {
             return Err(Diagnostic::new(span, kind));
         }
         if let Some(coordinate) = coordinate {
-            if let May::Constants(role) = may {
+            if let Allowed::Constants(role) = may {
                 return Err(not_constant(span, Some(word), role));
             }
             return Ok((self.coordinate_here(coordinate), LENGTH));
@@ -227,7 +227,7 @@ impl Lowering {
             if let Some(definition) = self.declared.get(word) {
                 // Constants are evaluated before curves, wherever they are written.
                 if definition.start < span.start
-                    && let May::Constants(role) = may
+                    && let Allowed::Constants(role) = may
                 {
                     return Err(not_constant(span, Some(word), role).and(*definition, "a curve"));
                 }
@@ -246,7 +246,7 @@ impl Lowering {
         };
         value.used = true;
         let value = value.clone();
-        if let May::Constants(role) = may
+        if let Allowed::Constants(role) = may
             && self.graph.constant(value.id).is_none()
         {
             return Err(not_constant(span, Some(word), role));
@@ -260,7 +260,7 @@ impl Lowering {
         left: &Expr,
         right: &Expr,
         span: Span,
-        may: May,
+        may: Allowed,
     ) -> Lowered {
         let glued = operator == Binary::Sub && left.span.end + 1 == right.span.start;
         let (a, da) = self.lower(left, may).map_err(|mut diagnostic| {
@@ -274,8 +274,8 @@ impl Lowering {
         })?;
         let (b, db) = self.lower(right, may)?;
         let (dimension, operation) = match operator {
-            Binary::Add => (da.alike(db), Operation::Add),
-            Binary::Sub => (da.alike(db), Operation::Subtract),
+            Binary::Add => (da.common(db), Operation::Add),
+            Binary::Sub => (da.common(db), Operation::Subtract),
             Binary::Mul => (da.times(db), Operation::Multiply),
             _ => (da.over(db), Operation::Divide),
         };
@@ -294,7 +294,7 @@ impl Lowering {
         Ok((id, dimension))
     }
 
-    fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: May) -> Lowered {
+    fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
         let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
         let halves = value

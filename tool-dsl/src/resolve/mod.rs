@@ -27,7 +27,7 @@ use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
-use arguments::Given;
+use arguments::Argument;
 use condition::Curves;
 use derived::FromProfile;
 use law::Laws;
@@ -50,10 +50,10 @@ pub fn resolve(
     let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
     let given = arguments::from_outside(given, (tool.domain, unit), diagnostics);
-    arguments::untaken(tool, &given, diagnostics);
+    arguments::report_unknown_params(tool, &given, diagnostics);
     constants(tool, &given, &mut lowering, diagnostics);
-    let misplaced = match tool.domain {
-        Domain::Space => without_axis(tool, diagnostics),
+    let misplaced_item = match tool.domain {
+        Domain::Space => report_items_of_axis(tool, diagnostics),
         Domain::HalfPlane => None,
     };
     frame(tool, &mut lowering, diagnostics);
@@ -76,34 +76,41 @@ pub fn resolve(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let shape = if misplaced.is_some() { None } else { shape(tool, diagnostics) };
+    let shape = if misplaced_item.is_some() { None } else { shape(tool, diagnostics) };
     let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, diagnostics);
             outline.map(|(outline, surfaces)| Outlined {
                 outline,
                 surfaces,
-                along: BTreeMap::new(),
+                niceness_by_surface: BTreeMap::new(),
                 span: profile.span,
             })
         }
         Shape::Mounts(mounts) => {
-            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, diagnostics)
+            mount::assemble_mounts(&mounts, tool.name.span, &mut lowering, sources, diagnostics)
         }
     });
-    let mut without_shape = misplaced;
+    let mut without_shape = misplaced_item;
     let FromProfile { surfaces, regions, section } = match outlined {
-        Some(Ok(Outlined { outline, surfaces, along, span })) => {
-            let laws = Laws::new(&laws, along);
-            let whole = (outline, surfaces, span);
+        Some(Ok(Outlined { outline, surfaces, niceness_by_surface, span })) => {
+            let laws = Laws::new(&laws, niceness_by_surface);
+            let profile_parts = (outline, surfaces, span);
             let divider = divider(tool, diagnostics);
-            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, diagnostics)
+            derived::derived(
+                profile_parts,
+                &divider,
+                &laws,
+                &mut lowering,
+                &mut curves,
+                diagnostics,
+            )
         }
         Some(Err(reported)) => {
             without_shape = Some(reported);
             FromProfile::default()
         }
-        None if misplaced.is_some() => FromProfile::default(),
+        None if misplaced_item.is_some() => FromProfile::default(),
         None => {
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
@@ -138,7 +145,7 @@ pub fn resolve(
 }
 
 /// Reports items that only a tool may have, in a solid. Returns evidence if there are any.
-fn without_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Reported> {
+fn report_items_of_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Reported> {
     let mut refused = None;
     for item in &tool.items {
         let (span, word) = match item {
@@ -162,18 +169,18 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
         .iter()
         .filter_map(|item| if let Item::Region(region) = item { Some(region) } else { None })
         .collect();
-    let mut said: Option<(Span, Option<&Expr>)> = None;
+    let mut regions_item: Option<(Span, Option<&Expr>)> = None;
     for item in &tool.items {
         let Item::Regions { span, smooth } = item else { continue };
-        if let Some((first, _)) = said {
+        if let Some((first, _)) = regions_item {
             diagnostics.push(
                 Diagnostic::new(*span, RegionKind::SaidTwice { word: "regions".to_owned() })
                     .and(first, "first here"),
             );
         }
-        said = said.or(Some((*span, smooth.as_ref())));
+        regions_item = regions_item.or(Some((*span, smooth.as_ref())));
     }
-    match (said, by_hand.first()) {
+    match (regions_item, by_hand.first()) {
         (Some((span, _)), Some(region)) => {
             diagnostics.push(
                 Diagnostic::new(span, RegionKind::DerivedAndWritten)
@@ -198,7 +205,7 @@ struct Outlined {
     outline: Vec<Segment>,
     surfaces: Vec<Surface>,
     /// The niceness laws that come with the surfaces of mounted files, by surface.
-    along: BTreeMap<String, MountedNiceness>,
+    niceness_by_surface: BTreeMap<String, MountedNiceness>,
     /// The span of the profile or, for mounts, of the tool's name.
     span: Span,
 }
@@ -243,8 +250,11 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     }
 }
 
-fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Item = &Definition> {
-    tool.items.iter().filter(move |item| wanted(item)).filter_map(|item| match item {
+fn definitions(
+    tool: &Tool,
+    is_wanted: impl Fn(&Item) -> bool,
+) -> impl Iterator<Item = &Definition> {
+    tool.items.iter().filter(move |item| is_wanted(item)).filter_map(|item| match item {
         Item::Let(definition) | Item::Param(definition) | Item::Curve(definition) => {
             Some(definition)
         }
@@ -265,8 +275,12 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
             None => missing(tool.name.span),
         });
     };
-    if let Some(Item::Units(again)) = tool.items[1..].iter().find(|i| matches!(i, Item::Units(_))) {
-        return Err(Diagnostic::new(again.span, ValueKind::UnitTwice).and(name.span, "first here"));
+    if let Some(Item::Units(second_unit)) =
+        tool.items[1..].iter().find(|i| matches!(i, Item::Units(_)))
+    {
+        return Err(
+            Diagnostic::new(second_unit.span, ValueKind::UnitTwice).and(name.span, "first here")
+        );
     }
     Unit::from_word(&name.word).ok_or_else(|| {
         let meant = match name.word.as_str() {
@@ -285,7 +299,7 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
 /// reported first, and stay without a value.
 fn constants(
     tool: &Tool,
-    given: &[Given<'_>],
+    given: &[Argument<'_>],
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
@@ -309,7 +323,7 @@ fn constants(
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))
         });
-        lowering.note(&definition.name, defined, diagnostics);
+        lowering.report(&definition.name, defined, diagnostics);
         if enough(diagnostics) {
             break;
         }
@@ -320,7 +334,7 @@ fn constants(
 fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>) {
     let (mut tip, mut spindle): (Option<Span>, Option<Span>) = (None, None);
     for item in &tool.items {
-        let (seen, span, word) = match item {
+        let (previous_span, span, word) = match item {
             Item::Tip(expr) => {
                 match lowering.length(expr, Role::Tip) {
                     Ok(value) => {
@@ -337,7 +351,7 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
             }
             _ => continue,
         };
-        if let Some(first) = seen.replace(span) {
+        if let Some(first) = previous_span.replace(span) {
             diagnostics.push(
                 Diagnostic::new(span, RegionKind::SaidTwice { word: word.to_owned() })
                     .and(first, "first here"),

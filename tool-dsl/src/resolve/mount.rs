@@ -1,15 +1,15 @@
 //! Joins several files into one profile.
 
-use super::arguments::{self, Given};
-use super::join::{OFF_TIP, Unjoined, join, moved};
+use super::arguments::{self, Argument};
+use super::join::{JoinError, TIP_TOLERANCE_FRACTION, join, transformed_outline};
 use super::law::Laws;
-use super::lower::{Lowering, May};
+use super::lower::{Allowed, Lowering};
 use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
 use crate::diagnostic::{Chain, CheckKind, Diagnostic, FormattedNumber, MountKind, Reported, Role};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
-use crate::geometry::outline::{Segment, reach};
+use crate::geometry::outline::{Segment, bounding_box};
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
@@ -19,10 +19,10 @@ use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
 use std::collections::BTreeMap;
 
 /// The maximum number of files that a tool mounts, including those that mounted files mount.
-const MOST: usize = 64;
+const MAX_MOUNTS: usize = 64;
 
 /// A file's solid in its tool's frame and unit, with its niceness laws.
-pub(super) struct Part {
+pub(super) struct MountedPart {
     pub(super) outline: Vec<Segment>,
     pub(super) surfaces: Vec<Surface>,
     /// The law of each surface: the index of the scope in which it is written, its expression, and whether it may rise
@@ -49,14 +49,14 @@ impl MountedNiceness {
     pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
-            let value = quantity(lowering, &self.value, May::Depth(depth))?;
+            let value = quantity(lowering, &self.value, Allowed::Depth(depth))?;
             Ok(Niceness { value, span: self.value.span, rising: self.rising })
         })
     }
 }
 
 /// Returns the profile of the joined files, and the niceness laws that come with its surfaces.
-pub(super) fn assembled(
+pub(super) fn assemble_mounts(
     mounts: &[&Mount],
     span: Span,
     lowering: &mut Lowering,
@@ -75,15 +75,16 @@ pub(super) fn assembled(
         }
         scopes.push(scope.lowering);
     }
-    let along = part.surfaces.iter().zip(part.niceness).filter_map(|(surface, law)| {
-        let (scope, value, rising) = law?;
-        Some((
-            surface.name.clone(),
-            MountedNiceness { lowering: scopes[scope].clone(), value, rising },
-        ))
-    });
-    let along = along.collect();
-    Ok(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
+    let niceness_by_surface =
+        part.surfaces.iter().zip(part.niceness).filter_map(|(surface, law)| {
+            let (scope, value, rising) = law?;
+            Some((
+                surface.name.clone(),
+                MountedNiceness { lowering: scopes[scope].clone(), value, rising },
+            ))
+        });
+    let niceness_by_surface = niceness_by_surface.collect();
+    Ok(Outlined { outline: part.outline, surfaces: part.surfaces, niceness_by_surface, span })
 }
 
 /// The state of mounting files.
@@ -99,10 +100,14 @@ struct Mounting<'a> {
 
 impl Mounting<'_> {
     /// Joins the parts of a tool into one, in the unit of the file that mounts them.
-    fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Result<Part, Reported> {
-        let before = self.diagnostics.len();
+    fn assemble(
+        &mut self,
+        mounts: &[&Mount],
+        lowering: &mut Lowering,
+    ) -> Result<MountedPart, Reported> {
+        let previous_count = self.diagnostics.len();
         let mut parts = Vec::new();
-        let mut refused = None;
+        let mut reported_error = None;
         for (index, mount) in mounts.iter().enumerate() {
             if let Some(first) = mounts[..index].iter().find(|m| m.name.word == mount.name.word) {
                 self.diagnostics.push(
@@ -113,38 +118,44 @@ impl Mounting<'_> {
                     .and(first.name.span, "the first"),
                 );
             }
-            let at = self.place(mount, index, lowering);
+            let at = self.mount_height(mount, index, lowering);
             let given = arguments::from_mount(&mount.with, lowering, self.diagnostics);
-            let part = self.open(mount, &given, &mut lowering.graph);
+            let part = self.resolve_mount(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
-                    parts.push((*mount, at, part.placed(mount, &unit.factor_to(lowering.unit))));
+                    parts.push((
+                        *mount,
+                        at,
+                        part.scaled_and_named(mount, &unit.factor_to(lowering.unit)),
+                    ));
                 }
-                (Err(reported), _) | (_, Err(reported)) => refused = Some(reported),
+                (Err(reported), _) | (_, Err(reported)) => reported_error = Some(reported),
             }
         }
-        if let Some(reported) = refused.or(Reported::among(&self.diagnostics[before..])) {
+        if let Some(reported) =
+            reported_error.or(Reported::among(&self.diagnostics[previous_count..]))
+        {
             return Err(reported);
         }
         let mut parts = parts.into_iter();
-        let (mut last, mut height, mut whole) = parts.next().ok_or_else(|| {
+        let (mut last, mut height, mut assembly) = parts.next().ok_or_else(|| {
             let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NothingMounted);
             Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
-            whole
-                .carry((last, &height), (mount, &at), part)
+            assembly
+                .join_part((last, &height), (mount, &at), part)
                 .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
             (last, height) = (mount, at);
         }
-        whole.drop_what_is_gone();
+        assembly.drop_unused_surfaces();
         let shown = |[d, z]: [f64; 2]| format!("({}, {})", FormattedNumber(d), FormattedNumber(z));
-        self.diagnostics.extend(check(&whole.outline, shown));
-        Reported::among(&self.diagnostics[before..]).map_or(Ok(whole), Err)
+        self.diagnostics.extend(check(&assembly.outline, shown));
+        Reported::among(&self.diagnostics[previous_count..]).map_or(Ok(assembly), Err)
     }
 
     /// Returns the z at which a mount places its part's tip.
-    fn place(
+    fn mount_height(
         &mut self,
         mount: &Mount,
         index: usize,
@@ -171,22 +182,22 @@ impl Mounting<'_> {
     }
 
     /// Reads a mounted file and resolves it up to its profile. Returns its part and its unit.
-    fn open(
+    fn resolve_mount(
         &mut self,
         mount: &Mount,
-        given: &[Given<'_>],
+        arguments: &[Argument<'_>],
         graph: &mut Graph,
-    ) -> Result<(Part, Unit), Reported> {
+    ) -> Result<(MountedPart, Unit), Reported> {
         let (base, tree) = self.read(mount)?;
-        let before = self.diagnostics.len();
+        let previous_count = self.diagnostics.len();
         let unit =
             unit(&tree).map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
         let mut lowering = Lowering::of(&tree, unit);
         self.chain.push(base);
-        let part = lowering.on(graph, |lowering| self.part(mount, &tree, given, lowering));
+        let part = lowering.on(graph, |lowering| self.part(mount, &tree, arguments, lowering));
         self.chain.pop();
         let mut part = part?;
-        if let Some(reported) = Reported::among(&self.diagnostics[before..]) {
+        if let Some(reported) = Reported::among(&self.diagnostics[previous_count..]) {
             return Err(reported);
         }
         part.scopes.push(Scope { lowering, curves: curves(&tree) });
@@ -199,10 +210,10 @@ impl Mounting<'_> {
             .source(mount)
             .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
         self.mounted += 1;
-        if self.mounted > MOST {
+        if self.mounted > MAX_MOUNTS {
             let by = mount.file.span;
             // Reported only once, however many mounts follow.
-            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MOST });
+            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MAX_MOUNTS });
             let diagnostic = match self.full {
                 Some(reported) => diagnostic.caused_by(reported),
                 None => diagnostic,
@@ -219,27 +230,27 @@ impl Mounting<'_> {
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        let before = self.diagnostics.len();
+        let previous_count = self.diagnostics.len();
         let tree = syntax::parse(&source, self.diagnostics)?;
-        Reported::among(&self.diagnostics[before..]).map_or(Ok((source.base, tree)), Err)
+        Reported::among(&self.diagnostics[previous_count..]).map_or(Ok((source.base, tree)), Err)
     }
 
     /// Returns the text of a mounted file.
     fn source(&mut self, mount: &Mount) -> Result<Source, Diagnostic> {
         let (written, by) = (mount.file.word.as_str(), mount.file.span);
-        let place = self
+        let location = self
             .sources
-            .beside(by, written)
+            .resolve_path(by, written)
             .ok_or_else(|| Diagnostic::new(by, MountKind::NoFolder { file: written.to_owned() }))?;
-        if !self.sources.may_mount(&place.1) {
+        if !self.sources.may_mount(&location.1) {
             let root = self.sources.given_root().map(|root| root.display().to_string());
             return Err(Diagnostic::new(
                 by,
                 MountKind::OutsideRoot { file: written.to_owned(), root },
             ));
         }
-        let shown = place.0.clone();
-        let source = self.sources.read(by, place).cloned().map_err(|error| {
+        let shown = location.0.clone();
+        let source = self.sources.read(by, location).cloned().map_err(|error| {
             Diagnostic::new(by, MountKind::Unreadable { file: shown, error: error.to_string() })
         })?;
         let Some(first) = self.chain.iter().position(|base| *base == source.base) else {
@@ -260,10 +271,10 @@ impl Mounting<'_> {
         &mut self,
         mount: &Mount,
         tree: &Tool,
-        given: &[Given<'_>],
+        given: &[Argument<'_>],
         lowering: &mut Lowering,
-    ) -> Result<Part, Reported> {
-        let before = self.diagnostics.len();
+    ) -> Result<MountedPart, Reported> {
+        let previous_count = self.diagnostics.len();
         if tree.domain == Domain::Space {
             let file = &mount.file;
             let diagnostic = Diagnostic::new(
@@ -272,18 +283,18 @@ impl Mounting<'_> {
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        arguments::untaken(tree, given, self.diagnostics);
+        arguments::report_unknown_params(tree, given, self.diagnostics);
         constants(tree, given, lowering, self.diagnostics);
         frame(tree, lowering, self.diagnostics);
-        if let Some(reported) = Reported::among(&self.diagnostics[before..]) {
+        if let Some(reported) = Reported::among(&self.diagnostics[previous_count..]) {
             return Err(reported);
         }
         let mut part = match shape(tree, self.diagnostics) {
             Some(Shape::Profile(profile)) => {
                 let (outline, surfaces) = profile::outline(profile, lowering, self.diagnostics)?;
-                self.diagnostics.extend(not_at_tip(&outline, &lowering.frame));
+                self.diagnostics.extend(check_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
-                Part { outline, surfaces, niceness, scopes: Vec::new() }
+                MountedPart { outline, surfaces, niceness, scopes: Vec::new() }
             }
             Some(Shape::Mounts(mounts)) => self.assemble(&mounts, lowering)?,
             None => {
@@ -320,18 +331,18 @@ fn curves(tree: &Tool) -> Vec<Definition> {
 }
 
 /// Returns an error if a solid does not end at its tip.
-fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Diagnostic> {
-    let [[_, end], [radius, high]] = reach(outline);
-    let off = end.abs() > OFF_TIP * radius.max(high - end);
-    off.then(|| off_tip(frame, [end, high]))
+fn check_tip(outline: &[Segment], frame: &Frame) -> Option<Diagnostic> {
+    let [[_, end], [radius, high]] = bounding_box(outline);
+    let is_off = end.abs() > TIP_TOLERANCE_FRACTION * radius.max(high - end);
+    is_off.then(|| off_tip(frame, [end, high]))
 }
 
-impl Part {
+impl MountedPart {
     /// Returns the part under the mount's name and in the unit of the mounting file.
-    fn placed(mut self, mount: &Mount, scale: &Number) -> Part {
+    fn scaled_and_named(mut self, mount: &Mount, scale: &Number) -> MountedPart {
         let zero = Number::int(0);
-        self.outline = moved(&self.outline, scale, &zero, 0);
-        self.raised(scale, &zero);
+        self.outline = transformed_outline(&self.outline, scale, &zero, 0);
+        self.transform_scopes(scale, &zero);
         for surface in &mut self.surfaces {
             surface.name = format!("{}.{}", mount.name.word, surface.name);
         }
@@ -339,18 +350,18 @@ impl Part {
     }
 
     /// Updates the laws' frames after their part was scaled and moved.
-    fn raised(&mut self, scale: &Number, by: &Number) {
+    fn transform_scopes(&mut self, scale: &Number, by: &Number) {
         for scope in &mut self.scopes {
-            scope.lowering.placed(scale, by);
+            scope.lowering.transform(scale, by);
         }
     }
 
     /// Joins another part onto this one at a plane.
-    fn carry(
+    fn join_part(
         &mut self,
         (last, height): (&Mount, &Number),
         (mount, at): (&Mount, &Number),
-        mut part: Part,
+        mut part: MountedPart,
     ) -> Result<(), Diagnostic> {
         let span = mount.at.as_ref().map_or(mount.span, |at| at.span);
         let (below, z) = (last.name.word.clone(), FormattedNumber(at.to_f64()));
@@ -366,10 +377,10 @@ impl Part {
             ));
         }
         let first = self.surfaces.len();
-        let upper = moved(&part.outline, &Number::int(1), at, first);
+        let upper = transformed_outline(&part.outline, &Number::int(1), at, first);
         self.outline = join(&self.outline, &upper, at).map_err(|why| match why {
-            Unjoined::Short => {
-                let [_, [_, top]] = reach(&self.outline);
+            JoinError::Short => {
+                let [_, [_, top]] = bounding_box(&self.outline);
                 let (length, top) = (FormattedNumber(top - height.to_f64()), FormattedNumber(top));
                 Diagnostic::new(
                     span,
@@ -377,18 +388,18 @@ impl Part {
                 )
                 .and(last.name.span, "this one")
             }
-            Unjoined::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
-            Unjoined::Back(segment) => {
+            JoinError::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
+            JoinError::Back(segment) => {
                 Diagnostic::new(span, MountKind::PlaneCutsTwice { below, z })
                     .and(segment.span, "here it comes back to it")
             }
-            Unjoined::NoFace(segment) => Diagnostic::new(
+            JoinError::NoFace(segment) => Diagnostic::new(
                 mount.file.span,
                 MountKind::NoFace { file: mount.file.word.clone() },
             )
             .and(segment.span, "this one"),
         })?;
-        part.raised(&Number::int(1), at);
+        part.transform_scopes(&Number::int(1), at);
         let scopes = self.scopes.len();
         self.surfaces.extend(part.surfaces);
         self.niceness.extend(
@@ -401,22 +412,22 @@ impl Part {
     }
 
     /// Removes surfaces of which no segment is left.
-    fn drop_what_is_gone(&mut self) {
-        let mut left = vec![None; self.surfaces.len()];
+    fn drop_unused_surfaces(&mut self) {
+        let mut new_indices = vec![None; self.surfaces.len()];
         let mut count = 0;
-        for (surface, place) in left.iter_mut().enumerate() {
+        for (surface, index) in new_indices.iter_mut().enumerate() {
             if self.outline.iter().any(|segment| segment.surface == surface) {
-                *place = Some(count);
+                *index = Some(count);
                 count += 1;
             }
         }
         for segment in &mut self.outline {
-            segment.surface = left[segment.surface].unwrap_or_default();
+            segment.surface = new_indices[segment.surface].unwrap_or_default();
         }
-        let mut kept = left.iter().map(Option::is_some);
-        self.surfaces.retain(|_| kept.next().unwrap_or_default());
-        let mut kept = left.iter().map(Option::is_some);
-        self.niceness.retain(|_| kept.next().unwrap_or_default());
+        let mut is_kept = new_indices.iter().map(Option::is_some);
+        self.surfaces.retain(|_| is_kept.next().unwrap_or_default());
+        let mut is_kept = new_indices.iter().map(Option::is_some);
+        self.niceness.retain(|_| is_kept.next().unwrap_or_default());
     }
 }
 
@@ -424,8 +435,8 @@ impl Part {
 pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
     let tip = FormattedNumber(frame.tip.to_f64());
-    let turned = other.abs() <= 1e-6 * size;
-    let spindle = turned.then_some(if frame.down { '+' } else { '-' });
+    let is_upside_down = other.abs() <= 1e-6 * size;
+    let spindle = is_upside_down.then_some(if frame.down { '+' } else { '-' });
     Diagnostic::new(
         frame.tip_span,
         CheckKind::OffTip { end: FormattedNumber(frame.to_file(end)), tip, spindle },

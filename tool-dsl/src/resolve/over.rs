@@ -1,12 +1,12 @@
 //! Divides a profile further: by regions that are written, or by the fans of smoothed corners.
 
 use super::condition::Curves;
-use super::derived::{Part, formula};
-use super::direction::Course;
+use super::derived::{DerivedPart, formula};
+use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Bare, RegionResolver, inside, mention, noted};
+use super::region::{RegionHead, RegionResolver, first_mention, inside, or_report};
 use crate::diagnostic::{
     CheckKind, Diagnostic, FormattedNumber, RegionKind, Role, SurfaceRemedy, any_error, enough,
     nearest,
@@ -53,11 +53,12 @@ enum Kind<'t> {
 
 impl Divider<'_> {
     /// Rejects an outline that would take minutes to divide.
-    pub(super) fn in_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
+    pub(super) fn check_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
         match self {
-            Divider::Smooth(length) if outline.len() > MOST_SMOOTH => {
-                Err(Diagnostic::new(length.span, RegionKind::SmoothTooLarge { most: MOST_SMOOTH }))
-            }
+            Divider::Smooth(length) if outline.len() > MAX_SMOOTH_SEGMENTS => Err(Diagnostic::new(
+                length.span,
+                RegionKind::SmoothTooLarge { most: MAX_SMOOTH_SEGMENTS },
+            )),
             _ => Ok(()),
         }
     }
@@ -74,22 +75,22 @@ impl Divider<'_> {
         match self {
             Divider::Features => None,
             Divider::Hand(regions) => {
-                let mut all = Conditions::NONE;
+                let mut conditions = Conditions::NONE;
                 for region in regions {
-                    let surface = noted(written(region, &regions[..], surfaces), diagnostics);
+                    let surface = or_report(written(region, &regions[..], surfaces), diagnostics);
                     let condition = inside(region, lowering, curves, diagnostics);
                     if let (Some(surface), Some(condition)) = (surface, condition) {
-                        all.conditions.push(condition);
-                        all.kinds.push(Kind::Hand(region, surface));
+                        conditions.conditions.push(condition);
+                        conditions.kinds.push(Kind::Hand(region, surface));
                     }
                     if enough(diagnostics) {
                         break;
                     }
                 }
-                Some(all)
+                Some(conditions)
             }
             Divider::Smooth(length) => match fans(length, outline, inner, lowering, curves) {
-                Ok(all) => Some(all),
+                Ok(conditions) => Some(conditions),
                 Err(diagnostic) => {
                     diagnostics.push(diagnostic);
                     None
@@ -102,11 +103,11 @@ impl Divider<'_> {
 /// Returns the surface that a written region names, if any.
 fn written(
     region: &tree::Region,
-    all: &[&tree::Region],
+    regions: &[&tree::Region],
     surfaces: &[Surface],
 ) -> Result<Option<usize>, Diagnostic> {
     let name = &region.name;
-    if let Some(first) = all.iter().find(|r| r.name.word == name.word)
+    if let Some(first) = regions.iter().find(|r| r.name.word == name.word)
         && first.name.span != name.span
     {
         let diagnostic =
@@ -118,19 +119,19 @@ fn written(
     }
     match &region.surface {
         None => Ok(None),
-        Some(wanted) => {
+        Some(surface_name) => {
             if let Some(cutting) = region.cutting {
                 return Err(Diagnostic::new(cutting, RegionKind::CuttingBesideProfile));
             }
-            let found = surfaces.iter().position(|surface| surface.name == wanted.word);
+            let found = surfaces.iter().position(|surface| surface.name == surface_name.word);
             found.map(Some).ok_or_else(|| {
                 let known = surfaces.iter().map(|surface| surface.name.as_str());
-                let remedy = match nearest(&wanted.word, known) {
+                let remedy = match nearest(&surface_name.word, known) {
                     Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
                     None => SurfaceRemedy::OfProfile,
                 };
-                let kind = RegionKind::UnknownSurface { word: wanted.word.clone(), remedy };
-                Diagnostic::new(wanted.span, kind)
+                let kind = RegionKind::UnknownSurface { word: surface_name.word.clone(), remedy };
+                Diagnostic::new(surface_name.span, kind)
             })
         }
     }
@@ -138,7 +139,7 @@ fn written(
 
 /// The maximum number of segments of a profile with `regions smooth`: the cells of each corner are intersected with
 /// those of each segment.
-const MOST_SMOOTH: usize = 128;
+const MAX_SMOOTH_SEGMENTS: usize = 128;
 
 /// Returns the cells of the outline with rounded corners, from which directions are taken.
 fn fans<'t>(
@@ -153,7 +154,7 @@ fn fans<'t>(
     if width.to_f64() <= 0.0 {
         return Err(Diagnostic::new(span, RegionKind::SmoothNotPositive));
     }
-    let shown = |behind: Option<usize>, lowering: &Lowering| {
+    let formatted = |behind: Option<usize>, lowering: &Lowering| {
         let [d, z] = match behind {
             Some(piece) => outline[piece].ends()[1],
             None => outline[0].ends()[0],
@@ -161,19 +162,23 @@ fn fans<'t>(
         Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
     };
     let pieces = smooth::rounded(outline, &width).map_err(|rough| {
-        let most = smooth::fitting(outline, &width);
+        let max_length = smooth::largest_fitting_length(outline, &width);
         match rough {
             Rough::Untouched(behind) => Diagnostic::new(
                 span,
-                RegionKind::NoTouchingArc { place: shown(behind, lowering), most },
+                RegionKind::NoTouchingArc { place: formatted(behind, lowering), most: max_length },
             ),
             Rough::Short(piece, size, count) => {
                 let [from, to] =
-                    [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
+                    [piece.checked_sub(1), Some(piece)].map(|behind| formatted(behind, lowering));
                 let corners = (count == 2).then_some([from, to]);
                 Diagnostic::new(
                     span,
-                    RegionKind::FansTooWide { corners, edge: FormattedNumber(size), most },
+                    RegionKind::FansTooWide {
+                        corners,
+                        edge: FormattedNumber(size),
+                        most: max_length,
+                    },
                 )
                 .and(outline[piece].span, "this edge")
             }
@@ -188,7 +193,7 @@ fn fans<'t>(
         )
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
-    let mut all = Conditions::NONE;
+    let mut conditions = Conditions::NONE;
     for part in &parts {
         let Feature::Piece(piece) = part.feature else { continue };
         let mut inside = part.inside.clone();
@@ -196,45 +201,47 @@ fn fans<'t>(
             && rounded[piece].round().is_some_and(|(_, _, convex)| convex)
         {
             // A convex corner protrudes beyond its arc; there the corner's edges bound the fan.
-            let beside = [behind, Some(behind.map_or(0, |k| k + 1))];
-            let edges = beside.into_iter().flatten().filter(|k| *k < outline.len());
+            let adjacent = [behind, Some(behind.map_or(0, |k| k + 1))];
+            let edges = adjacent.into_iter().flatten().filter(|k| *k < outline.len());
             let edges = edges.filter_map(|k| inner.inside(graph, k)).collect();
             inside = inside.without_own(edges);
         }
-        all.conditions.push(formula(&inside, curves, graph));
-        all.distances.push(part.depth);
+        conditions.conditions.push(formula(&inside, curves, graph));
+        conditions.distances.push(part.depth);
         let zero = graph.int(0);
-        let course = regionalise::course(graph, &rounded, part.feature).unwrap_or([zero, zero]);
-        let course = Domain::HalfPlane.vector(graph, &course);
-        all.kinds.push(Kind::Smooth(course, origins[piece]));
+        let direction = regionalise::direction_to_surface(graph, &rounded, part.feature)
+            .unwrap_or([zero, zero]);
+        let direction = Domain::HalfPlane.vector(graph, &direction);
+        conditions.kinds.push(Kind::Smooth(direction, origins[piece]));
     }
-    Ok(all)
+    Ok(conditions)
 }
 
 impl Conditions<'_> {
     /// Returns the pairs of parts and conditions that have points in common.
     pub(super) fn pairs(
         &self,
-        (outline, inner, parts): (&[Segment], &Partition, &[Part]),
+        (outline, inner, parts): (&[Segment], &Partition, &[DerivedPart]),
         (curves, lowering): (&Curves, &Lowering),
         span: Span,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<(usize, usize)> {
         let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
         let parts: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
-        let Overlay { pairs, bare, double } =
+        let Overlay { pairs, uncovered: head, doubly_covered: double } =
             overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
-        let shown = |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
-        if let Some(p) = bare {
-            diagnostics.push(Diagnostic::new(span, RegionKind::NotCovered { place: shown(p) }));
+        let formatted =
+            |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
+        if let Some(p) = head {
+            diagnostics.push(Diagnostic::new(span, RegionKind::NotCovered { place: formatted(p) }));
         }
         if let Some((first, second, p)) = double
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
         {
             let (a, b) = (&a.name, &b.name);
-            let left = pairs.iter().any(|(_, condition)| *condition == second);
-            diagnostics.push(match left {
-                true => overlapping(&a.word, (&b.word, b.span), shown(p), a.span),
+            let is_left = pairs.iter().any(|(_, condition)| *condition == second);
+            diagnostics.push(match is_left {
+                true => overlapping(&a.word, (&b.word, b.span), formatted(p), a.span),
                 false => never_wins(&b.word, b.span, (&a.word, a.span), 0),
             });
         }
@@ -256,7 +263,7 @@ impl Conditions<'_> {
     /// Returns the region of a part in which a condition holds.
     pub(super) fn region(
         &self,
-        (part, index): (&Part, usize),
+        (part, index): (&DerivedPart, usize),
         surfaces: &[Surface],
         laws: &Laws<'_>,
         lowering: &mut Lowering,
@@ -265,7 +272,7 @@ impl Conditions<'_> {
         let inside = Formula::All(vec![self.conditions[index].clone(), part.inside.clone()]);
         let depth = part.depth;
         match &self.kinds[index] {
-            Kind::Smooth(course, origin) => {
+            Kind::Smooth(direction, origin) => {
                 let own = matches!((part.feature, origin), (Feature::Piece(a), Origin::Piece(b)) if a == *b);
                 let name = match origin {
                     _ if own => part.name.clone(),
@@ -275,35 +282,36 @@ impl Conditions<'_> {
                     }
                 };
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let said = (name, part.span, part.owner, inside);
+                let head = (name, part.span, part.owner, inside);
                 let source = DirectionSource::Oblique;
-                let course = Course { parts: *course, span: part.span, source };
-                noted(evaluation.of_part(part, said, course), diagnostics)
+                let direction = RawDirection { parts: *direction, span: part.span, source };
+                or_report(evaluation.of_part(part, head, direction), diagnostics)
             }
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
                 let mut evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
-                let (magnitude, niceness) = evaluation.rules(region, depth, diagnostics);
-                let written = noted(evaluation.course(region), diagnostics)?;
+                let (magnitude, niceness) = evaluation.laws(region, depth, diagnostics);
+                let written = or_report(evaluation.resolve_direction(region), diagnostics)?;
                 let (magnitude, niceness) = (magnitude?, niceness?);
-                let own = noted(evaluation.said(region, Quantity::Magnitude), diagnostics)?;
-                let free =
-                    own.filter(|own| mention(&own.value, Quantity::Depth.keyword()).is_none());
-                let course = match (written, free, magnitude) {
-                    (Some(course), ..) => course,
+                let own =
+                    or_report(evaluation.scalar_of(region, Quantity::Magnitude), diagnostics)?;
+                let free = own
+                    .filter(|own| first_mention(&own.value, Quantity::Depth.keyword()).is_none());
+                let direction = match (written, free, magnitude) {
+                    (Some(direction), ..) => direction,
                     (None, Some(own), Some((magnitude, _))) => {
                         let graph = &mut evaluation.lowering.graph;
                         let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
                         let parts = slope.map(|slope| graph.neg(slope));
                         let (span, source) = (own.value.span, DirectionSource::Written);
-                        Course { parts, span, source }
+                        RawDirection { parts, span, source }
                     }
-                    (None, ..) => part.own_course(),
+                    (None, ..) => part.own_direction(),
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
-                let bare = Bare { name, span, owner, inside };
-                noted(
-                    evaluation.finish(bare, (depth, span), (magnitude, niceness), course),
+                let head = RegionHead { name, span, owner, inside };
+                or_report(
+                    evaluation.finish(head, (depth, span), (magnitude, niceness), direction),
                     diagnostics,
                 )
             }

@@ -12,11 +12,11 @@ use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, PathSegment, Profile, Round, Tuple};
 
 /// The maximum number of segments of a profile. Dividing more would take minutes.
-const MOST: usize = 256;
+const MAX_SEGMENTS: usize = 256;
 /// The largest radius of an arc, in chords.
-const FLATTEST: f64 = 1e6;
+const MAX_RADIUS_IN_CHORDS: f64 = 1e6;
 /// The largest distance of an arc's ends from its circle, in radii.
-const OFF_CIRCLE: f64 = 1e-9;
+const MAX_CIRCLE_DEVIATION_IN_RADII: f64 = 1e-9;
 
 /// Returns the outline of a profile, counter-clockwise in the tool's frame, and its surfaces.
 pub(super) fn outline(
@@ -25,16 +25,17 @@ pub(super) fn outline(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
     let before = diagnostics.len();
-    if let Some(beyond) = profile.pieces.get(MOST) {
-        let diagnostic = Diagnostic::new(beyond.span, ProfileKind::TooManySegments { most: MOST });
+    if let Some(beyond) = profile.pieces.get(MAX_SEGMENTS) {
+        let diagnostic =
+            Diagnostic::new(beyond.span, ProfileKind::TooManySegments { most: MAX_SEGMENTS });
         return Err(Reported::push(diagnostics, diagnostic));
     }
     let mut surfaces = Vec::new();
     let mut segments = Vec::new();
-    let mut from = place(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
+    let mut from = exact_point(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
     for piece in &profile.pieces {
         let surface = surface(piece, &mut surfaces, diagnostics);
-        let to = place(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
+        let to = exact_point(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
         if let (Some(from), Some(to)) = (from, to.clone()) {
             match segment(piece, from, to, surface, lowering) {
                 Ok(segment) => segments.push(segment),
@@ -53,7 +54,8 @@ pub(super) fn outline(
     diagnostics.extend(check(&segments, shown));
     without_error(&diagnostics[before..])?;
     // The map to the tool's frame may reverse the orientation; the order of the segments is then reversed too.
-    let to_tool = |place: &ExactPoint| [place[0].clone(), frame.to_tool(&place[1])];
+    let to_tool =
+        |exact_point: &ExactPoint| [exact_point[0].clone(), frame.to_tool(&exact_point[1])];
     let mut outline: Vec<Segment> = segments
         .into_iter()
         .map(|segment| {
@@ -94,7 +96,7 @@ fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagn
     }
 }
 
-fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
+fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
     let [d, z] = super::direction::pair(tuple, Role::Point)?;
     let mut length = |expr: &Expr| lowering.length(expr, Role::Point);
     Ok([length(d)?, length(z)?])
@@ -135,10 +137,10 @@ fn circle(
 ) -> Result<Circle, Diagnostic> {
     let (centre, radius) = match &arc.round {
         Round::Center(tuple) => {
-            let centre = place(tuple, lowering)?;
+            let centre = exact_point(tuple, lowering)?;
             let [a, b] = ends.map(|end| distance(end, &centre));
             let (a_size, b_size) = (a.to_f64(), b.to_f64());
-            if (a_size - b_size).abs() > OFF_CIRCLE * a_size.max(b_size) {
+            if (a_size - b_size).abs() > MAX_CIRCLE_DEVIATION_IN_RADII * a_size.max(b_size) {
                 let (mut near, mut far) = (format_number(a_size), format_number(b_size));
                 if near == far {
                     (near, far) = (a_size.to_string(), b_size.to_string());
@@ -156,7 +158,7 @@ fn circle(
         }
     };
     let (r, chord) = (radius.to_f64(), norm(minus(doubles(ends[1]), doubles(ends[0]))));
-    if r > FLATTEST * chord {
+    if r > MAX_RADIUS_IN_CHORDS * chord {
         return Err(Diagnostic::new(span, ProfileKind::FlatArc { radius: FormattedNumber(r) }));
     }
     let [a, b] = ends.map(|end| [0, 1].map(|k| &end[k] - &centre[k]));
@@ -183,12 +185,12 @@ fn midway([from, to]: [&ExactPoint; 2], centre: &ExactPoint) -> (ExactPoint, Num
     let chord = [0, 1].map(|k| &to[k] - &from[k]);
     let dot = |a: &ExactPoint, b: &ExactPoint| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
     let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
-    let off = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
+    let offset = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
     let rises = chord[1].to_f64().abs() > 1e-6 * norm(doubles(&chord));
-    let way =
+    let direction =
         if centre[0].is_zero() && rises { [Number::int(0), Number::int(1)] } else { chord.clone() };
-    let share = &off / &dot(&chord, &way);
-    let centre = [0, 1].map(|k| &centre[k] + &(&share * &way[k]));
+    let share = &offset / &dot(&chord, &direction);
+    let centre = [0, 1].map(|k| &centre[k] + &(&share * &direction[k]));
     let radius = distance(from, &centre);
     (centre, radius)
 }
@@ -207,15 +209,15 @@ fn by_radius(
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));
     let (r, c) = (radius.to_f64(), norm(minus(doubles(to), doubles(from))));
     // The centre of a half circle is on its chord, within the tolerance of its ends.
-    let rounding = if short.is_negative() { OFF_CIRCLE } else { 1e-18 };
+    let rounding = if short.is_negative() { MAX_CIRCLE_DEVIATION_IN_RADII } else { 1e-18 };
     let near = short.to_f64().abs() <= rounding * c * c;
-    let off = if near { Some(Number::int(0)) } else { short.sqrt() };
-    let (Some(off), true) = (off, r > 0.0) else {
+    let offset = if near { Some(Number::int(0)) } else { short.sqrt() };
+    let (Some(offset), true) = (offset, r > 0.0) else {
         let [radius, chord, least] = [r, c, c / 2.0].map(FormattedNumber);
         return Err(Diagnostic::new(span, ProfileKind::RadiusTooSmall { radius, chord, least }));
     };
     // The material is on the left: an arc that bulges out of it has its centre there.
-    let off = if concave { -&off } else { off };
+    let offset = if concave { -&offset } else { offset };
     let left = [-&z, d];
-    Ok([0, 1].map(|k| &middle[k] + &(&(&left[k] * &off) / &chord)))
+    Ok([0, 1].map(|k| &middle[k] + &(&(&left[k] * &offset) / &chord)))
 }

@@ -1,9 +1,9 @@
 //! Resolves regions: points, depth, direction, magnitude and niceness, from their own properties or the laws.
 
 use super::condition::Curves;
-use super::direction::Course;
+use super::direction::RawDirection;
 use super::law::{Laws, idle_niceness};
-use super::lower::{Lowering, May};
+use super::lower::{Allowed, Lowering};
 use super::outputs;
 use crate::diagnostic::{Diagnostic, RegionKind, enough};
 use crate::dimension::Dimension;
@@ -14,7 +14,7 @@ use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
 
 /// The maximum number of regions of a tool. Planning more would take minutes.
-const MOST: usize = 256;
+const MAX_REGIONS_OR_CONDITIONS: usize = 256;
 
 /// Resolves all surfaces and regions that are written by hand.
 pub(super) fn regions(
@@ -35,9 +35,11 @@ pub(super) fn regions(
             RegionKind::NoRegion { tool: tool.name.word.clone() },
         ));
     }
-    if let Some(beyond) = written.get(MOST) {
-        diagnostics
-            .push(Diagnostic::new(beyond.name.span, RegionKind::TooManyRegions { most: MOST }));
+    if let Some(beyond) = written.get(MAX_REGIONS_OR_CONDITIONS) {
+        diagnostics.push(Diagnostic::new(
+            beyond.name.span,
+            RegionKind::TooManyRegions { most: MAX_REGIONS_OR_CONDITIONS },
+        ));
         return Default::default();
     }
     let mut surfaces = Vec::new();
@@ -106,7 +108,7 @@ pub(super) fn named_surface(
 }
 
 /// A region without its depth, direction, magnitude and niceness.
-pub(super) struct Bare {
+pub(super) struct RegionHead {
     pub(super) name: String,
     pub(super) span: Span,
     pub(super) owner: usize,
@@ -125,7 +127,7 @@ pub(super) struct Niceness {
 }
 
 /// Returns the value of a result, and reports its error.
-pub(super) fn noted<T>(
+pub(super) fn or_report<T>(
     result: Result<T, Diagnostic>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<T> {
@@ -133,7 +135,11 @@ pub(super) fn noted<T>(
 }
 
 /// Lowers a magnitude or a niceness.
-pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Result<Id, Diagnostic> {
+pub(super) fn quantity(
+    lowering: &mut Lowering,
+    value: &Expr,
+    may: Allowed,
+) -> Result<Id, Diagnostic> {
     let (id, dimension) = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
         return Err(Diagnostic::new(value.span, RegionKind::AngleAsQuantity));
@@ -159,40 +165,43 @@ impl RegionResolver<'_> {
     ) -> Result<Option<(Id, Span)>, Diagnostic> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
-        let id = quantity(self.lowering, value, May::Depth(depth))?;
-        let is_depth = id == depth && mention(value, Quantity::Depth.keyword()).is_some();
+        let id = quantity(self.lowering, value, Allowed::Depth(depth))?;
+        let is_depth = id == depth && first_mention(value, Quantity::Depth.keyword()).is_some();
         Ok((!is_depth).then_some((id, value.span)))
     }
 
     /// Builds the expressions of the region's outputs.
     pub(super) fn finish(
         self,
-        bare: Bare,
+        head: RegionHead,
         (depth, depth_span): (Id, Span),
         (magnitude, niceness): (Option<Placed>, Niceness),
-        course: Course,
+        raw_direction: RawDirection,
     ) -> Result<Region, Diagnostic> {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
-        let direction = outputs::unit(graph, course.parts, 2).ok_or_else(|| {
-            Diagnostic::new(course.span, RegionKind::DirectionIsZero { region: bare.name.clone() })
+        let direction = outputs::unit(graph, raw_direction.parts, 2).ok_or_else(|| {
+            Diagnostic::new(
+                raw_direction.span,
+                RegionKind::DirectionIsZero { region: head.name.clone() },
+            )
         })?;
         let is_depth = magnitude.is_none();
         let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
         let magnitudes = (magnitude, is_depth);
         let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness.value);
-        let said =
+        let law_spans =
             LawSpans { depth: depth_span, magnitude: magnitude_span, niceness: niceness.span };
         Ok(Region {
-            name: bare.name,
-            span: bare.span,
-            surface: bare.owner,
-            inside: bare.inside,
+            name: head.name,
+            span: head.span,
+            surface: head.owner,
+            inside: head.inside,
             depth,
-            law_spans: said,
+            law_spans,
             magnitude,
             direction,
-            raw_direction: (course.parts, course.span),
-            source: course.source,
+            raw_direction: (raw_direction.parts, raw_direction.span),
+            source: raw_direction.source,
             niceness: niceness.value,
             rising: niceness.rising,
             outputs,
@@ -208,46 +217,46 @@ impl RegionResolver<'_> {
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
         let inside = inside(written, self.lowering, curves, diagnostics);
-        let known = noted(self.depth(written), diagnostics);
+        let known = or_report(self.depth(written), diagnostics);
         // Without a depth, the other properties are still checked, with a stand-in for it.
         let any = self.lowering.domain.coordinates()[0].0;
         let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
-        let (magnitude, niceness) = self.rules(written, depth.0, diagnostics);
-        let course = noted(self.course(written), diagnostics);
+        let (magnitude, niceness) = self.laws(written, depth.0, diagnostics);
+        let direction = or_report(self.resolve_direction(written), diagnostics);
         let (name, span) = (written.name.word.clone(), written.name.span);
-        let bare = Bare { name, span, owner, inside: inside? };
-        let course = course?.unwrap_or_else(|| Course {
-            parts: self.downhill(depth.0),
+        let head = RegionHead { name, span, owner, inside: inside? };
+        let direction = direction?.unwrap_or_else(|| RawDirection {
+            parts: self.steepest_descent(depth.0),
             span: depth.1,
             source: DirectionSource::Derived,
         });
         known?;
-        noted(self.finish(bare, depth, (magnitude?, niceness?), course), diagnostics)
+        or_report(self.finish(head, depth, (magnitude?, niceness?), direction), diagnostics)
     }
 
     /// Returns the magnitude and the niceness of a written region.
-    pub(super) fn rules(
+    pub(super) fn laws(
         &mut self,
         written: &tree::Region,
         depth: Id,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> (Option<Option<Placed>>, Option<Niceness>) {
-        let magnitude = self.said(written, Quantity::Magnitude);
+        let magnitude = self.scalar_of(written, Quantity::Magnitude);
         let magnitude = magnitude.and_then(|own| self.magnitude(own.map(|own| &own.value), depth));
-        let niceness = self.said(written, Quantity::Niceness);
+        let niceness = self.scalar_of(written, Quantity::Niceness);
         let niceness = niceness.and_then(|own| self.niceness(own, depth));
-        (noted(magnitude, diagnostics), noted(niceness, diagnostics))
+        (or_report(magnitude, diagnostics), or_report(niceness, diagnostics))
     }
 
     /// Returns the region's own property for a quantity.
-    pub(super) fn said<'w>(
+    pub(super) fn scalar_of<'w>(
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
     ) -> Result<Option<&'w Scalar>, Diagnostic> {
-        let mut all = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
-        let first = all.next();
-        if let (Some(first), Some(second)) = (first, all.next()) {
+        let mut matching = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
+        let first = matching.next();
+        if let (Some(first), Some(second)) = (first, matching.next()) {
             return Err(Diagnostic::new(
                 second.span,
                 RegionKind::SaidTwice { word: quantity.keyword().to_owned() },
@@ -259,9 +268,9 @@ impl RegionResolver<'_> {
 
     /// Returns the depth: the region's own, otherwise its magnitude.
     fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Diagnostic> {
-        let (value, by) = match self.said(written, Quantity::Depth)? {
+        let (value, by) = match self.scalar_of(written, Quantity::Depth)? {
             Some(own) => (&own.value, Quantity::Depth),
-            None => match self.said(written, Quantity::Magnitude)? {
+            None => match self.scalar_of(written, Quantity::Magnitude)? {
                 Some(own) => (&own.value, Quantity::Magnitude),
                 None => {
                     let name = &written.name;
@@ -272,13 +281,13 @@ impl RegionResolver<'_> {
                 }
             },
         };
-        if let (Quantity::Magnitude, Some(span)) = (by, mention(value, "depth")) {
+        if let (Quantity::Magnitude, Some(span)) = (by, first_mention(value, "depth")) {
             return Err(Diagnostic::new(
                 span,
                 RegionKind::DepthOfItself { region: written.name.word.clone() },
             ));
         }
-        let (id, dimension) = self.lowering.lower(value, May::Coordinates)?;
+        let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
         if by == Quantity::Depth && !dimension.is_length() {
             return Err(Diagnostic::new(value.span, RegionKind::DepthNotLength { dimension }));
         }
@@ -299,29 +308,29 @@ impl RegionResolver<'_> {
         own: Option<&Scalar>,
         depth: Id,
     ) -> Result<Niceness, Diagnostic> {
-        let nowhere = |value: Id| Niceness { value, span: self.surface.span, rising: false };
+        let constant = |value: Id| Niceness { value, span: self.surface.span, rising: false };
         if !self.surface.cutting {
             return match own {
                 Some(own) => Err(idle_niceness(own.value.span, self.surface)),
-                None => Ok(nowhere(self.lowering.graph.int(0))),
+                None => Ok(constant(self.lowering.graph.int(0))),
             };
         }
         let own = own.map(|own| (&own.value, own.rising));
         let law = self.laws.find(Quantity::Niceness, self.surface);
         let law = law.map(|law| (&law.value, law.rising));
-        match (own.or(law), self.laws.along.get(&self.surface.name)) {
+        match (own.or(law), self.laws.niceness_by_surface.get(&self.surface.name)) {
             (Some((value, rising)), _) => {
                 let span = value.span;
-                let value = quantity(self.lowering, value, May::Depth(depth))?;
+                let value = quantity(self.lowering, value, Allowed::Depth(depth))?;
                 Ok(Niceness { value, span, rising })
             }
             (None, Some(along)) => along.lower(&mut self.lowering.graph, depth),
-            (None, None) => Ok(nowhere(self.lowering.graph.int(1))),
+            (None, None) => Ok(constant(self.lowering.graph.int(1))),
         }
     }
 
     /// Returns −∇ of the depth.
-    fn downhill(&mut self, depth: Id) -> [Id; 3] {
+    fn steepest_descent(&mut self, depth: Id) -> [Id; 3] {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
         outputs::gradient(graph, domain, depth).map(|part| graph.neg(part))
     }
@@ -334,14 +343,16 @@ pub(super) fn inside(
     curves: &mut Curves,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Formula> {
-    if let Some(beyond) = written.conditions.get(MOST) {
-        diagnostics
-            .push(Diagnostic::new(beyond.span, RegionKind::TooManyConditions { most: MOST }));
+    if let Some(beyond) = written.conditions.get(MAX_REGIONS_OR_CONDITIONS) {
+        diagnostics.push(Diagnostic::new(
+            beyond.span,
+            RegionKind::TooManyConditions { most: MAX_REGIONS_OR_CONDITIONS },
+        ));
         return None;
     }
     let sides = written.conditions.iter();
     let sides: Vec<Option<Vec<Formula>>> =
-        sides.map(|one| noted(condition(one, lowering, curves), diagnostics)).collect();
+        sides.map(|one| or_report(condition(one, lowering, curves), diagnostics)).collect();
     let sides: Option<Vec<Vec<Formula>>> = sides.into_iter().collect();
     Some(Formula::All(sides?.into_iter().flatten().collect()))
 }
@@ -353,10 +364,10 @@ fn condition(
     curves: &mut Curves,
 ) -> Result<Vec<Formula>, Diagnostic> {
     let mut sides = Vec::new();
-    let mut left = lowering.lower(&condition.first, May::Coordinates)?;
+    let mut left = lowering.lower(&condition.first, Allowed::Coordinates)?;
     for (compare, right) in &condition.rest {
-        let right = lowering.lower(right, May::Coordinates)?;
-        if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
+        let right = lowering.lower(right, Allowed::Coordinates)?;
+        if left.1.common(right.1).is_none_or(|d| d == Dimension::Angle) {
             return Err(Diagnostic::new(
                 condition.span,
                 RegionKind::UnlikeSides { left: left.1, right: right.1 },
@@ -373,12 +384,16 @@ fn condition(
 }
 
 /// Returns the span at which an expression mentions a name.
-pub(super) fn mention(expr: &Expr, word: &str) -> Option<Span> {
+pub(super) fn first_mention(expr: &Expr, word: &str) -> Option<Span> {
     match &expr.kind {
         tree::ExprKind::Name(name) => (name == word).then_some(expr.span),
         tree::ExprKind::Number(..) => None,
-        tree::ExprKind::Neg(inner) => mention(inner, word),
-        tree::ExprKind::Binary(_, a, b) => mention(a, word).or_else(|| mention(b, word)),
-        tree::ExprKind::Call(_, all) => all.iter().find_map(|part| mention(part, word)),
+        tree::ExprKind::Neg(inner) => first_mention(inner, word),
+        tree::ExprKind::Binary(_, a, b) => {
+            first_mention(a, word).or_else(|| first_mention(b, word))
+        }
+        tree::ExprKind::Call(_, matching) => {
+            matching.iter().find_map(|part| first_mention(part, word))
+        }
     }
 }

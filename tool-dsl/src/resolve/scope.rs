@@ -1,7 +1,7 @@
 //! The names of a file, and the transform from the tool's coordinates to the file's.
 
 use super::definitions;
-use super::lower::{Lowering, May};
+use super::lower::{Allowed, Lowering};
 use crate::diagnostic::{Diagnostic, ValueKind};
 use crate::dimension::Dimension;
 use crate::domain::Domain;
@@ -46,7 +46,7 @@ impl Lowering {
     }
 
     /// Moves the file's tool: its lengths are multiplied by `scale`, then its tip is moved along the axis by `by`.
-    pub(super) fn placed(&mut self, scale: &Number, by: &Number) {
+    pub(super) fn transform(&mut self, scale: &Number, by: &Number) {
         self.scale = &self.scale / scale;
         let by = &self.scale * by;
         self.frame.tip =
@@ -73,12 +73,12 @@ impl Lowering {
     pub(super) fn curve(&mut self, definition: &Definition, diagnostics: &mut Vec<Diagnostic>) {
         if !self.broken.contains_key(&definition.name.word) {
             let defined = self.curve_value(definition);
-            self.note(&definition.name, defined, diagnostics);
+            self.report(&definition.name, defined, diagnostics);
         }
     }
 
     fn curve_value(&mut self, definition: &Definition) -> Result<(), Diagnostic> {
-        let value = self.lower(&definition.value, May::Coordinates)?;
+        let value = self.lower(&definition.value, Allowed::Coordinates)?;
         if value.1 == Dimension::Angle {
             let diagnostic = Diagnostic::new(definition.value.span, ValueKind::CurveOfAngle);
             return Err(diagnostic);

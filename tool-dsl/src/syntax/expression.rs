@@ -1,7 +1,7 @@
 //! Parses expressions: converts pairs of pest to sums, products and their operands.
 
 use super::Rule;
-use super::limits::TALLEST;
+use super::limits::MAX_HEIGHT;
 use super::parse::Reader;
 use super::tree::{Binary, Expr, ExprKind, Name};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
@@ -11,10 +11,10 @@ use pest::iterators::{Pair, Pairs};
 use std::str::FromStr;
 
 /// The maximum number of operands of one sum or product.
-const OPERANDS: usize = 64;
+const MAX_OPERANDS: usize = 64;
 
 /// An expression and its height in operations.
-type Tall = (Expr, u32);
+type Measured = (Expr, u32);
 
 impl Reader<'_> {
     /// Parses an expression. If it is higher than the limit it is truncated and reported.
@@ -23,14 +23,14 @@ impl Reader<'_> {
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
             self.diagnostics
-                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooTall { most: TALLEST }));
+                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooTall { most: MAX_HEIGHT }));
         }
         expr
     }
 
     /// Parses an expression recursively. The depth is that of nested brackets, which is limited. `beyond` receives the
     /// span at which the expression was truncated.
-    fn tree(&mut self, pair: Pair<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
+    fn tree(&mut self, pair: Pair<'_, Rule>, beyond: &mut Option<Span>) -> Measured {
         let span = self.span(&pair);
         let nothing = || (ExprKind::Name(String::new()), 0);
         let (kind, height) = match pair.as_rule() {
@@ -47,7 +47,7 @@ impl Reader<'_> {
                 match (inner.next(), inner.next()) {
                     (Some(_), Some(operand)) => {
                         let (operand, height) = self.tree(operand, beyond);
-                        if height == TALLEST {
+                        if height == MAX_HEIGHT {
                             *beyond = beyond.or(Some(span));
                             return (operand, height);
                         }
@@ -81,7 +81,7 @@ impl Reader<'_> {
                             tallest = tallest.max(height);
                             arguments.push(argument);
                         }
-                        if tallest == TALLEST {
+                        if tallest == MAX_HEIGHT {
                             *beyond = beyond.or(Some(span));
                             return (
                                 Expr { kind: ExprKind::Number(Number::int(1), None), span },
@@ -95,11 +95,11 @@ impl Reader<'_> {
             }
             _ => (ExprKind::Name(pair.as_str().trim().to_owned()), 0),
         };
-        (Expr { kind, span }, height.min(TALLEST))
+        (Expr { kind, span }, height.min(MAX_HEIGHT))
     }
 
     /// Parses `a + b - c` or `a * b / c`, both left-associative.
-    fn chain(&mut self, mut inner: Pairs<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
+    fn chain(&mut self, mut inner: Pairs<'_, Rule>, beyond: &mut Option<Span>) -> Measured {
         let mut left = match inner.next() {
             Some(first) => self.tree(first, beyond),
             None => {
@@ -110,7 +110,7 @@ impl Reader<'_> {
         let mut operands = 1;
         while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
             operands += 1;
-            if operands > OPERANDS {
+            if operands > MAX_OPERANDS {
                 let diagnostic = Diagnostic::new(self.span(&right), SyntaxKind::ExpressionTooLong);
                 self.diagnostics.push(diagnostic);
                 break;
@@ -151,13 +151,13 @@ impl Reader<'_> {
 /// Returns the operation on two operands, or the first operand alone if the limit is reached.
 fn binary(
     operator: Binary,
-    left: Tall,
-    right: Tall,
+    left: Measured,
+    right: Measured,
     span: Span,
     beyond: &mut Option<Span>,
-) -> Tall {
+) -> Measured {
     let tallest = left.1.max(right.1);
-    if tallest == TALLEST {
+    if tallest == MAX_HEIGHT {
         *beyond = beyond.or(Some(right.0.span));
         return left;
     }

@@ -1,7 +1,7 @@
 //! Splits text into lexemes at the boundaries of the grammar's tokens, to tell comments and texts from the rest.
 
-use super::limits::DEEPEST;
-use super::refuse::{FILES, in_name};
+use super::limits::MAX_NESTING;
+use super::refuse::{FILE_KEYWORDS, in_name};
 
 /// A lexeme, as a range of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub(super) enum Kind {
 pub(crate) fn begins_a_tool(text: &str) -> bool {
     let mut words = lexemes(text).filter(|lexeme| lexeme.kind != Kind::Skipped);
     let first = words.next().map_or("", |first| &text[first.start..first.end]);
-    FILES.contains(&first) && words.next().is_some_and(|name| name.kind == Kind::Word)
+    FILE_KEYWORDS.contains(&first) && words.next().is_some_and(|name| name.kind == Kind::Word)
 }
 
 /// Returns the lexemes of a text in order, without gaps. A quote without a closing quote on its line is a mark, as it
@@ -71,7 +71,7 @@ fn block_comment(bytes: &[u8]) -> (usize, Kind) {
         at += 2;
         match depth {
             0 => return (at, Kind::Skipped),
-            _ if depth > DEEPEST => return (at, Kind::TooDeep),
+            _ if depth > MAX_NESTING => return (at, Kind::TooDeep),
             _ => {}
         }
     }

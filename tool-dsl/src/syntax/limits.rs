@@ -8,33 +8,33 @@ use crate::source::{LONGEST, Span};
 use pest::iterators::{Pair, Pairs};
 
 /// The maximum length of a name, in bytes.
-const LONGEST_NAME: usize = 100;
+const MAX_NAME_BYTES: usize = 100;
 /// The maximum number of items in a file.
-const MOST: usize = 4096;
+const MAX_ITEMS: usize = 4096;
 /// The maximum depth of nested brackets, and of nested comments.
-pub(super) const DEEPEST: usize = 64;
+pub(super) const MAX_NESTING: usize = 64;
 /// The maximum height of an expression, in operations, both as written and between a value and a coordinate. Functions
 /// that walk an expression recurse as deep.
-pub(crate) const TALLEST: u32 = 300;
+pub(crate) const MAX_HEIGHT: u32 = 300;
 
 /// Returns an error for a name or a list of items above the limits, which no person would write.
 pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
-    let place = |pair: &Pair<'_, Rule>, length: usize| {
+    let span = |pair: &Pair<'_, Rule>, length: usize| {
         let start = pair.as_span().start();
         Span { start, end: start + length }
     };
     let name = |pair: &Pair<'_, Rule>| pair.as_rule() == Rule::name;
     let long =
-        pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
+        pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > MAX_NAME_BYTES);
     if let Some(pair) = long {
         return Some(Diagnostic::new(
-            place(&pair, LONGEST_NAME),
-            SyntaxKind::NameTooLong { letters: pair.as_str().len(), most: LONGEST_NAME },
+            span(&pair, MAX_NAME_BYTES),
+            SyntaxKind::NameTooLong { letters: pair.as_str().len(), most: MAX_NAME_BYTES },
         ));
     }
-    let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
-    let beyond = pairs.flatten().find(whole)?.into_inner().nth(MOST)?;
-    Some(Diagnostic::new(place(&beyond, 1), SyntaxKind::TooManyItems { most: MOST }))
+    let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
+    let beyond = pairs.flatten().find(is_root)?.into_inner().nth(MAX_ITEMS)?;
+    Some(Diagnostic::new(span(&beyond, 1), SyntaxKind::TooManyItems { most: MAX_ITEMS }))
 }
 
 /// Checks the text's length, its comments and its brackets. A comment that does not end is rejected here: pest would
@@ -58,14 +58,17 @@ pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
             }
             Kind::TooDeep => {
                 let span = Span { start: end - 2, end };
-                return Err(Diagnostic::new(span, SyntaxKind::CommentsTooDeep { most: DEEPEST }));
+                return Err(Diagnostic::new(
+                    span,
+                    SyntaxKind::CommentsTooDeep { most: MAX_NESTING },
+                ));
             }
             _ => {}
         }
-        if depth > DEEPEST {
+        if depth > MAX_NESTING {
             return Err(Diagnostic::new(
                 Span { start, end },
-                SyntaxKind::BracketsTooDeep { most: DEEPEST },
+                SyntaxKind::BracketsTooDeep { most: MAX_NESTING },
             ));
         }
     }

@@ -12,7 +12,7 @@ mod refuse;
 pub mod tree;
 
 pub(crate) use lexeme::begins_a_tool;
-pub(crate) use limits::TALLEST;
+pub(crate) use limits::MAX_HEIGHT;
 pub use mount::parse_argument;
 pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};

@@ -20,7 +20,7 @@ pub fn parse_argument(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec
     let pairs = match pairs {
         Ok(pairs) => pairs,
         Err(diagnostic) => {
-            diagnostics.push(diagnostic.behind(source.base));
+            diagnostics.push(diagnostic.offset_by(source.base));
             return Vec::new();
         }
     };

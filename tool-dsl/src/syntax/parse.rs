@@ -1,7 +1,7 @@
 //! Converts pairs of pest to the syntax tree.
 
 use super::limits::{too_much, within_limits};
-use super::refuse::{self, OBLIQUE, RISING, in_name};
+use super::refuse::{self, OBLIQUE_KEYWORD, RISING_KEYWORD, in_name};
 use super::tree::*;
 use super::{Grammar, Rule};
 use crate::diagnostic::{Diagnostic, Reported, SyntaxKind, enough};
@@ -11,7 +11,7 @@ use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
 /// Names that generated code or Rust itself uses.
-const TAKEN: [&str; 21] = [
+const RESERVED_NAMES: [&str; 21] = [
     "Box",
     "Circle",
     "DepthBounds",
@@ -50,10 +50,10 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
             Grammar::parse(Rule::file, text).map_err(|error| refuse::syntax(text, 0, &error))
         })
         .and_then(|pairs| too_much(pairs.clone()).map_or(Ok(pairs), Err));
-    let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
+    let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let pair = pairs
-        .and_then(|pairs| pairs.flatten().find(whole).ok_or_else(|| refuse::nothing(text)))
-        .map_err(|diagnostic| Reported::push(diagnostics, diagnostic.behind(source.base)))?;
+        .and_then(|pairs| pairs.flatten().find(is_root).ok_or_else(|| refuse::nothing(text)))
+        .map_err(|diagnostic| Reported::push(diagnostics, diagnostic.offset_by(source.base)))?;
     let mut broken = Vec::new();
     let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
     let tool = reader.tool(pair);
@@ -84,7 +84,7 @@ impl Reader<'_> {
             match pair.as_rule() {
                 Rule::name => {
                     name = self.name(&pair);
-                    if TAKEN.contains(&name.word.as_str()) {
+                    if RESERVED_NAMES.contains(&name.word.as_str()) {
                         self.diagnostics.push(Diagnostic::new(
                             name.span,
                             SyntaxKind::TakenName { word: name.word.clone() },
@@ -101,7 +101,7 @@ impl Reader<'_> {
                     self.diagnostics.extend(refuse::hidden(pair.as_str(), self.span(&pair)));
                 }
                 Rule::stray if enough(self.diagnostics) => {}
-                Rule::stray => items.extend(self.stray(&pair)),
+                Rule::stray => items.extend(self.report_stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}
                 _ => items.extend(self.item(pair)),
             }
@@ -110,7 +110,7 @@ impl Reader<'_> {
     }
 
     /// Parses again an item that the grammar could not read, alone, to find its specific error.
-    fn stray(&mut self, pair: &Pair<'_, Rule>) -> Option<Item> {
+    fn report_stray(&mut self, pair: &Pair<'_, Rule>) -> Option<Item> {
         let text = pair.as_str();
         let offset = self.offset + pair.as_span().start();
         match Grammar::parse(Rule::item, text) {
@@ -165,7 +165,8 @@ impl Reader<'_> {
                     next = inner.next()?;
                 }
                 let value = self.expr(next);
-                let rising = self.allows(inner.next(), RISING, quantity == Quantity::Niceness);
+                let rising =
+                    self.allows(inner.next(), RISING_KEYWORD, quantity == Quantity::Niceness);
                 Item::Law(Law { quantity, surfaces, value, rising, span })
             }
             _ => return None,
@@ -206,7 +207,8 @@ impl Reader<'_> {
                     let mut parts = pair.into_inner();
                     let quantity = quantity(&parts.next()?);
                     let value = self.expr(parts.next()?);
-                    let rising = self.allows(parts.next(), RISING, quantity == Quantity::Niceness);
+                    let rising =
+                        self.allows(parts.next(), RISING_KEYWORD, quantity == Quantity::Niceness);
                     region.scalars.push(Scalar { quantity, value, rising, span });
                 }
                 Rule::direction => {
@@ -217,7 +219,7 @@ impl Reader<'_> {
                         Rule::toward => Direction::Toward(self.inner_tuple(part)?),
                         _ => Direction::Along(self.tuple(part)),
                     };
-                    let oblique = self.allows(parts.next(), OBLIQUE, true);
+                    let oblique = self.allows(parts.next(), OBLIQUE_KEYWORD, true);
                     region.direction.push(DirectionProperty { direction, oblique, span });
                 }
                 _ => {}
@@ -270,7 +272,7 @@ impl Reader<'_> {
     }
 
     fn pieces(&mut self, pair: Pair<'_, Rule>, pieces: &mut Vec<PathSegment>) {
-        let whole = self.span(&pair);
+        let pair_span = self.span(&pair);
         let (mut points, mut round, mut concave) = (Vec::new(), None, None);
         let (mut surface, mut cutting) = (None, None);
         for part in pair.into_inner() {
@@ -289,7 +291,7 @@ impl Reader<'_> {
         let Some(surface) = surface else { return };
         let one = points.len() == 1;
         for to in points {
-            let span = if one { whole } else { to.span };
+            let span = if one { pair_span } else { to.span };
             let arc = round.clone().map(|round| Arc { round, concave });
             pieces.push(PathSegment { to, arc, surface: surface.clone(), cutting, span });
         }
@@ -311,12 +313,12 @@ impl Reader<'_> {
         let first = self.expr(inner.next()?);
         let mut rest = Vec::new();
         while let (Some(compare), Some(next)) = (inner.next(), inner.next()) {
-            let place = self.span(&compare);
+            let compare_span = self.span(&compare);
             let compare = match compare.as_str() {
                 "<=" => Compare::AtMost,
                 ">=" => Compare::AtLeast,
                 other => {
-                    self.diagnostics.push(refuse::comparison(place, other));
+                    self.diagnostics.push(refuse::comparison(compare_span, other));
                     return None;
                 }
             };
@@ -330,7 +332,7 @@ impl Reader<'_> {
 pub fn is_type_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase())
         && !word.contains('_')
-        && !TAKEN.contains(&word)
+        && !RESERVED_NAMES.contains(&word)
 }
 
 fn quantity(pair: &Pair<'_, Rule>) -> Quantity {

@@ -4,11 +4,11 @@
 mod order;
 mod signs;
 
-use super::cover::{Claim, Cover, reach};
+use super::cover::{Claim, Cover, half_diagonal};
 use super::root::{Agreement, Forms, RootForm};
 use super::sum::RootSum;
-use super::tangency::Touch;
-use super::tangent::{Off, Tangency};
+use super::tangency::Contact;
+use super::tangent::{DepthDifference, Tangency};
 use crate::elimination::Linear;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
@@ -22,14 +22,14 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// The number of boxes in which the contact of two conics is searched for.
-const TRIES: u32 = 12;
+const MAX_CONTACT_BOXES: u32 = 12;
 
 /// Bounds for the border of a profile that is nearly smooth. The first limits the difference of depths,
 /// relative to the tool's size, and is added to the slack. The second limits the difference of their slopes
 /// across the border. A descent that stays on either side is then as steep up to the square of the second, by
-/// which `c` is lowered: see [`ROUNDING`](super::nonsmooth::ROUNDING).
-const TANGENT_JUMP: f64 = 4e-9;
-pub(super) const TANGENT_SLOPE: f64 = 1e-5;
+/// which `c` is lowered: see [`SLOPE_MARGIN`](super::nonsmooth::SLOPE_MARGIN).
+const MAX_TANGENT_JUMP: f64 = 4e-9;
+pub(super) const MAX_TANGENT_SLOPE: f64 = 1e-5;
 
 /// A region and its neighbour, or `None` for the outside, where depth is 0.
 pub(super) type Pair = (usize, Option<usize>);
@@ -48,20 +48,20 @@ pub(super) enum Joint {
 }
 
 /// The separation of two claims to a box.
-pub(super) struct Parted {
+pub(super) struct Separation {
     pub(super) curve: CurveIndex,
     pub(super) joint: Joint,
     /// True if the first claim is where the curve is negative.
     pub(super) below: bool,
     /// The largest difference of two joined depths in the box: rounding, where a profile is nearly smooth.
-    pub(super) off: f64,
+    pub(super) difference: f64,
 }
 
 /// The signs that a path down the tree demands.
-type Ways = Vec<(CurveIndex, Signs)>;
+type PathSigns = Vec<(CurveIndex, Signs)>;
 
 /// The number of searches for the contact of two curves, and the contact if one was found.
-type Tried = (u32, Option<Touch>);
+type ContactSearch = (u32, Option<Contact>);
 
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
@@ -74,37 +74,37 @@ pub(super) struct BorderProver<'m> {
     ids: Vec<Id>,
     depths: Vec<Option<RootForm>>,
     /// True if depths of adjacent regions may differ by rounding, whatever their slopes.
-    may_step: bool,
+    may_jump: bool,
     /// The largest such difference.
-    largest_step: f64,
+    max_jump: f64,
     /// True if owners are checked against the list of regions.
-    listed: bool,
+    check_listed_owners: bool,
     curves: Vec<Option<Curve>>,
     /// The curves that are not polynomials but sums of roots.
     sums: Vec<Option<RootSum>>,
     differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
     /// Straight curves with a gradient of length 1.
     lines: HashMap<CurveIndex, Option<Polynomial>>,
-    nothing: RootForm,
+    zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    agree: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
+    agreements: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
     /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-    apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
+    conic_signs: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
     /// The signs of a curve that linear curves leave possible.
-    by_linear: HashMap<(Option<usize>, Ways, CurveIndex), Signs>,
+    by_linear: HashMap<(Option<usize>, PathSigns, CurveIndex), Signs>,
     linear: Linear,
     /// The order of two depths, each at its own claim, according to linear curves.
-    lower: HashMap<(Pair, [Ways; 2]), LowerByLinear>,
+    lower: HashMap<(Pair, [PathSigns; 2]), LowerByLinear>,
     /// True if the first or the second depth is at most a third one that continues the other.
-    lower_by_third: HashMap<((Pair, [Ways; 2]), usize), bool>,
+    lower_by_third: HashMap<((Pair, [PathSigns; 2]), usize), bool>,
     /// True if a claim has no point of a region.
-    excluded: HashMap<(usize, Ways), bool>,
+    excluded: HashMap<(usize, PathSigns), bool>,
     /// True if a depth is at most another where curves have these signs.
     no_deeper: HashMap<(Vec<Signs>, usize, usize), bool>,
     /// An upper bound of the excess of one depth over another.
     excesses: HashMap<(usize, usize), Option<f64>>,
-    touches: HashMap<(CurveIndex, CurveIndex), Tried>,
+    contacts: HashMap<(CurveIndex, CurveIndex), ContactSearch>,
     tangencies: HashMap<(Pair, CurveIndex), Option<Tangency>>,
     values: Evaluator<'m>,
     /// The current box.
@@ -112,15 +112,15 @@ pub(super) struct BorderProver<'m> {
 }
 
 impl<'m> BorderProver<'m> {
-    /// Finds the forms of a tool's depths and curves, in its box. With `steps`, depths may differ by
+    /// Finds the forms of a tool's depths and curves, in its box. With `may_jump`, depths may differ by
     /// rounding, because slopes across borders do not matter.
     pub(super) fn new(
         model: &'m Model,
         cell: Cell,
         forms: &mut Forms<'_>,
-        (steps, finest): (bool, f64),
+        (may_jump, finest): (bool, f64),
     ) -> BorderProver<'m> {
-        let (size, ids) = (reach(&cell), model.depths());
+        let (size, ids) = (half_diagonal(&cell), model.depths());
         let depths = ids.iter().map(|depth| forms.of(*depth)).collect();
         let values = || model.curves.iter().map(|curve| curve.value);
         let curves: Vec<_> = values().map(|value| forms.of(value)?.curve()).collect();
@@ -131,19 +131,19 @@ impl<'m> BorderProver<'m> {
         BorderProver {
             model,
             size,
-            may_step: steps,
-            largest_step: finest.min(TANGENT_JUMP) * size,
-            listed: !model.is_exact(),
+            may_jump,
+            max_jump: finest.min(MAX_TANGENT_JUMP) * size,
+            check_listed_owners: !model.is_exact(),
             values: Evaluator::new(&model.graph, ids.iter().copied()),
             ids,
             sums: sums.collect(),
             differences: BTreeMap::new(),
             depths,
             curves,
-            nothing: RootForm::zero(),
+            zero: RootForm::zero(),
             joints: BTreeMap::new(),
-            agree: BTreeMap::new(),
-            apart: BTreeMap::new(),
+            agreements: BTreeMap::new(),
+            conic_signs: BTreeMap::new(),
             by_linear: HashMap::new(),
             linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
@@ -152,7 +152,7 @@ impl<'m> BorderProver<'m> {
             no_deeper: HashMap::new(),
             excesses: HashMap::new(),
             lines: HashMap::new(),
-            touches: HashMap::new(),
+            contacts: HashMap::new(),
             tangencies: HashMap::new(),
             cell,
         }
@@ -174,14 +174,14 @@ impl<'m> BorderProver<'m> {
     }
 
     /// Returns whether the list of regions gives the claim's points to its owner, except on borders. If
-    /// `alone` is set, also checks that no other region contains them.
-    pub(super) fn is_right(
+    /// `check_overlaps` is set, also checks that no other region contains them.
+    pub(super) fn is_listed_owner(
         &mut self,
         claim: &Claim,
-        place: (&mut Cover<'_>, Cell),
-        alone: bool,
+        cover_and_cell: (&mut Cover<'_>, Cell),
+        check_overlaps: bool,
     ) -> bool {
-        let (cover, cell) = place;
+        let (cover, cell) = cover_and_cell;
         self.cell = cell;
         // A claim with a zero sign is a line or a point.
         if claim.signs.iter().any(|(_, signs)| *signs == ZERO) {
@@ -189,56 +189,59 @@ impl<'m> BorderProver<'m> {
         }
         let model = self.model;
         let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
-        let own = |owner: usize| model.regions[owner].inside.decided_by(&mut sign) == Some(true);
-        if !claim.owner.is_none_or(own) {
+        let is_in_region =
+            |owner: usize| model.regions[owner].inside.decided_by(&mut sign) == Some(true);
+        if !claim.owner.is_none_or(is_in_region) {
             return false;
         }
-        !alone
+        !check_overlaps
             || (0..model.regions.len()).all(|other| {
-                let mut open = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
+                let mut open_signs = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
                 Some(other) == claim.owner
-                    || model.regions[other].inside.decided_by(&mut open) == Some(false)
+                    || model.regions[other].inside.decided_by(&mut open_signs) == Some(false)
                     || self.excluded(claim, other)
             })
     }
 
     /// Returns whether linear curves prove that no point of a claim is in a region, except on borders.
     fn excluded(&mut self, claim: &Claim, region: usize) -> bool {
-        let key = (region, ways(claim));
+        let key = (region, path_signs(claim));
         if let Some(known) = self.excluded.get(&key) {
             return *known;
         }
-        let way = self.signs(&key.1);
+        let signs_on_path = self.signs(&key.1);
         let linear = &self.linear;
         // Tests one of the alternatives, with borders left out.
         let empty = |demands: &[&Formula]| {
-            let mut demanded = vec![ANY; way.len()];
-            demands.iter().for_each(|formula| formula.demand(&mut demanded));
-            let mut signs = way.clone();
-            for (sign, demanded) in signs.iter_mut().zip(demanded) {
+            let mut demanded_signs = vec![ANY; signs_on_path.len()];
+            demands.iter().for_each(|formula| formula.demand(&mut demanded_signs));
+            let mut signs = signs_on_path.clone();
+            for (sign, demanded) in signs.iter_mut().zip(demanded_signs) {
                 *sign &= if demanded == ANY { ANY } else { demanded & !ZERO };
             }
             signs.contains(&0) || linear.contradictory(&signs)
         };
         let inside = &self.model.regions[region].inside;
-        let none = |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
-        let excluded = empty(&[inside]) || inside.choices().iter().any(none);
+        let is_excluded =
+            |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
+        let excluded = empty(&[inside]) || inside.choices().iter().any(is_excluded);
         self.excluded.insert(key, excluded);
         excluded
     }
 
     /// Returns a curve with two claims to a box on its two sides, and the continuity of depth there. Returns
-    /// `None` if the claims do not meet in the box, given that their depths are known to differ (`apart`).
+    /// `None` if the claims do not meet in the box, given that their depths are known to differ (`depths_differ`).
     pub(super) fn of(
         &mut self,
         pair: Pair,
         [a, b]: [&Claim; 2],
         (cover, cell): (&mut Cover<'_>, Cell),
-        apart: bool,
-    ) -> Option<Parted> {
+        depths_differ: bool,
+    ) -> Option<Separation> {
         self.cell = cell;
-        let parting = parting(a, b);
-        let mut joint = parting.iter().copied().find(|curve| self.agree(pair, *curve).is_some());
+        let separating_curves = separating_curves(a, b);
+        let mut joint =
+            separating_curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
         joint = joint.or_else(|| {
             self.joints(pair).into_iter().find(|curve| {
                 let [a, b] = [a, b].map(|claim| self.sign_on(claim, *curve, cover));
@@ -246,29 +249,31 @@ impl<'m> BorderProver<'m> {
             })
         });
         let Some(curve) = joint else {
-            let curve = *parting.first()?;
-            if let Some(parted) = self.tangent(pair, &parting) {
+            let curve = *separating_curves.first()?;
+            if let Some(parted) = self.smooth_separation(pair, &separating_curves) {
                 return Some(parted);
             }
-            let lower = self.lower(pair, [a, b], &parting, cover).map(|off| self.step(off));
-            let parted = |joint| Parted { curve, joint, below: false, off: 0.0 };
-            return match (lower, apart) {
+            let lower = self
+                .lower(pair, [a, b], &separating_curves, cover)
+                .map(|difference| self.without_rounding(difference));
+            let parted = |joint| Separation { curve, joint, below: false, difference: 0.0 };
+            return match (lower, depths_differ) {
                 (Some(0.0), true) => None,
-                (Some(off), _) => Some(Parted { off, ..parted(Joint::Lower) }),
+                (Some(difference), _) => Some(Separation { difference, ..parted(Joint::Lower) }),
                 (None, _) => Some(parted(Joint::None)),
             };
         };
         let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
         let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
-        let parted = |joint| Parted { curve, joint, below, off: 0.0 };
+        let parted = |joint| Separation { curve, joint, below, difference: 0.0 };
         // A curve without an agreement is where the two depths do not differ.
-        let agreement = self.agree(pair, curve);
+        let agreement = self.agreement(pair, curve);
         let smooth = agreement.as_ref().is_some_and(|agreement| agreement.smooth);
         // If the depths may agree on the root's other branch, nothing is known about this one.
         let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&cell)));
-        let other = branch.is_some_and(|branch| branch.high < 0.0);
-        let sure = branch.is_none_or(|branch| branch.low > 0.0);
-        match (other || apart, sure) {
+        let other_branch = branch.is_some_and(|branch| branch.high < 0.0);
+        let is_certain = branch.is_none_or(|branch| branch.low > 0.0);
+        match (other_branch || depths_differ, is_certain) {
             (true, true) => None,
             (true, false) => Some(parted(Joint::None)),
             _ if smooth => Some(parted(Joint::Smooth)),
@@ -278,34 +283,39 @@ impl<'m> BorderProver<'m> {
 
     /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
     /// and also its slope where that matters.
-    fn tangent(&mut self, pair: Pair, parting: &[CurveIndex]) -> Option<Parted> {
-        parting.iter().find_map(|curve| {
-            let Off { jump, across } = self.tangency(pair, *curve)?;
-            let is_smooth = self.may_step || across <= TANGENT_SLOPE;
-            (jump <= self.largest_step && is_smooth).then_some(Parted {
+    fn smooth_separation(
+        &mut self,
+        pair: Pair,
+        separating_curves: &[CurveIndex],
+    ) -> Option<Separation> {
+        separating_curves.iter().find_map(|curve| {
+            let DepthDifference { jump, slope_across: across } = self.tangency(pair, *curve)?;
+            let is_smooth = self.may_jump || across <= MAX_TANGENT_SLOPE;
+            (jump <= self.max_jump && is_smooth).then_some(Separation {
                 curve: *curve,
                 joint: Joint::Smooth,
                 below: false,
-                off: jump,
+                difference: jump,
             })
         })
     }
 
     /// Returns a difference of depths, or 0 for rounding of 256-bit constants.
-    fn step(&self, off: f64) -> f64 {
-        if off <= self.size * ROUNDING.sqrt() { 0.0 } else { off }
+    fn without_rounding(&self, difference: f64) -> f64 {
+        if difference <= self.size * ROUNDING.sqrt() { 0.0 } else { difference }
     }
 
     /// Returns the difference of two regions' depths on a straight curve in the current box.
-    fn tangency(&mut self, pair: Pair, curve: CurveIndex) -> Option<Off> {
+    fn tangency(&mut self, pair: Pair, curve: CurveIndex) -> Option<DepthDifference> {
         let (own, Some(other)) = pair else { return None };
         let tangency = self.tangencies.entry((pair, curve)).or_insert_with(|| {
             let [own, other] = [&self.depths[own], &self.depths[other]];
             let (line, _) = self.curves[curve].as_ref()?;
             Tangency::of(own.as_ref()?, other.as_ref()?, line)
         });
-        let Off { jump, across } = tangency.as_ref()?.over(&self.cell)?;
-        Some(Off { jump: self.step(jump), across })
+        let DepthDifference { jump, slope_across: across } =
+            tangency.as_ref()?.over_box(&self.cell)?;
+        Some(DepthDifference { jump: self.without_rounding(jump), slope_across: across })
     }
 
     /// Returns the curves on which the depths of two owners agree.
@@ -318,27 +328,30 @@ impl<'m> BorderProver<'m> {
         for owner in [Some(pair.0), pair.1].into_iter().flatten() {
             self.model.regions[owner].inside.open(&vec![ANY; self.curves.len()], &mut atoms);
         }
-        let asked: BTreeSet<CurveIndex> = atoms.into_iter().map(|(curve, _)| curve).collect();
+        let condition_curves: BTreeSet<CurveIndex> =
+            atoms.into_iter().map(|(curve, _)| curve).collect();
         let differences = self.differences(pair);
         let mut joints: Vec<CurveIndex> = differences.iter().map(|(curve, _)| *curve).collect();
-        joints.extend(asked.into_iter().filter(|curve| self.agree(pair, *curve).is_some()));
+        joints.extend(
+            condition_curves.into_iter().filter(|curve| self.agreement(pair, *curve).is_some()),
+        );
         self.joints.insert(pair, joints.clone());
         joints
     }
 
     /// Returns how two owners' depths agree on a curve, if they do.
-    fn agree(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
-        if let Some(known) = self.agree.get(&(pair, curve)) {
+    fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
+        if let Some(known) = self.agreements.get(&(pair, curve)) {
             return known.clone();
         }
-        let other = pair.1.map_or(Some(&self.nothing), |other| self.depths[other].as_ref());
-        let agree = match (&self.depths[pair.0], other, &self.curves[curve]) {
+        let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
+        let agreement = match (&self.depths[pair.0], other, &self.curves[curve]) {
             (Some(own), Some(other), Some((curve, _))) => own.agrees_on(other, curve),
             _ => None,
         };
-        let agree = agree.map(Rc::new);
-        self.agree.insert((pair, curve), agree.clone());
-        agree
+        let agreement = agreement.map(Rc::new);
+        self.agreements.insert((pair, curve), agreement.clone());
+        agreement
     }
 
     /// Returns the curves on which two depths are equal, recognised by their expressions or their sums of
@@ -351,37 +364,39 @@ impl<'m> BorderProver<'m> {
         let graph = &self.model.graph;
         let [a, b] = [own, other].map(|depth| self.ids[depth]);
         let forms = self.depths[own].as_ref().zip(self.depths[other].as_ref());
-        let is_more = |curve: CurveIndex| match *graph.node(self.model.curves[curve].value) {
+        let first_is_larger = |curve: CurveIndex| match *graph.node(self.model.curves[curve].value)
+        {
             Node::Sub(more, less) if [more, less] == [a, b] => Some(true),
             Node::Sub(more, less) if [more, less] == [b, a] => Some(false),
             _ => {
-                let ratio = self.sums[curve].as_ref()?.by_difference(forms?.0, forms?.1)?;
+                let ratio = self.sums[curve].as_ref()?.ratio_to_difference(forms?.0, forms?.1)?;
                 Some(!ratio.is_negative())
             }
         };
         let curves = 0..self.model.curves.len();
-        let found = Rc::new(curves.filter_map(|curve| Some((curve, is_more(curve)?))).collect());
+        let found =
+            Rc::new(curves.filter_map(|curve| Some((curve, first_is_larger(curve)?))).collect());
         self.differences.insert([own, other], Rc::clone(&found));
         found
     }
 }
 
-fn ways(claim: &Claim) -> Ways {
+fn path_signs(claim: &Claim) -> PathSigns {
     claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect()
 }
 
 /// Returns the signs in the closure of the set with these signs.
-fn closed(signs: Signs) -> Signs {
+fn closure(signs: Signs) -> Signs {
     if signs & (NEGATIVE | POSITIVE) != 0 { signs | ZERO } else { signs }
 }
 
 /// Returns the curves for which the paths to two claims demand opposite sides.
-fn parting(a: &Claim, b: &Claim) -> Vec<CurveIndex> {
+fn separating_curves(a: &Claim, b: &Claim) -> Vec<CurveIndex> {
     let mut curves = Vec::new();
     for (curve, signs) in &a.signs {
-        let against =
+        let is_opposite =
             b.signs.iter().any(|(other, others)| other == curve && signs & others & !ZERO == 0);
-        if against && !curves.contains(curve) {
+        if is_opposite && !curves.contains(curve) {
             curves.push(*curve);
         }
     }

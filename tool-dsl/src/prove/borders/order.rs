@@ -1,12 +1,12 @@
 //! The smaller of two depths at a claim's points, and bounds on their difference where claims meet that no
 //! curve joins.
 
-use super::super::SMALL;
-use super::super::cover::{Claim, Cover, reach};
+use super::super::SMALL_BOX_FRACTION;
+use super::super::cover::{Claim, Cover, half_diagonal};
 use super::super::excess::excess;
 use super::super::root::RootForm;
 use super::Pair;
-use super::{BorderProver, Ways, closed, ways};
+use super::{BorderProver, PathSigns, closure, path_signs};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::At;
 use crate::formula::{CurveIndex, Signs, one_side};
@@ -14,7 +14,7 @@ use crate::number::Number;
 
 /// The largest difference, in half diagonals of the box, between a candidate third depth and the depths of
 /// the two regions that meet there.
-const NEAR: f64 = 8.0;
+const MAX_DIFFERENCE_IN_HALF_DIAGONALS: f64 = 8.0;
 
 /// The order of two depths, according to the linear curves on the paths to their claims.
 #[derive(Clone, Copy, PartialEq)]
@@ -37,10 +37,10 @@ impl BorderProver<'_> {
         &mut self,
         pair: Pair,
         claims: [&Claim; 2],
-        parting: &[CurveIndex],
+        separating_curves: &[CurveIndex],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
-        let key = (pair, claims.map(ways));
+        let key = (pair, claims.map(path_signs));
         let linear = match self.lower.get(&key) {
             Some(known) => *known,
             None => {
@@ -50,21 +50,25 @@ impl BorderProver<'_> {
             }
         };
         let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
-        let at = self.listed_signs(pair, &key.1);
+        let signs = self.listed_signs(pair, &key.1);
         let (own, Some(other)) = pair else {
             let own = Some(pair.0);
-            let below = self.excess_on(claims[1], (&at[1], parting), [own, None], cover)?;
-            let above = self.excess_on(claims[0], (&at[0], parting), [None, own], cover)?;
-            return Some(below.max(above)).filter(|off| *off <= self.largest_step);
+            let below =
+                self.excess_on(claims[1], (&signs[1], separating_curves), [own, None], cover)?;
+            let above =
+                self.excess_on(claims[0], (&signs[0], separating_curves), [None, own], cover)?;
+            return Some(below.max(above)).filter(|difference| *difference <= self.max_jump);
         };
         let owners = [[own, other], [other, own]];
         // Descents also require the order next to the border, not only on it.
-        let (most, on) = if self.may_step { (self.largest_step, parting) } else { (0.0, &[][..]) };
+        let (max_excess, borders) =
+            if self.may_jump { (self.max_jump, separating_curves) } else { (0.0, &[][..]) };
         let excess = [0, 1].map(|k| {
             let owners = owners[k].map(Some);
             let zero = lesser[k].then_some(0.0);
-            let excess = zero.or_else(|| self.excess_on(claims[k], (&at[k], on), owners, cover));
-            excess.filter(|excess| *excess <= most)
+            let excess =
+                zero.or_else(|| self.excess_on(claims[k], (&signs[k], borders), owners, cover));
+            excess.filter(|excess| *excess <= max_excess)
         });
         let (side, excess) = match excess {
             [Some(a), Some(b)] => return Some(a.max(b)),
@@ -75,7 +79,7 @@ impl BorderProver<'_> {
         let lower = match self.lower_by_third.get(&(key.clone(), side)) {
             Some(known) => *known,
             None => {
-                let lower = self.lesser_than_third(owners[side], &at[side], parting);
+                let lower = self.lesser_than_third(owners[side], &signs[side], separating_curves);
                 self.lower_by_third.insert((key, side), lower);
                 lower
             }
@@ -90,26 +94,26 @@ impl BorderProver<'_> {
     fn excess_on(
         &mut self,
         claim: &Claim,
-        (at, on): (&[Signs], &[CurveIndex]),
+        (signs, borders): (&[Signs], &[CurveIndex]),
         [less, more]: [Owner; 2],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
         if self.ordered([less, more], claim, cover) {
             return Some(0.0);
         }
-        let mut least = self.excess_beside_line(claim, [less, more]);
-        for third in self.thirds([less, more]) {
+        let mut min_excess = self.excess_beside_line(claim, [less, more]);
+        for third in self.third_depths([less, more]) {
             for (by_curve, everywhere) in
                 [([less, third], [third, more]), ([third, more], [less, third])]
             {
                 if self.ordered(by_curve, claim, cover) {
-                    let everywhere_by = self.excess(at, everywhere);
-                    let found = [everywhere_by, self.step_on(on, everywhere)];
-                    least = found.into_iter().flatten().chain(least).reduce(f64::min);
+                    let everywhere_by = self.excess(signs, everywhere);
+                    let found = [everywhere_by, self.jump_on_borders(borders, everywhere)];
+                    min_excess = found.into_iter().flatten().chain(min_excess).reduce(f64::min);
                 }
             }
         }
-        least
+        min_excess
     }
 
     /// Returns an upper bound of the amount by which a region's depth is above or below 0, on one side of a
@@ -128,9 +132,9 @@ impl BorderProver<'_> {
                 line.is_linear().then(|| line.with_unit_slope())?
             });
             let sign = Number::int(if is_below == is_more { -1 } else { 1 });
-            let line = RootForm::plainly(&line.as_ref()?.scaled(&sign));
+            let line = RootForm::from_polynomial(&line.as_ref()?.scaled(&sign));
             let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
-            match (less.plain(), more.plain()) {
+            match (less.polynomial(), more.polynomial()) {
                 (Some(less), Some(more)) => {
                     let minus = more.scaled(&Number::int(-1));
                     Some(less.clone().plus(&minus).over(&self.cell).high.max(0.0))
@@ -145,38 +149,38 @@ impl BorderProver<'_> {
     /// according to the sign of a curve on which they agree.
     fn ordered(&mut self, [less, more]: [Owner; 2], claim: &Claim, cover: &mut Cover<'_>) -> bool {
         // Pairs are ordered with the outside last, and the region listed earlier first.
-        let turned = less.is_none() || more.is_some_and(|more| Some(more) < less);
-        let ordered = if turned { [more, less] } else { [less, more] };
+        let is_swapped = less.is_none() || more.is_some_and(|more| Some(more) < less);
+        let ordered = if is_swapped { [more, less] } else { [less, more] };
         let [Some(own), other] = ordered else { return false };
         let by_difference = self.differences((own, other)).iter().any(|(curve, own_is_more)| {
-            one_side(cover.own_sign(claim, *curve)) == Some(*own_is_more != turned)
+            one_side(cover.sign_at_claim(claim, *curve)) == Some(*own_is_more != is_swapped)
         });
         let one_sided = claim.signs.iter().filter(|(_, signs)| one_side(*signs).is_some());
         by_difference
             || one_sided.into_iter().any(|(curve, _)| {
-                let signs = cover.own_sign(claim, *curve);
-                let agreement = self.agree((own, other), *curve);
+                let signs = cover.sign_at_claim(claim, *curve);
+                let agreement = self.agreement((own, other), *curve);
                 let Some(order) = agreement.as_ref().and_then(|found| found.order.as_ref()) else {
                     return false;
                 };
-                self.signed(*curve).is_some() && order.is_lesser(turned, signs, &self.cell)
+                self.signed(*curve).is_some() && order.is_lesser(is_swapped, signs, &self.cell)
             })
     }
 
     /// Returns an upper bound of the excess of one region's depth over another's: everywhere, or by linear
     /// curves where curves have these signs.
-    fn excess(&mut self, at: &[Signs], [less, more]: [Owner; 2]) -> Option<f64> {
+    fn excess(&mut self, signs: &[Signs], [less, more]: [Owner; 2]) -> Option<f64> {
         let [less, more] = [less?, more?];
         let (a, b) = (self.depths[less].as_ref()?, self.depths[more].as_ref()?);
         let excess = *self.excesses.entry((less, more)).or_insert_with(|| excess(a, b));
         if excess == Some(0.0) {
             return excess;
         }
-        let key = (at.to_vec(), less, more);
+        let key = (signs.to_vec(), less, more);
         let no_deeper = match self.no_deeper.get(&key) {
             Some(known) => *known,
             None => {
-                let no_deeper = self.linear.no_deeper(at, Some(less), Some(more));
+                let no_deeper = self.linear.no_deeper(signs, Some(less), Some(more));
                 self.no_deeper.insert(key, no_deeper);
                 no_deeper
             }
@@ -185,41 +189,44 @@ impl BorderProver<'_> {
     }
 
     /// Returns an upper bound of the difference of two depths on one of several borders in the current box.
-    fn step_on(&mut self, on: &[CurveIndex], [a, b]: [Owner; 2]) -> Option<f64> {
+    fn jump_on_borders(&mut self, borders: &[CurveIndex], [a, b]: [Owner; 2]) -> Option<f64> {
         let [a, b] = [a?, b?];
         let pair = (a.min(b), Some(a.max(b)));
-        let steps = on.iter().filter_map(|curve| match self.agree(pair, *curve) {
+        let jumps = borders.iter().filter_map(|curve| match self.agreement(pair, *curve) {
             Some(agreement) => {
-                let is_sure = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
-                agreement.branch.as_ref().is_none_or(is_sure).then_some(0.0)
+                let is_certain = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
+                agreement.branch.as_ref().is_none_or(is_certain).then_some(0.0)
             }
             None => Some(self.tangency(pair, *curve)?.jump),
         });
-        steps.reduce(f64::min)
+        jumps.reduce(f64::min)
     }
 
     /// Returns candidates for a depth between two others throughout the current box, if that is small. The
     /// choice affects only the run time.
-    fn thirds(&mut self, pair: [Owner; 2]) -> Vec<Owner> {
-        let reach = reach(&self.cell);
-        if reach > SMALL * self.size {
+    fn third_depths(&mut self, pair: [Owner; 2]) -> Vec<Owner> {
+        let reach = half_diagonal(&self.cell);
+        if reach > SMALL_BOX_FRACTION * self.size {
             return Vec::new();
         }
         let [x, y, z] = self.cell.middle();
         self.values.set(At::point(x, y, z));
         let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
         let is_near = |third: &Owner| {
-            let off = |owner: Owner| (depth(*third) - depth(owner)).abs();
-            !pair.contains(third) && pair.into_iter().all(|owner| off(owner) <= NEAR * reach)
+            let difference = |owner: Owner| (depth(*third) - depth(owner)).abs();
+            !pair.contains(third)
+                && pair
+                    .into_iter()
+                    .all(|owner| difference(owner) <= MAX_DIFFERENCE_IN_HALF_DIAGONALS * reach)
         };
         (0..self.ids.len()).map(Some).filter(is_near).collect()
     }
 
     /// Returns the signs at two claims' points.
-    fn listed_signs(&self, pair: Pair, [a, b]: &[Ways; 2]) -> [Vec<Signs>; 2] {
-        let [mut at_a, mut at_b] = [a, b].map(|ways| self.signs(ways));
+    fn listed_signs(&self, pair: Pair, [a, b]: &[PathSigns; 2]) -> [Vec<Signs>; 2] {
+        let [mut at_a, mut at_b] = [a, b].map(|path_signs| self.signs(path_signs));
         // If owners are checked against the list of regions, its conditions hold too.
-        if self.listed {
+        if self.check_listed_owners {
             self.model.regions[pair.0].inside.demand(&mut at_a);
             if let Some(other) = pair.1 {
                 self.model.regions[other].inside.demand(&mut at_b);
@@ -229,20 +236,21 @@ impl BorderProver<'_> {
     }
 
     /// Returns the order of two depths according to all linear curves on the paths to the claims.
-    fn lower_by_linear(&self, (own, other): Pair, at: &[Vec<Signs>; 2]) -> LowerByLinear {
-        if self.zero_where_they_meet((own, other), [&at[0], &at[1]]) {
+    fn lower_by_linear(&self, (own, other): Pair, signs: &[Vec<Signs>; 2]) -> LowerByLinear {
+        if self.are_zero_where_claims_meet((own, other), [&signs[0], &signs[1]]) {
             return LowerByLinear::Zero;
         }
         let Some(other) = other else { return LowerByLinear::Each([false; 2]) };
-        let lesser = |k: usize, own, other| self.linear.no_deeper(&at[k], Some(own), Some(other));
+        let lesser =
+            |k: usize, own, other| self.linear.no_deeper(&signs[k], Some(own), Some(other));
         LowerByLinear::Each([lesser(0, own, other), lesser(1, other, own)])
     }
 
-    fn zero_where_they_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
-        let both = |(a, b): (&Signs, &Signs)| closed(*a) & closed(*b);
-        let meeting: Vec<Signs> = at_a.iter().zip(at_b).map(both).collect();
-        self.linear.no_deeper(&meeting, Some(own), None)
-            && self.linear.no_deeper(&meeting, other, None)
+    fn are_zero_where_claims_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
+        let common = |(a, b): (&Signs, &Signs)| closure(*a) & closure(*b);
+        let common_signs: Vec<Signs> = at_a.iter().zip(at_b).map(common).collect();
+        self.linear.no_deeper(&common_signs, Some(own), None)
+            && self.linear.no_deeper(&common_signs, other, None)
     }
 
     /// Returns whether a depth is, where its claim's signs hold, at most a third depth that continues the
@@ -250,24 +258,24 @@ impl BorderProver<'_> {
     fn lesser_than_third(
         &mut self,
         [own, other]: [usize; 2],
-        at: &[Signs],
-        parting: &[CurveIndex],
+        signs: &[Signs],
+        separating_curves: &[CurveIndex],
     ) -> bool {
         (0..self.depths.len()).any(|third| {
             let smooth = |curve: &CurveIndex| {
-                let Some(agreement) = self.agree((other, Some(third)), *curve) else {
+                let Some(agreement) = self.agreement((other, Some(third)), *curve) else {
                     return false;
                 };
                 // A depth is not negative in its own region.
-                let depth = self.depths[other].as_ref().and_then(RootForm::plain);
+                let depth = self.depths[other].as_ref().and_then(RootForm::polynomial);
                 let ratio = |branch: &Polynomial| branch.ratio(depth?);
                 let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
                 agreement.smooth && agreement.branch.as_ref().is_none_or(own)
             };
             third != own
                 && third != other
-                && parting.iter().any(smooth)
-                && self.linear.no_deeper(at, Some(own), Some(third))
+                && separating_curves.iter().any(smooth)
+                && self.linear.no_deeper(signs, Some(own), Some(third))
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The signs that a curve can have at a claim's points in a box.
 
 use super::super::cover::{Claim, Cover};
-use super::super::tangency::Touch;
-use super::{BorderProver, TRIES, Ways, ways};
+use super::super::tangency::Contact;
+use super::{BorderProver, MAX_CONTACT_BOXES, PathSigns, path_signs};
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 
@@ -15,17 +15,17 @@ impl BorderProver<'_> {
         curve: CurveIndex,
         cover: &mut Cover<'_>,
     ) -> Signs {
-        let mut signs = cover.own_sign(claim, curve);
+        let mut signs = cover.sign_at_claim(claim, curve);
         for (other, side) in &claim.signs {
             if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
                 signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
             }
         }
         if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
-            signs &= self.by_linear(claim, curve);
+            signs &= self.signs_by_linear(claim, curve);
         }
         if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
-            signs &= self.by_touch(claim, curve);
+            signs &= self.signs_by_contact(claim, curve);
         }
         signs
     }
@@ -33,13 +33,14 @@ impl BorderProver<'_> {
     /// Returns a curve as a polynomial, if that has the curve's sign throughout the current box.
     pub(super) fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
         let (polynomial, positive) = self.curves[curve].as_ref()?;
-        let same = positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
-        same.then_some(polynomial)
+        let has_curve_sign =
+            positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
+        has_curve_sign.then_some(polynomial)
     }
 
     /// Returns the signs that a curve can have next to a conic on a claim's path, if the two touch nearby.
-    fn by_touch(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let here = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
+    fn signs_by_contact(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let box_corner = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
         let mut signs = ANY;
         for (other, known) in &claim.signs {
             let from = match known & !ZERO {
@@ -53,18 +54,20 @@ impl BorderProver<'_> {
             if conic.is_linear() || own.is_linear() {
                 continue;
             }
-            let place = (*other, curve);
-            let (tried, known) = self.touches.get(&place).unwrap_or(&(0, None));
-            let touch = match known {
-                None if *tried < TRIES => Touch::near(conic, own, here, self.size),
+            let key = (*other, curve);
+            let (attempts, known) = self.contacts.get(&key).unwrap_or(&(0, None));
+            let contact = match known {
+                None if *attempts < MAX_CONTACT_BOXES => {
+                    Contact::near(conic, own, box_corner, self.size)
+                }
                 _ => known.clone(),
             };
-            let tried = tried + 1;
-            self.touches.insert(place, (tried, touch.clone()));
-            if let Some(touch) = &touch {
-                for (to, without) in [(1, NEGATIVE), (-1, POSITIVE)] {
-                    if touch.implies(from, to) {
-                        signs &= !without;
+            let attempts = attempts + 1;
+            self.contacts.insert(key, (attempts, contact.clone()));
+            if let Some(contact) = &contact {
+                for (to, excluded_sign) in [(1, NEGATIVE), (-1, POSITIVE)] {
+                    if contact.implies(from, to) {
+                        signs &= !excluded_sign;
                     }
                 }
             }
@@ -72,17 +75,17 @@ impl BorderProver<'_> {
         signs
     }
 
-    pub(super) fn signs(&self, ways: &Ways) -> Vec<Signs> {
+    pub(super) fn signs(&self, path_signs: &PathSigns) -> Vec<Signs> {
         let mut signs = vec![ANY; self.curves.len()];
-        for (curve, known) in ways {
+        for (curve, known) in path_signs {
             signs[*curve] &= known;
         }
         signs
     }
 
     /// Returns the signs that a curve can have according to all linear curves on a claim's path together.
-    fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let key = (claim.owner, ways(claim), curve);
+    fn signs_by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let key = (claim.owner, path_signs(claim), curve);
         if let Some(known) = self.by_linear.get(&key) {
             return *known;
         }
@@ -102,24 +105,24 @@ impl BorderProver<'_> {
     /// do not cross.
     fn implied(&mut self, (known, below): (CurveIndex, bool), curve: CurveIndex) -> Signs {
         let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
-        match (self.apart(known, curve), self.apart(curve, known)) {
-            (Some((positive, clear)), _) if clear == below => side(positive),
+        match (self.conic_sign(known, curve), self.conic_sign(curve, known)) {
+            (Some((positive, is_below)), _) if is_below == below => side(positive),
             // The points are inside the conic, which lies on the other side of the line.
-            (_, Some((positive, clear))) if positive == below => side(clear),
+            (_, Some((positive, is_below))) if positive == below => side(is_below),
             _ => ANY,
         }
     }
 
     /// Returns the sign that a conic has on a whole side of a line, and whether that is the side below it.
-    fn apart(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
-        if let Some(known) = self.apart.get(&(line, curve)) {
+    fn conic_sign(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
+        if let Some(known) = self.conic_signs.get(&(line, curve)) {
             return *known;
         }
         let known = match (&self.curves[line], &self.curves[curve]) {
             (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
             _ => None,
         };
-        self.apart.insert((line, curve), known);
+        self.conic_signs.insert((line, curve), known);
         known
     }
 }

@@ -1,27 +1,31 @@
 //! The certificate: the conclusions from all boxes.
 
-use super::{OpenProof, RegionFacts, Survey, TOLERANCE, unless_rounding, up};
+use super::{OpenProof, RegionFacts, Survey, TOLERANCE, sum_rounded_up, unless_rounding};
 use crate::diagnostic::Statement;
 use crate::expr::interval::{Cell, Interval};
 use crate::prove::Certificate;
 use crate::prove::jordan::Profile;
 use crate::prove::range::Ranges;
-use crate::prove::witness::BESIDE;
+use crate::prove::witness::TEST_OFFSET_FRACTION;
 
 impl Survey<'_> {
     /// Returns the certificate that follows from all boxes.
     pub(super) fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
-        let (least, short) = self.least();
-        let slack = [self.crossed(), 2.0 * self.beyond, up(0.0, least.max(0.0) * short)];
-        let slack = slack.into_iter().fold(0.0, up);
-        let slack = up(slack, self.off_profile(slack));
+        let (min_slope, missed_distance) = self.min_slope();
+        let slack = [
+            self.jump_bound(),
+            2.0 * self.overshoot,
+            sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance),
+        ];
+        let slack = slack.into_iter().fold(0.0, sum_rounded_up);
+        let slack = sum_rounded_up(slack, self.distance_to_profile(slack));
         let mut ranges = Ranges {
             cover: &mut self.cover,
             slopes: &mut self.slopes,
             whole: self.tool.extent.cell(),
         };
-        if self.alone {
+        if self.check_overlaps {
             let known = self.regions.iter_mut().zip(&self.tool.model.regions).enumerate();
             for (index, (facts, region)) in known {
                 if let Some(facts) = facts {
@@ -29,27 +33,27 @@ impl Survey<'_> {
                 }
             }
         }
-        let known = self.aims.into_iter().zip(self.certain);
+        let known = self.directions.into_iter().zip(self.certain_facts);
         let facts = self.regions.into_iter().zip(shares).zip(known).enumerate();
         let regions: Vec<RegionFacts> = facts
-            .map(|(index, ((facts, share), (aim, certain)))| {
+            .map(|(index, ((facts, share), (direction, certain)))| {
                 let facts = facts.unwrap_or(RegionFacts::NONE);
-                let distance = self.parting.is_distance(index);
+                let distance = self.border_prover.is_distance(index);
                 RegionFacts {
                     share,
                     distance,
                     steepness: if distance { Interval::new(1.0, 1.0) } else { facts.steepness },
-                    direction_error: aim.off,
+                    direction_error: direction.angle_to_descent,
                     oblique: certain.oblique,
                     rises: certain.rises,
-                    singular: aim.singular,
-                    on_axis: aim.on_axis,
+                    singular: direction.singular,
+                    on_axis: direction.on_axis,
                     ..facts
                 }
             })
             .collect();
         Certificate {
-            least,
+            min_slope,
             slack,
             regions,
             borders: self.borders.into_values().collect(),
@@ -62,34 +66,40 @@ impl Survey<'_> {
     /// Returns an upper bound of the amount that depth may gain by jumps along a straight path, and by
     /// differing from an exact distance.
     ///
-    /// Let all depths differ by less than `off` from distances to lines, circles or points. On a path of
+    /// Let all depths differ by less than `deviation` from distances to lines, circles or points. On a path of
     /// length `t`, each of these distances minus `t` does not grow, inside or outside its own region. When
     /// the path returns to a region, it has therefore not gained since it left. Only the jumps that remain
     /// after such loops are removed count: one per pair of regions. Other depths may be steep outside their
     /// regions, so every jump counts. A straight path crosses a conic twice.
-    fn crossed(&self) -> f64 {
-        let steps = self.steps.values().copied().fold(0.0, up);
-        let Some(feet) = &self.feet else { return up(self.jumps, 2.0 * steps) };
-        let off = unless_rounding(feet.off, self.size);
-        let pairs = (self.widest.len() + self.steps.len()) as f64;
-        self.widest.values().copied().fold(up(steps, up(off, 2.0 * pairs * off)), up)
+    fn jump_bound(&self) -> f64 {
+        let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
+        let Some(feet) = &self.feet else { return sum_rounded_up(self.jumps, 2.0 * steps) };
+        let deviation = unless_rounding(feet.max_difference, self.size);
+        let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
+        self.largest_jumps.values().copied().fold(
+            sum_rounded_up(steps, sum_rounded_up(deviation, 2.0 * pairs * deviation)),
+            sum_rounded_up,
+        )
     }
 
     /// Returns an upper bound of the distance from the solid's surface to its profile, given the slack of
     /// depth.
-    fn off_profile(&mut self, slack: f64) -> f64 {
+    fn distance_to_profile(&mut self, slack: f64) -> f64 {
         let Some(section) = &self.tool.model.section else { return 0.0 };
-        let (off, ends) = self.witness.off_profile(&section.outline);
-        let open = off
-            .into_iter()
-            .map(|at| OpenProof { cell: Cell::point(at), statement: Statement::EndsOnProfile });
-        self.undecided.extend(open);
+        let (deviation, ends) = self.witness.points_off_profile(&section.outline);
+        let open_proofs = deviation.into_iter().map(|point| OpenProof {
+            cell: Cell::point(point),
+            statement: Statement::EndsOnProfile,
+        });
+        self.undecided.extend(open_proofs);
         // Nothing follows if a proof is open, or if depth is not the distance to the profile.
         if self.feet.is_none() || !self.undecided.is_empty() {
             return 0.0;
         }
-        let off = Profile::new(&section.outline).off(slack, BESIDE * self.size).filter(|_| ends);
-        off.unwrap_or_else(|| {
+        let max_distance = Profile::new(&section.outline)
+            .max_distance(slack, TEST_OFFSET_FRACTION * self.size)
+            .filter(|_| ends);
+        max_distance.unwrap_or_else(|| {
             self.undecided.push(OpenProof {
                 cell: self.tool.extent.cell(),
                 statement: Statement::EndsOnProfile,

@@ -1,8 +1,8 @@
 //! Bounds of the rate at which depth falls toward the surface, for tools whose depth is not bounded by the
 //! feet of a profile.
 
-use super::super::cover::reach;
-use super::super::nonsmooth::{EQUAL, ROUNDING};
+use super::super::cover::half_diagonal;
+use super::super::nonsmooth::{SLOPE_MARGIN, SLOPE_TOLERANCE};
 use super::{BoxSize, Survey};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 
 /// The lengths of descents tried from point boxes: relative to the tool's size, and, to reach the surface, in
 /// half diagonals of the box.
-const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
-const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
+const STEP_FRACTIONS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+const STEPS_IN_HALF_DIAGONALS: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 /// The number of other directions tried.
-const OTHERS: u32 = 16;
+const EXTRA_DIRECTIONS: u32 = 16;
 
 /// The descents from a point box.
 pub(super) struct Descent {
@@ -27,28 +27,38 @@ pub(super) struct Descent {
 impl Survey<'_> {
     /// Returns a lower bound of the rate at which a region's depth falls in the current box, which has the
     /// given owners.
-    pub(super) fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
+    pub(super) fn fall_rate(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         // A length is not smooth where it is 0. Next to the outside that is the surface, where depth need not
         // fall.
-        let unkinked = depth.value.low > 0.0 || owners.contains(&None);
-        if self.parting.is_length(owner) && unkinked { depth.length.low } else { depth.fall() }
+        let is_smooth = depth.value.low > 0.0 || owners.contains(&None);
+        if self.border_prover.is_length(owner) && is_smooth {
+            depth.length.low
+        } else {
+            depth.fall()
+        }
     }
 
     /// Records the rate at which depth falls from the points of a box.
-    pub(super) fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: BoxSize) {
+    pub(super) fn record_descent(
+        &mut self,
+        owners: &[Option<usize>],
+        cell: Cell,
+        box_size: BoxSize,
+    ) {
         if self.feet.is_some() {
             return;
         }
-        if grain != BoxSize::Point {
+        if box_size != BoxSize::Point {
             for owner in owners.iter().flatten() {
-                self.least = self.least.min(self.fall(*owner, owners));
+                self.min_slope = self.min_slope.min(self.fall_rate(*owner, owners));
             }
-            self.descend_on_axis(cell);
+            self.record_descent_on_axis(cell);
         } else if owners.contains(&None) {
             let [first, last] = [0, 1]
                 .map(|end| cell.sides.map(|side| if end == 0 { side.low } else { side.high }));
-            self.near = self.near.max(farthest(&cell, first)).max(farthest(&cell, last));
+            self.surface_distance =
+                self.surface_distance.max(farthest(&cell, first)).max(farthest(&cell, last));
         } else {
             let descent = self.descent_from_point(owners, cell);
             self.descents.push(descent);
@@ -57,7 +67,7 @@ impl Survey<'_> {
 
     /// Records the rate at which depth falls from points of a box on the axis. Where depth grows away from
     /// the axis it is not smooth there, and only its slope along the axis leads down.
-    fn descend_on_axis(&mut self, cell: Cell) {
+    fn record_descent_on_axis(&mut self, cell: Cell) {
         if self.tool.model.domain != Domain::HalfPlane || cell.sides[0].low > 0.0 {
             return;
         }
@@ -65,8 +75,8 @@ impl Survey<'_> {
         self.slopes.set(axis);
         for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
             let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-            if depth.parts[0].high > EQUAL {
-                self.least = self.least.min(depth.parts[2].abs().low);
+            if depth.partials[0].high > SLOPE_TOLERANCE {
+                self.min_slope = self.min_slope.min(depth.partials[2].abs().low);
             }
         }
     }
@@ -80,33 +90,36 @@ impl Survey<'_> {
         self.slopes.set(Cell::point(middle));
         let slope = |owner: &usize| {
             let slope = self.slopes.get(regions[*owner].depth);
-            slope.parts.map(Interval::middle)
+            slope.partials.map(Interval::middle)
         };
         let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
-        let half = reach(&cell);
+        let half_diagonal_of_box = half_diagonal(&cell);
         let mut best = Descent { steepest: 0.0, step: None };
-        let others = (0..OTHERS).map(|k| {
-            let angle = TAU * f64::from(k) / f64::from(OTHERS);
+        let extra_directions = (0..EXTRA_DIRECTIONS).map(|k| {
+            let angle = TAU * f64::from(k) / f64::from(EXTRA_DIRECTIONS);
             [angle.cos(), 0.0, angle.sin()]
         });
-        for (k, up) in slopes.iter().copied().chain(others).enumerate() {
-            if k >= slopes.len() && (best.step.is_some() || best.steepest >= self.least) {
+        for (k, gradient) in slopes.iter().copied().chain(extra_directions).enumerate() {
+            if k >= slopes.len() && (best.step.is_some() || best.steepest >= self.min_slope) {
                 break;
             }
-            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
-            let steps = NEAR.map(|part| part * half).into_iter();
-            for way in steps.clone().chain(STEPS.map(|part| part * self.size)) {
-                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
-                let Some(high) = self.deepest_at(to) else { continue };
-                let farthest = farthest(&cell, to).max(way + 2.0 * half);
-                let is_near = way <= NEAR[NEAR.len() - 1] * half;
+            let length = gradient.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let steps = STEPS_IN_HALF_DIAGONALS.map(|part| part * half_diagonal_of_box).into_iter();
+            for step_length in steps.clone().chain(STEP_FRACTIONS.map(|part| part * self.size)) {
+                let end_point = [0, 1, 2].map(|k| middle[k] - step_length * gradient[k] / length);
+                let Some(high) = self.deepest_at(end_point) else { continue };
+                let farthest =
+                    farthest(&cell, end_point).max(step_length + 2.0 * half_diagonal_of_box);
+                let is_near = step_length
+                    <= STEPS_IN_HALF_DIAGONALS[STEPS_IN_HALF_DIAGONALS.len() - 1]
+                        * half_diagonal_of_box;
                 if high == 0.0 && is_near {
-                    self.near = self.near.max(farthest);
+                    self.surface_distance = self.surface_distance.max(farthest);
                     return Descent { steepest: f64::INFINITY, step: None };
                 }
-                let falls = Interval::new(low, low).plus(Interval::new(-high, -high));
-                let by = Interval::new(farthest, farthest).reciprocal();
-                best.steepest = best.steepest.max(falls.times(by).low);
+                let decrease = Interval::new(low, low).plus(Interval::new(-high, -high));
+                let per_distance = Interval::new(farthest, farthest).reciprocal();
+                best.steepest = best.steepest.max(decrease.times(per_distance).low);
                 if high < low && is_near && best.step.is_none_or(|step| farthest < step) {
                     best.step = Some(farthest);
                 }
@@ -117,42 +130,42 @@ impl Survey<'_> {
 
     /// Returns the largest possible depth at a point, over all regions that may own it; 0 if none may.
     /// Returns `None` if the point is not in the domain.
-    fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
-        let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
-        if off_axis || !at.iter().all(|part| part.is_finite()) {
+    fn deepest_at(&mut self, point: [f64; 3]) -> Option<f64> {
+        let off_axis = self.tool.model.domain == Domain::HalfPlane && point[0] < 0.0;
+        if off_axis || !point.iter().all(|part| part.is_finite()) {
             return None;
         }
-        let claims = self.cover.claims(Cell::point(at));
-        self.slopes.set(Cell::point(at));
+        let claims = self.cover.claims(Cell::point(point));
+        self.slopes.set(Cell::point(point));
         let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
         Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
     }
 
     /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which
     /// the descent may miss the surface.
-    pub(super) fn least(&self) -> (f64, f64) {
+    pub(super) fn min_slope(&self) -> (f64, f64) {
         if self.feet.is_some() {
             return (1.0, 0.0);
         }
         // Depth falls along a descent, so each such box is met once: the length of the step out of it is
         // added to the distance missed.
-        let (mut least, mut steps) = (self.least, 0.0);
-        for descent in self.descents.iter().filter(|descent| descent.steepest < self.least) {
+        let (mut min_slope, mut steps) = (self.min_slope, 0.0);
+        for descent in self.descents.iter().filter(|descent| descent.steepest < self.min_slope) {
             match descent.step {
                 Some(step) => steps += step,
-                None => least = least.min(descent.steepest),
+                None => min_slope = min_slope.min(descent.steepest),
             }
         }
         // The tolerance covers neglected slopes. If no box was inside, the rate is still infinite and proves
         // nothing.
-        let least = if least.is_finite() { least - ROUNDING } else { 0.0 };
-        (least, self.near + steps)
+        let min_slope = if min_slope.is_finite() { min_slope - SLOPE_MARGIN } else { 0.0 };
+        (min_slope, self.surface_distance + steps)
     }
 }
 
 /// Returns an upper bound of the distance between a point and the points of a box.
 fn farthest(cell: &Cell, from: [f64; 3]) -> f64 {
-    let away = |axis: usize| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis]));
-    let squares = [0, 1, 2].map(|axis| away(axis).square());
+    let offset = |axis: usize| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis]));
+    let squares = [0, 1, 2].map(|axis| offset(axis).square());
     squares.into_iter().fold(NOTHING, Interval::plus).sqrt().high
 }

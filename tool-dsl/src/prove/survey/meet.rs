@@ -1,10 +1,10 @@
 //! Borders in a box with several owners: the continuity of depth from one to another.
 
-use super::super::borders::{Joint, Pair, Parted};
-use super::super::cover::{Claim, reach};
-use super::super::nonsmooth::{across, angle};
-use super::super::{Border, JumpPoint, OpenProof, SMALL, TOLERANCE};
-use super::{BoxSize, SLOPING, Survey, VAGUE, up};
+use super::super::borders::{Joint, Pair, Separation};
+use super::super::cover::{Claim, half_diagonal};
+use super::super::nonsmooth::{angle, fall_rate_across};
+use super::super::{Border, JumpPoint, OpenProof, SMALL_BOX_FRACTION, TOLERANCE};
+use super::{BoxSize, MAX_SLOPE_UNCERTAINTY, STEEP_SLOPE, Survey, sum_rounded_up};
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::Id;
@@ -12,20 +12,25 @@ use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 
 /// The accuracy of turns of the direction on the surface, in radians, unless boxes are as small as points. It
 /// only decides whether a box is divided; the certificate has the angle of the enclosure.
-const VAGUE_TURN: f64 = 1e-5;
+const TURN_ACCURACY: f64 = 1e-5;
 
 /// Two claims to a box that a curve separates.
-struct Met {
+struct Meeting {
     pair: Pair,
-    by: Parted,
+    separation: Separation,
     /// A point where both were found side by side with a jump between.
-    seen: Option<JumpPoint>,
+    jump_point: Option<JumpPoint>,
 }
 
 impl Survey<'_> {
     /// Returns whether enough is known about the borders between the owners of the current box.
-    pub(super) fn meet(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
-        let mut all = Vec::new();
+    pub(super) fn examine_borders(
+        &mut self,
+        cell: Cell,
+        claims: &[Claim],
+        box_size: BoxSize,
+    ) -> bool {
+        let mut meetings = Vec::new();
         for (k, a) in claims.iter().enumerate() {
             for b in &claims[k + 1..] {
                 // The region comes first; of two regions, the one listed earlier.
@@ -37,77 +42,92 @@ impl Survey<'_> {
                 };
                 let Some(own) = a.owner else { continue };
                 let pair = (own, b.owner);
-                let apart = self.jump(pair).low > 0.0;
-                let place = (&mut self.cover, cell);
-                if let Some(by) = self.parting.of(pair, [a, b], place, apart) {
-                    all.push(Met { pair, by, seen: None });
+                let depths_differ = self.jump(pair).low > 0.0;
+                let cover_and_cell = (&mut self.cover, cell);
+                if let Some(separation) =
+                    self.border_prover.of(pair, [a, b], cover_and_cell, depths_differ)
+                {
+                    meetings.push(Meeting { pair, separation, jump_point: None });
                 }
             }
         }
-        let small = reach(&cell) <= SMALL * self.size;
-        let (mut least, mut vague) = (f64::INFINITY, false);
-        for met in &mut all {
-            let apart = met.by.joint == Joint::None && self.jump(met.pair).low > 0.0;
-            let place = (met.pair, met.by.curve);
-            if apart && (small || grain.is_last()) && !self.jumping.contains_key(&place) {
-                let seen = self.witness.beside(met.pair, cell);
-                self.jumping.extend(seen.map(|seen| (place, seen)));
+        let is_small = half_diagonal(&cell) <= SMALL_BOX_FRACTION * self.size;
+        let (mut min_fall, mut any_vague) = (f64::INFINITY, false);
+        for meeting in &mut meetings {
+            let depths_differ =
+                meeting.separation.joint == Joint::None && self.jump(meeting.pair).low > 0.0;
+            let key = (meeting.pair, meeting.separation.curve);
+            if depths_differ
+                && (is_small || box_size.is_last())
+                && !self.jump_points.contains_key(&key)
+            {
+                let jump_point = self.witness.find_jump(meeting.pair, cell);
+                self.jump_points.extend(jump_point.map(|jump_point| (key, jump_point)));
             }
-            met.seen = if apart { self.jumping.get(&place).copied() } else { None };
-            if met.by.joint == Joint::None && met.seen.is_none() && !grain.is_last() {
+            meeting.jump_point =
+                if depths_differ { self.jump_points.get(&key).copied() } else { None };
+            if meeting.separation.joint == Joint::None
+                && meeting.jump_point.is_none()
+                && !box_size.is_last()
+            {
                 return false;
             }
             // In a point box other regions may lie between the two.
-            if grain != BoxSize::Point && self.feet.is_none() {
-                let (fall, slack) = self.across(met);
-                vague |= fall < SLOPING && slack > VAGUE;
-                least = least.min(fall);
+            if box_size != BoxSize::Point && self.feet.is_none() {
+                let (fall, slack) = self.fall_across(meeting);
+                any_vague |= fall < STEEP_SLOPE && slack > MAX_SLOPE_UNCERTAINTY;
+                min_fall = min_fall.min(fall);
             }
         }
         // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
-        if is_plane && !grain.is_last() {
-            let is_vague = |met: &Met| {
-                let turn = self.turn(met.pair);
-                turn.high - turn.low > VAGUE_TURN && self.is_on_surface(met.pair)
+        if is_plane && !box_size.is_last() {
+            let is_vague = |meeting: &Meeting| {
+                let turn_angle = self.turn_angle(meeting.pair);
+                turn_angle.high - turn_angle.low > TURN_ACCURACY && self.is_on_surface(meeting.pair)
             };
-            if all.iter().any(is_vague) {
+            if meetings.iter().any(is_vague) {
                 return false;
             }
         }
         // A slope this small may be an artefact of a large box.
-        if (vague || least < SLOPING && !small) && !grain.is_last() {
+        if (any_vague || min_fall < STEEP_SLOPE && !is_small) && !box_size.is_last() {
             return false;
         }
-        self.least = self.least.min(least);
-        let unjoined = all.iter().filter(|met| met.by.joint == Joint::None && met.seen.is_none());
-        let pairs: Vec<Pair> = unjoined.map(|met| met.pair).collect();
-        let mut most = 0.0f64;
+        self.min_slope = self.min_slope.min(min_fall);
+        let unjoined = meetings.iter().filter(|meeting| {
+            meeting.separation.joint == Joint::None && meeting.jump_point.is_none()
+        });
+        let pairs: Vec<Pair> = unjoined.map(|meeting| meeting.pair).collect();
+        let mut largest_jump = 0.0f64;
         for pair in pairs {
             let jump = self.jump(pair).high;
-            let widest = self.widest.entry(pair).or_insert(0.0);
-            *widest = widest.max(jump);
-            most = most.max(jump);
+            let known_jump = self.largest_jumps.entry(pair).or_insert(0.0);
+            *known_jump = known_jump.max(jump);
+            largest_jump = largest_jump.max(jump);
         }
-        self.jumps = up(self.jumps, most);
-        for met in &all {
-            let off = self.steps.entry((met.pair, met.by.curve)).or_insert(0.0);
-            *off = met.by.off.max(*off);
-            self.note(met, cell);
+        self.jumps = sum_rounded_up(self.jumps, largest_jump);
+        for meeting in &meetings {
+            let known_jump = self
+                .smooth_border_jumps
+                .entry((meeting.pair, meeting.separation.curve))
+                .or_insert(0.0);
+            *known_jump = meeting.separation.difference.max(*known_jump);
+            self.record_border(meeting, cell);
         }
         true
     }
 
     /// Returns a lower bound of the rate at which depth falls toward one of the sides of a border, and its
     /// uncertainty.
-    fn across(&mut self, met: &Met) -> (f64, f64) {
+    fn fall_across(&mut self, meeting: &Meeting) -> (f64, f64) {
         let regions = &self.tool.model.regions;
-        let (Joint::Kinked, (own, Some(other))) = (met.by.joint, met.pair) else {
+        let (Joint::Kinked, (own, Some(other))) = (meeting.separation.joint, meeting.pair) else {
             return (f64::INFINITY, 0.0);
         };
         let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
-        let curve = self.slopes.get(self.tool.model.curves[met.by.curve].value);
-        across(own, other, curve, met.by.below)
+        let curve = self.slopes.get(self.tool.model.curves[meeting.separation.curve].value);
+        fall_rate_across(own, other, curve, meeting.separation.below)
     }
 
     /// Returns the difference of two depths in the current box.
@@ -124,7 +144,7 @@ impl Survey<'_> {
     }
 
     /// Encloses the angle between the directions of two regions in the current box.
-    fn turn(&mut self, (own, other): Pair) -> Interval {
+    fn turn_angle(&mut self, (own, other): Pair) -> Interval {
         let Some(other) = other else { return NOTHING };
         let regions = &self.tool.model.regions;
         let [a, b] =
@@ -132,45 +152,51 @@ impl Survey<'_> {
         angle(a, b)
     }
 
-    fn note(&mut self, met: &Met, cell: Cell) {
+    fn record_border(&mut self, meeting: &Meeting, cell: Cell) {
         let regions = &self.tool.model.regions;
-        let (own, other) = met.pair;
-        let jump = match met.by.joint {
-            Joint::None => self.jump(met.pair),
-            _ => Interval { low: 0.0, high: met.by.off },
+        let (own, other) = meeting.pair;
+        let jump = match meeting.separation.joint {
+            Joint::None => self.jump(meeting.pair),
+            _ => Interval { low: 0.0, high: meeting.separation.difference },
         };
         let depth = self.slopes.get(regions[own].depth);
-        let turn = self.turn(met.pair);
+        let turn_angle = self.turn_angle(meeting.pair);
         // In a box that is not divided further, a jump that may be 0 is one at a corner.
-        if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
-            let [from, to] = [Some(own), other].map(|owner| self.named(owner));
+        if meeting.separation.joint == Joint::None
+            && meeting.jump_point.is_none()
+            && jump.high > TOLERANCE * self.size
+        {
+            let [from, to] = [Some(own), other].map(|owner| self.region_name(owner));
             let statement = Statement::Continues(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
-        let [of_own, of_other] = [Some(own), other].map(|owner| owner.map(magnitude));
-        let same = |of: Option<(Id, Id)>| of.is_none_or(|(magnitude, depth)| magnitude == depth);
-        let evaluation = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
+        let [own_outputs, other_outputs] = [Some(own), other].map(|owner| owner.map(magnitude));
+        let is_depth =
+            |outputs: Option<(Id, Id)>| outputs.is_none_or(|(magnitude, depth)| magnitude == depth);
+        let magnitude_range = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
             of.map_or(NOTHING, |(magnitude, _)| survey.slopes.get(magnitude).value)
         };
-        let step = if same(of_own) && same(of_other) {
+        let step = if is_depth(own_outputs) && is_depth(other_outputs) {
             jump
         } else {
-            evaluation(self, of_own).plus(evaluation(self, of_other).negated()).abs()
+            magnitude_range(self, own_outputs)
+                .plus(magnitude_range(self, other_outputs).negated())
+                .abs()
         };
-        let here = Border {
-            between: met.pair,
-            curve: met.by.curve,
+        let border = Border {
+            between: meeting.pair,
+            curve: meeting.separation.curve,
             jump,
             step,
-            turn,
-            turn_on_surface: self.is_on_surface(met.pair).then_some(turn),
-            seen: met.seen,
+            turn: turn_angle,
+            turn_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
+            seen: meeting.jump_point,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
         self.borders
-            .entry((met.pair, met.by.curve))
-            .and_modify(|known| known.join(&here))
-            .or_insert(here);
+            .entry((meeting.pair, meeting.separation.curve))
+            .and_modify(|known| known.join(&border))
+            .or_insert(border);
     }
 }

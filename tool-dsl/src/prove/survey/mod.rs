@@ -7,69 +7,77 @@ mod descent;
 mod meet;
 
 use super::borders::{BorderProver, Pair};
-use super::cover::{Boxes, Claim, Cover, reach};
+use super::cover::{Boxes, Claim, Cover, half_diagonal};
 use super::direction::{self, DirectionFacts};
-use super::foot::Feet;
-use super::nonsmooth::ROUNDING;
+use super::foot::ProfileFeet;
+use super::nonsmooth::SLOPE_MARGIN;
 use super::root::Forms;
-use super::rounding::Errors;
+use super::rounding::RoundingErrors;
 use super::slope::Slopes;
 use super::witness::Witness;
-use super::{Border, Certificate, FEW, JumpPoint, OpenProof, RegionFacts, SMALL, TOLERANCE};
+use super::{
+    Border, Certificate, JumpPoint, MAX_BOXES_IN_COMPILATION, OpenProof, RegionFacts,
+    SMALL_BOX_FRACTION, TOLERANCE,
+};
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
 use crate::number;
 use crate::plan::PlannedTool;
-use certain::Certain;
+use certain::CertainFacts;
 use std::collections::BTreeMap;
 
 /// The size to which boxes on a border are divided, relative to the tool's size, in the half plane and in
 /// space.
-const FINE: f64 = 1.0 / 56.0;
-const FINE_OF_SPACE: f64 = 1.0 / 7.0;
+const BORDER_BOX_FRACTION_IN_HALF_PLANE: f64 = 1.0 / 56.0;
+const BORDER_BOX_FRACTION_IN_SPACE: f64 = 1.0 / 7.0;
 /// The tries of a proof. Each gives the size, relative to the tool's size, to which boxes with an unexplained
 /// border are divided, and its part of the budget of boxes, in thirds. Tools whose borders do not touch need
 /// few boxes. Where curves touch, the number of boxes grows with the inverse square root of their size. The
 /// difference of depths in such boxes is added to the slack.
-const TRIES: [(f64, usize); 3] = [(1e-12, 1), (1e-10, 3), (1e-8, 9)];
+const POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS: [(f64, usize); 3] =
+    [(1e-12, 1), (1e-10, 3), (1e-8, 9)];
 /// The size for the last try, which always finishes.
-const COARSEST: f64 = 1e-7;
+const LAST_POINT_BOX_FRACTION: f64 = 1e-7;
 /// The largest distance of feet past the ends of segments, relative to the tool's size, and in half diagonals
 /// of a point box. The actual distance is added to the slack, so these only decide whether a box is divided.
-const BEYOND: f64 = 1e-11;
-const FAR: f64 = 4096.0;
+const MAX_OVERSHOOT_FRACTION: f64 = 1e-11;
+const MAX_OVERSHOOT_IN_HALF_DIAGONALS: f64 = 4096.0;
 /// The largest number of claims to a box that are compared pairwise.
-const CROWD: usize = 48;
+const MAX_CLAIMS: usize = 48;
 /// The largest number of boxes times regions in a proof, since a box takes longer the more regions there are.
 /// Up to 200 regions, only the budget of boxes counts.
-const WORK: usize = 7_000_000;
+const MAX_BOXES_TIMES_REGIONS: usize = 7_000_000;
 /// The relative accuracy of the slope up to which a box inside a region is divided.
-const SLACK: f64 = 0.02;
+const SLOPE_ACCURACY: f64 = 0.02;
 /// The slope below which a border is examined in smaller boxes.
-const SLOPING: f64 = 0.9;
+const STEEP_SLOPE: f64 = 0.9;
 /// The uncertainty of that slope above which boxes become still smaller.
-const VAGUE: f64 = 0.1;
+const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 
-/// Proves as much as possible with a number of boxes. For regions by hand this includes, if `alone` is set,
-/// that no two of them overlap.
-pub(super) fn survey(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
-    let boxes = boxes.min(WORK / tool.model.regions.len().max(1));
-    let hasty = [(TRIES[0].0, 3)];
-    for (finest, thirds) in if boxes > FEW { &TRIES[..] } else { &hasty } {
-        let mut survey = Survey::new(tool, *finest, alone);
+/// Proves as much as possible with a number of boxes. For regions by hand this includes, if
+/// `check_overlaps` is set, that no two of them overlap.
+pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
+    let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
+    let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
+    for (point_box_fraction, thirds) in if boxes > MAX_BOXES_IN_COMPILATION {
+        &POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[..]
+    } else {
+        &single_try
+    } {
+        let mut survey = Survey::new(tool, *point_box_fraction, check_overlaps);
         if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
             return survey.certificate();
         }
     }
-    let mut survey = Survey::new(tool, COARSEST, alone);
+    let mut survey = Survey::new(tool, LAST_POINT_BOX_FRACTION, check_overlaps);
     survey.run(boxes, true);
     survey.certificate()
 }
 
 /// Returns an upper bound of the sum of two lengths. Adding 0 is exact.
-fn up(a: f64, b: f64) -> f64 {
+fn sum_rounded_up(a: f64, b: f64) -> f64 {
     Interval::new(a, a).plus(Interval::new(b, b)).high
 }
 
@@ -102,92 +110,93 @@ struct Survey<'t> {
     cover: Cover<'t>,
     slopes: Slopes<'t>,
     witness: Witness<'t>,
-    errors: Errors<'t>,
-    parting: BorderProver<'t>,
+    errors: RoundingErrors<'t>,
+    border_prover: BorderProver<'t>,
     size: f64,
     /// The size to which boxes on a border are divided, relative to the tool's size.
-    fine: f64,
+    border_box_fraction: f64,
     /// The size of point boxes, relative to the tool's size.
-    finest: f64,
+    point_box_fraction: f64,
     regions: Vec<Option<RegionFacts>>,
-    aims: Vec<DirectionFacts>,
-    certain: Vec<Certain>,
+    directions: Vec<DirectionFacts>,
+    certain_facts: Vec<CertainFacts>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
-    jumping: BTreeMap<(Pair, CurveIndex), JumpPoint>,
+    jump_points: BTreeMap<(Pair, CurveIndex), JumpPoint>,
     /// The segments of a profile. They prove that depth is at least the distance to the surface. Without
     /// them, descents of depth prove it.
-    feet: Option<Feet<'t>>,
+    feet: Option<ProfileFeet<'t>>,
     /// The largest distance of a foot past the end of its segment.
-    beyond: f64,
+    overshoot: f64,
     /// The least slope toward the surface.
-    least: f64,
+    min_slope: f64,
     /// The descents from point boxes.
     descents: Vec<descent::Descent>,
     /// The largest distance from points of such boxes to the outside, where nothing else is known about the
     /// fall of depth.
-    near: f64,
+    surface_distance: f64,
     /// The sum, over boxes where several regions meet that no curve joins, of the largest difference of two
     /// depths there.
     jumps: f64,
     /// The largest difference of the depths of each pair of regions in such boxes.
-    widest: BTreeMap<Pair, f64>,
+    largest_jumps: BTreeMap<Pair, f64>,
     /// The largest difference of depths on each border where the profile is nearly smooth.
-    steps: BTreeMap<(Pair, CurveIndex), f64>,
+    smooth_border_jumps: BTreeMap<(Pair, CurveIndex), f64>,
     undecided: Vec<OpenProof>,
     /// True if regions are checked for overlaps.
-    alone: bool,
+    check_overlaps: bool,
     boxes: usize,
 }
 
 impl<'t> Survey<'t> {
-    fn new(tool: &'t PlannedTool, finest: f64, alone: bool) -> Survey<'t> {
+    fn new(tool: &'t PlannedTool, point_box_fraction: f64, check_overlaps: bool) -> Survey<'t> {
         let model = &tool.model;
-        let evaluation = model.regions.iter().flat_map(|region| {
+        let outputs = model.regions.iter().flat_map(|region| {
             let evaluation = [region.depth, region.magnitude, region.niceness];
             evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
         });
-        let roots = evaluation.chain(model.curves.iter().map(|curve| curve.value));
+        let roots = outputs.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
-        let feet = Feet::of(tool, &mut forms, reach(&whole));
-        let parting = BorderProver::new(model, whole, &mut forms, (feet.is_some(), finest));
-        let aim = |(index, region)| {
-            DirectionFacts::new(direction::straight(model, region, parting.depth(index)))
+        let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
+        let border_prover =
+            BorderProver::new(model, whole, &mut forms, (feet.is_some(), point_box_fraction));
+        let direction_facts = |(index, region)| {
+            DirectionFacts::new(direction::is_parallel(model, region, border_prover.depth(index)))
         };
-        let aims = model.regions.iter().enumerate().map(aim).collect();
+        let directions = model.regions.iter().enumerate().map(direction_facts).collect();
         Survey {
             tool,
             cover: Cover::new(model, &tool.plan.owner),
             slopes: Slopes::new(&model.graph, model.domain, roots),
-            errors: Errors::new(
+            errors: RoundingErrors::new(
                 &model.graph,
                 model.domain,
                 model.regions.iter().map(|region| region.depth),
             ),
-            witness: Witness::new(tool, reach(&whole)),
-            parting,
+            witness: Witness::new(tool, half_diagonal(&whole)),
+            border_prover,
             feet,
-            beyond: 0.0,
-            size: reach(&whole),
-            finest,
-            fine: match model.domain {
-                Domain::HalfPlane => FINE,
-                Domain::Space => FINE_OF_SPACE,
+            overshoot: 0.0,
+            size: half_diagonal(&whole),
+            point_box_fraction,
+            border_box_fraction: match model.domain {
+                Domain::HalfPlane => BORDER_BOX_FRACTION_IN_HALF_PLANE,
+                Domain::Space => BORDER_BOX_FRACTION_IN_SPACE,
             },
             regions: vec![None; model.regions.len()],
-            aims,
-            certain: vec![Certain::default(); model.regions.len()],
+            directions,
+            certain_facts: vec![CertainFacts::default(); model.regions.len()],
             borders: BTreeMap::new(),
-            jumping: BTreeMap::new(),
-            least: f64::INFINITY,
+            jump_points: BTreeMap::new(),
+            min_slope: f64::INFINITY,
             descents: Vec::new(),
-            near: 0.0,
+            surface_distance: 0.0,
             jumps: 0.0,
-            widest: BTreeMap::new(),
-            steps: BTreeMap::new(),
+            largest_jumps: BTreeMap::new(),
+            smooth_border_jumps: BTreeMap::new(),
             undecided: Vec::new(),
-            alone,
+            check_overlaps,
             boxes: 0,
         }
     }
@@ -204,21 +213,23 @@ impl<'t> Survey<'t> {
             let mut owners: Vec<Option<usize>> = claims.iter().map(|claim| claim.owner).collect();
             owners.sort_unstable();
             owners.dedup();
-            let grain = match reach(&cell) / self.size {
-                reach if reach <= self.finest => BoxSize::Point,
+            let box_size = match half_diagonal(&cell) / self.size {
+                reach if reach <= self.point_box_fraction => BoxSize::Point,
                 _ if boxes.count > budget => BoxSize::Last,
-                reach if reach <= self.fine => BoxSize::Fine,
+                reach if reach <= self.border_box_fraction => BoxSize::Fine,
                 _ => BoxSize::Coarse,
             };
             let done = match owners.as_slice() {
-                [None] => self.owned(cell, &claims, grain),
+                [None] => self.check_owners(cell, &claims, box_size),
                 [Some(owner)] => {
-                    self.owned(cell, &claims, grain) && self.within(*owner, cell, grain)
+                    self.check_owners(cell, &claims, box_size)
+                        && self.examine_interior(*owner, cell, box_size)
                 }
-                _ if grain == BoxSize::Coarse => false,
-                _ if claims.len() > CROWD && grain == BoxSize::Fine => false,
+                _ if box_size == BoxSize::Coarse => false,
+                _ if claims.len() > MAX_CLAIMS && box_size == BoxSize::Fine => false,
                 _ => {
-                    self.owned(cell, &claims, grain) && self.between(cell, &claims, &owners, grain)
+                    self.check_owners(cell, &claims, box_size)
+                        && self.examine_border(cell, &claims, &owners, box_size)
                 }
             };
             if !done {
@@ -231,19 +242,19 @@ impl<'t> Survey<'t> {
 
     /// Returns whether the owners of a box are proved to be those of the list of regions, as far as that is
     /// checked.
-    fn owned(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
+    fn check_owners(&mut self, cell: Cell, claims: &[Claim], box_size: BoxSize) -> bool {
         if self.feet.is_some() {
-            return self.footed(cell, claims, grain);
+            return self.check_feet(cell, claims, box_size);
         }
         // If depth is the distance, the owner is the nearest.
-        if self.tool.model.is_exact() || grain == BoxSize::Point {
+        if self.tool.model.is_exact() || box_size == BoxSize::Point {
             return true;
         }
-        let wrong = claims
-            .iter()
-            .find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell), self.alone));
-        if let (Some(claim), BoxSize::Last) = (wrong, grain) {
-            let statement = Statement::Alone(self.named(claim.owner));
+        let wrong = claims.iter().find(|claim| {
+            !self.border_prover.is_listed_owner(claim, (&mut self.cover, cell), self.check_overlaps)
+        });
+        if let (Some(claim), BoxSize::Last) = (wrong, box_size) {
+            let statement = Statement::Alone(self.region_name(claim.owner));
             self.undecided.push(OpenProof { cell, statement });
             return true;
         }
@@ -251,18 +262,20 @@ impl<'t> Survey<'t> {
     }
 
     /// Returns whether the feet of a box's points on the profile lie on their owners' segments.
-    fn footed(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
+    fn check_feet(&mut self, cell: Cell, claims: &[Claim], box_size: BoxSize) -> bool {
         let Some(feet) = &mut self.feet else { return true };
-        let allowed = match grain {
-            BoxSize::Point => (FAR * reach(&cell)).min(TOLERANCE * self.size),
-            _ => BEYOND * self.size,
+        let allowed = match box_size {
+            BoxSize::Point => {
+                (MAX_OVERSHOOT_IN_HALF_DIAGONALS * half_diagonal(&cell)).min(TOLERANCE * self.size)
+            }
+            _ => MAX_OVERSHOOT_FRACTION * self.size,
         };
         for claim in claims {
-            let beyond = feet.beyond(claim, &mut self.cover, cell);
-            if beyond <= allowed {
-                self.beyond = self.beyond.max(unless_rounding(beyond, self.size));
-            } else if grain.is_last() {
-                let statement = Statement::Nearest(self.named(claim.owner));
+            let overshoot = feet.overshoot(claim, &mut self.cover, cell);
+            if overshoot <= allowed {
+                self.overshoot = self.overshoot.max(unless_rounding(overshoot, self.size));
+            } else if box_size.is_last() {
+                let statement = Statement::Nearest(self.region_name(claim.owner));
                 self.undecided.push(OpenProof { cell, statement });
                 return true;
             } else {
@@ -273,98 +286,100 @@ impl<'t> Survey<'t> {
     }
 
     /// Returns whether enough is known about a box with one owner.
-    fn within(&mut self, owner: usize, cell: Cell, grain: BoxSize) -> bool {
+    fn examine_interior(&mut self, owner: usize, cell: Cell, box_size: BoxSize) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-        let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
-        let positive = depth.value.low >= -TOLERANCE * self.size;
-        let falls = self.feet.is_some() || self.fall(owner, &[Some(owner)]) > 0.0;
+        let known = depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
+        let is_positive = depth.value.low >= -TOLERANCE * self.size;
+        let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)]) > 0.0;
         // In the half plane a direction vanishes at points, which small boxes locate well.
-        let plane = self.tool.model.domain == Domain::HalfPlane;
-        let large = grain == BoxSize::Coarse || plane && reach(&cell) > SMALL * self.size;
-        if !grain.is_last() && large && direction::vanishes(self.course(owner)) {
+        let is_plane = self.tool.model.domain == Domain::HalfPlane;
+        let is_large = box_size == BoxSize::Coarse
+            || is_plane && half_diagonal(&cell) > SMALL_BOX_FRACTION * self.size;
+        if !box_size.is_last() && is_large && direction::vanishes(self.raw_direction(owner)) {
             return false;
         }
-        if !grain.is_last() && !(positive && falls && (known || grain == BoxSize::Fine)) {
+        if !box_size.is_last() && !(is_positive && falls && (known || box_size == BoxSize::Fine)) {
             return false;
         }
-        if !positive {
-            let statement = Statement::NotNegative(self.named(Some(owner)));
+        if !is_positive {
+            let statement = Statement::NotNegative(self.region_name(Some(owner)));
             self.undecided.push(OpenProof { cell, statement });
         }
-        self.evaluation(owner, cell);
-        self.descend(&[Some(owner)], cell, grain);
+        self.record_evaluation(owner, cell);
+        self.record_descent(&[Some(owner)], cell, box_size);
         true
     }
 
     /// Returns whether enough is known about a box with several owners.
-    fn between(
+    fn examine_border(
         &mut self,
         cell: Cell,
         claims: &[Claim],
         owners: &[Option<usize>],
-        grain: BoxSize,
+        box_size: BoxSize,
     ) -> bool {
         self.slopes.set(cell);
         let falls = self.feet.is_some()
-            || owners.iter().flatten().all(|owner| self.fall(*owner, owners) > 0.0);
-        if !grain.is_last() && !falls {
+            || owners.iter().flatten().all(|owner| self.fall_rate(*owner, owners) > 0.0);
+        if !box_size.is_last() && !falls {
             return false;
         }
-        if claims.len() > CROWD {
+        if claims.len() > MAX_CLAIMS {
             let statement = Statement::Crowd(owners.len());
             self.undecided.push(OpenProof { cell, statement });
-        } else if !self.meet(cell, claims, grain) {
+        } else if !self.examine_borders(cell, claims, box_size) {
             return false;
         }
-        owners.iter().flatten().for_each(|owner| self.evaluation(*owner, cell));
-        self.descend(owners, cell, grain);
+        owners.iter().flatten().for_each(|owner| self.record_evaluation(*owner, cell));
+        self.record_descent(owners, cell, box_size);
         true
     }
 
     /// Returns the name of a region, or `None` for the outside.
-    fn named(&self, owner: Option<usize>) -> Option<String> {
+    fn region_name(&self, owner: Option<usize>) -> Option<String> {
         owner.map(|owner| self.tool.model.regions[owner].name.clone())
     }
 
     /// Records the range of a region's quantities in the current box, which lies in the region wholly or in
     /// part.
-    fn evaluation(&mut self, owner: usize, cell: Cell) {
+    fn record_evaluation(&mut self, owner: usize, cell: Cell) {
         let region = &self.tool.model.regions[owner];
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
-        let along =
-            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.parts[k].times(niceness.parts[k])));
+        let dot_product =
+            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
         // A point of the region is not outside.
-        let positive = |value: Interval| Interval { low: value.low.max(0.0), ..value };
-        let here = RegionFacts {
-            depth: positive(depth.value),
+        let clamp_at_zero = |value: Interval| Interval { low: value.low.max(0.0), ..value };
+        let facts_here = RegionFacts {
+            depth: clamp_at_zero(depth.value),
             steepness: depth.length,
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
-            falls: along.high <= ROUNDING * depth.length.high * niceness.length.high,
+            falls: dot_product.high <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
             rounding: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
-        let course = self.course(owner);
-        let angle = self.aims[owner].note(course, depth, cell, self.tool.model.domain);
-        self.look_at_middle(owner, cell, angle.unwrap_or(0.0), !here.falls);
+        let raw_direction = self.raw_direction(owner);
+        let angle =
+            self.directions[owner].record(raw_direction, depth, cell, self.tool.model.domain);
+        self.examine_centre(owner, cell, angle.unwrap_or(0.0), !facts_here.falls);
         let facts = &mut self.regions[owner];
         *facts = Some(match facts.take() {
-            None => here,
+            None => facts_here,
             Some(known) => RegionFacts {
-                depth: known.depth.hull(here.depth),
-                steepness: known.steepness.hull(here.steepness),
-                magnitude: known.magnitude.hull(here.magnitude),
-                niceness: known.niceness.hull(here.niceness),
-                falls: known.falls && here.falls,
-                rounding: known.rounding.max(here.rounding),
+                depth: known.depth.hull(facts_here.depth),
+                steepness: known.steepness.hull(facts_here.steepness),
+                magnitude: known.magnitude.hull(facts_here.magnitude),
+                niceness: known.niceness.hull(facts_here.niceness),
+                falls: known.falls && facts_here.falls,
+                rounding: known.rounding.max(facts_here.rounding),
                 ..known
             },
         });
     }
 
-    fn course(&mut self, owner: usize) -> [Interval; 3] {
+    fn raw_direction(&mut self, owner: usize) -> [Interval; 3] {
         self.tool.model.regions[owner].raw_direction.0.map(|part| self.slopes.get(part).value)
     }
 }

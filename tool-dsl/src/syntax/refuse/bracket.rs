@@ -1,25 +1,25 @@
 //! Unmatched brackets.
 
 use super::super::lexeme::{Kind, Lexeme, lexemes};
-use super::{ITEMS, Stop, first_token};
+use super::{ITEM_KEYWORDS, Stop, first_token};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
 
 /// Returns whether a word begins an item and nothing else.
 fn begins_an_item(word: &str) -> bool {
-    ITEMS.contains(&word) && !["magnitude", "niceness"].contains(&word)
+    ITEM_KEYWORDS.contains(&word) && !["magnitude", "niceness"].contains(&word)
 }
 
 /// Returns an error for an unmatched bracket, if parsing stopped because of it.
 pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
-    let Brackets { open, extra } = Brackets::of(stop.text);
+    let Brackets { unclosed, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
         let diagnostic =
             Diagnostic::new(stop.span(at, at + 1), SyntaxKind::ClosesNothing { bracket });
         return Some(diagnostic);
     }
-    let (at, bracket) = open.filter(|(at, _)| *at < stop.at)?;
-    let close = if bracket == '{' { '}' } else { ')' };
-    let kind = SyntaxKind::NotClosed { bracket, close };
+    let (at, bracket) = unclosed.filter(|(at, _)| *at < stop.at)?;
+    let closing_bracket = if bracket == '{' { '}' } else { ')' };
+    let kind = SyntaxKind::NotClosed { bracket, close: closing_bracket };
     let diagnostic = Diagnostic::new(stop.span(at, at + 1), kind);
     Some(match first_token(stop.rest()) {
         "" => diagnostic,
@@ -53,7 +53,7 @@ impl Lines {
 /// The first unmatched brackets of a text.
 #[derive(Default)]
 struct Brackets {
-    open: Option<(usize, char)>,
+    unclosed: Option<(usize, char)>,
     extra: Option<(usize, char)>,
 }
 
@@ -61,39 +61,40 @@ impl Brackets {
     fn of(text: &str) -> Brackets {
         let mut found = Brackets::default();
         let lines = Lines::of(text);
-        let mut open: Vec<(usize, char)> = Vec::new();
+        let mut open_brackets: Vec<(usize, char)> = Vec::new();
         let mut begins = true;
         // The braces that contain the start of another item, so they were not closed.
         let mut swallows = None;
-        let whole = super::FILES.contains(&super::word(text.trim_start()));
-        let file = text.find('{').filter(|_| whole);
+        let is_whole_file = super::FILE_KEYWORDS.contains(&super::word(text.trim_start()));
+        let file = text.find('{').filter(|_| is_whole_file);
         for Lexeme { start: at, end, kind } in lexemes(text) {
             match kind {
-                Kind::Mark(c @ ('(' | '{')) => open.push((at, c)),
+                Kind::Mark(c @ ('(' | '{')) => open_brackets.push((at, c)),
                 Kind::Mark(c @ (')' | '}')) => {
                     let fits = |(_, other): &(usize, char)| (*other == '(') == (c == ')');
-                    match open.last().copied().filter(fits) {
+                    match open_brackets.last().copied().filter(fits) {
                         Some((begun, _)) => {
                             // A closing brace indented less than its block belongs to the enclosing block.
-                            let left = lines.indent(at).zip(lines.indent(begun));
-                            if c == '}' && left.is_some_and(|(own, other)| own.1 && own.0 < other.0)
+                            let indents = lines.indent(at).zip(lines.indent(begun));
+                            if c == '}'
+                                && indents.is_some_and(|(own, other)| own.1 && own.0 < other.0)
                             {
                                 swallows = swallows.or(Some((begun, '{')));
                             }
-                            open.pop();
+                            open_brackets.pop();
                         }
-                        None if open.is_empty() || c == ')' => {
+                        None if open_brackets.is_empty() || c == ')' => {
                             found.extra = found.extra.or(Some((at, c)));
                         }
                         // A `}` closes all parentheses that are open inside its braces.
                         None => {
-                            found.open = found.open.or(open.last().copied());
-                            while open.pop().is_some_and(|(_, bracket)| bracket != '{') {}
+                            found.unclosed = found.unclosed.or(open_brackets.last().copied());
+                            while open_brackets.pop().is_some_and(|(_, bracket)| bracket != '{') {}
                         }
                     }
                 }
                 Kind::Word if begins && swallows.is_none() && begins_an_item(&text[at..end]) => {
-                    let innermost = open.iter().rev().find(|(_, bracket)| *bracket == '{');
+                    let innermost = open_brackets.iter().rev().find(|(_, bracket)| *bracket == '{');
                     swallows = innermost.copied().filter(|(first, _)| Some(*first) != file);
                 }
                 _ => {}
@@ -102,8 +103,8 @@ impl Brackets {
                 begins = matches!(kind, Kind::Mark(';' | '{' | '}'));
             }
         }
-        if !open.is_empty() {
-            found.open = found.open.or(swallows).or(open.last().copied());
+        if !open_brackets.is_empty() {
+            found.unclosed = found.unclosed.or(swallows).or(open_brackets.last().copied());
         }
         found
     }

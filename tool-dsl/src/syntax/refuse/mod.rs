@@ -11,8 +11,8 @@ use expected::expected;
 use pest::error::{Error, InputLocation};
 
 /// The keywords that begin a file.
-pub(super) const FILES: [&str; 2] = ["tool", "solid"];
-const ITEMS: [&str; 13] = [
+pub(super) const FILE_KEYWORDS: [&str; 2] = ["tool", "solid"];
+const ITEM_KEYWORDS: [&str; 13] = [
     "units",
     "let",
     "param",
@@ -28,9 +28,9 @@ const ITEMS: [&str; 13] = [
     "niceness",
 ];
 /// The words after `allow`, for a direction and for a niceness.
-pub(super) const OBLIQUE: &str = "oblique";
-pub(super) const RISING: &str = "rising";
-const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
+pub(super) const OBLIQUE_KEYWORD: &str = "oblique";
+pub(super) const RISING_KEYWORD: &str = "rising";
+const PROPERTY_KEYWORDS: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
 
 /// Returns the error for a comparison that a closed region cannot have.
 pub(super) fn comparison(span: Span, written: &str) -> Diagnostic {
@@ -57,7 +57,7 @@ impl<'t> Stop<'t> {
 
     /// Returns the text before the position, without trailing blanks.
     fn before(&self) -> &'t str {
-        self.text[..self.at].trim_end_matches(BLANK)
+        self.text[..self.at].trim_end_matches(BLANK_CHARACTERS)
     }
 
     /// Returns the span between two positions of the text.
@@ -79,11 +79,11 @@ impl<'t> Stop<'t> {
 }
 
 /// The characters that pest skips.
-const BLANK: [char; 4] = [' ', '\t', '\r', '\n'];
+const BLANK_CHARACTERS: [char; 4] = [' ', '\t', '\r', '\n'];
 
 /// Converts a syntax error of pest, in a text that begins at `offset` of the source.
 pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Diagnostic {
-    let stop = Stop { text, offset, at: place(text, error) };
+    let stop = Stop { text, offset, at: error_offset(text, error) };
     let wants_end = error.parse_attempts().is_some_and(|attempts| {
         let ends = attempts.expected_tokens().iter().any(|token| token.to_string() == ";");
         ends && attempts.max_position >= rule_at(error)
@@ -125,7 +125,7 @@ pub(super) fn nothing(text: &str) -> Diagnostic {
 
 /// Converts a syntax error in the arguments of a tool's parameters.
 pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
-    let stop = Stop { text, offset: 0, at: place(text, error) };
+    let stop = Stop { text, offset: 0, at: error_offset(text, error) };
     spelling::character(&stop)
         .or_else(|| bracket::unmatched(&stop))
         .or_else(|| spelling::habit(&stop))
@@ -150,42 +150,45 @@ fn rule_at(error: &Error<Rule>) -> usize {
 }
 
 /// Returns the position at which the text stops to match.
-fn place(text: &str, error: &Error<Rule>) -> usize {
+fn error_offset(text: &str, error: &Error<Rule>) -> usize {
     // Rules are tried where they begin; a token may have been missing further on.
     let token_at = error.parse_attempts().map_or(0, |attempts| attempts.max_position);
     let at = rule_at(error).max(token_at);
-    text.len() - text[at..].trim_start_matches(BLANK).len()
+    text.len() - text[at..].trim_start_matches(BLANK_CHARACTERS).len()
 }
 
 /// Returns an error for an item or property that begins with an unknown word.
 fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
-    let whole = stop.text.trim_start_matches(BLANK);
-    let first = word(whole);
+    let rest = stop.text.trim_start_matches(BLANK_CHARACTERS);
+    let first = word(rest);
     if first.is_empty() {
         return None;
     }
-    let start = stop.text.len() - whole.len();
-    let place = stop.span(start, start + first.len());
+    let start = stop.text.len() - rest.len();
+    let span = stop.span(start, start + first.len());
     // A whole file includes its header; an item does not.
-    if stop.offset == 0 && stop.at == start && !FILES.contains(&first) {
-        let kind = SyntaxKind::UnknownFile { word: first.to_owned(), meant: nearest(first, FILES) };
-        return Some(Diagnostic::new(place, kind));
+    if stop.offset == 0 && stop.at == start && !FILE_KEYWORDS.contains(&first) {
+        let kind = SyntaxKind::UnknownFile {
+            word: first.to_owned(),
+            meant: nearest(first, FILE_KEYWORDS),
+        };
+        return Some(Diagnostic::new(span, kind));
     }
-    if !FILES.contains(&first) && !ITEMS.contains(&first) {
+    if !FILE_KEYWORDS.contains(&first) && !ITEM_KEYWORDS.contains(&first) {
         let kind = SyntaxKind::UnknownItem {
             word: first.to_owned(),
-            meant: nearest(first, ITEMS.into_iter().chain(FILES)),
-            known: Names::new(ITEMS),
+            meant: nearest(first, ITEM_KEYWORDS.into_iter().chain(FILE_KEYWORDS)),
+            known: Names::new(ITEM_KEYWORDS),
         };
-        return Some(Diagnostic::new(place, kind));
+        return Some(Diagnostic::new(span, kind));
     }
     let wrong = word(stop.rest());
     if first == "region" && !wrong.is_empty() && stop.before().contains('{') {
-        let after = stop.rest()[wrong.len()..].trim_start_matches(BLANK);
-        if after.starts_with(':') && !PROPERTIES.contains(&wrong) {
+        let after = stop.rest()[wrong.len()..].trim_start_matches(BLANK_CHARACTERS);
+        if after.starts_with(':') && !PROPERTY_KEYWORDS.contains(&wrong) {
             let kind = SyntaxKind::UnknownProperty {
                 word: wrong.to_owned(),
-                meant: nearest(wrong, PROPERTIES),
+                meant: nearest(wrong, PROPERTY_KEYWORDS),
             };
             return Some(Diagnostic::new(stop.next(wrong.len()), kind));
         }
@@ -216,5 +219,5 @@ fn ends_a_value(before: &str) -> bool {
 }
 
 fn starts_a_word(rest: &str) -> bool {
-    ITEMS.into_iter().chain(PROPERTIES).any(|item| word(rest) == item)
+    ITEM_KEYWORDS.into_iter().chain(PROPERTY_KEYWORDS).any(|item| word(rest) == item)
 }

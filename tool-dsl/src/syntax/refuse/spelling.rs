@@ -1,10 +1,10 @@
 //! Spelling mistakes: foreign characters, and habits from other languages.
 
-use super::{BLANK, FILES, Stop, ends_a_value, in_name, word};
+use super::{BLANK_CHARACTERS, FILE_KEYWORDS, Stop, ends_a_value, in_name, word};
 use crate::diagnostic::{Diagnostic, NameStart, SpellingKind, SyntaxKind};
 
 /// Characters that resemble the intended ones.
-const MEANT: [(char, &str); 15] = [
+const REPLACEMENTS: [(char, &str); 15] = [
     ('×', "*"),
     ('·', "*"),
     ('÷', "/"),
@@ -23,25 +23,25 @@ const MEANT: [(char, &str); 15] = [
 ];
 
 /// Words after which a name follows.
-const NAMING: [&str; 7] = ["tool", "solid", "let", "param", "curve", "region", "as"];
+const NAMING_KEYWORDS: [&str; 7] = ["tool", "solid", "let", "param", "curve", "region", "as"];
 
 /// Returns an error for a mistake that its first character identifies.
 pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = rest.chars().next()?;
-    let here = stop.next(0);
-    let diagnostic = |kind: SpellingKind| Some(Diagnostic::new(here, kind));
+    let next_character = stop.next(0);
+    let diagnostic = |kind: SpellingKind| Some(Diagnostic::new(next_character, kind));
     let digits = |s: &str| s.chars().take_while(char::is_ascii_digit).collect::<String>();
     let number = number_before(before);
     if let Some(digits) = number.strip_suffix('.') {
-        let place = stop.span(before.len() - number.len(), before.len());
+        let span = stop.span(before.len() - number.len(), before.len());
         let diagnostic =
-            Diagnostic::new(place, SpellingKind::TrailingPoint { digits: digits.to_owned() });
+            Diagnostic::new(span, SpellingKind::TrailingPoint { digits: digits.to_owned() });
         return Some(diagnostic);
     }
     let glued = before.len() == stop.at;
     // The span of `begun` with this character after it.
-    let whole = |begun: &str| {
+    let is_whole = |begun: &str| {
         let end = stop.at + next.len_utf8();
         stop.span(if glued { stop.at - begun.len() } else { stop.at }, end)
     };
@@ -51,7 +51,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         }
         '°' if !number.is_empty() => {
             let diagnostic = Diagnostic::new(
-                whole(number),
+                is_whole(number),
                 SpellingKind::DegreeSign { number: number.to_owned() },
             );
             Some(diagnostic)
@@ -60,7 +60,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
             let power = if next == '²' { 2 } else { 3 };
             let base = stop.last_word();
             let diagnostic = Diagnostic::new(
-                whole(base),
+                is_whole(base),
                 SpellingKind::Superscript { base: base.to_owned(), sign: next, power },
             );
             Some(diagnostic)
@@ -75,7 +75,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         '"' => diagnostic(SpellingKind::MisplacedText),
         '_' if glued && !number.is_empty() => diagnostic(SpellingKind::UnderscoreInNumber),
         '_' => diagnostic(SpellingKind::NameBegin { start: NameStart::Underscore }),
-        _ => match MEANT.iter().find(|(wrong, _)| *wrong == next) {
+        _ => match REPLACEMENTS.iter().find(|(wrong, _)| *wrong == next) {
             Some((_, meant)) => diagnostic(SpellingKind::Lookalike { written: next, meant }),
             None => foreign(next).and_then(diagnostic),
         },
@@ -130,7 +130,7 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     if rest.starts_with(';') && before.is_empty() {
         return Some(Diagnostic::new(stop.next(1), SpellingKind::ExtraSemicolon));
     }
-    if FILES.contains(&next) {
+    if FILE_KEYWORDS.contains(&next) {
         return Some(Diagnostic::new(
             stop.next(next.len()),
             SpellingKind::SecondFile { word: next.to_owned() },
@@ -145,7 +145,7 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
     if stop.rest().starts_with("/*") {
         return Some(comment(stop.at));
     }
-    let read = stop.text.trim_matches(BLANK);
+    let read = stop.text.trim_matches(BLANK_CHARACTERS);
     if stop.offset == 0 && stop.rest().is_empty() && word(read).is_empty() {
         return Some(no_tool(stop));
     }
@@ -153,14 +153,14 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
     for line in stop.text.split_inclusive('\n') {
         let code = line.split("//").next().unwrap_or_default();
         if let (1, Some(at)) = (code.matches('"').count() % 2, code.rfind('"')) {
-            let place = stop.span(start + at, start + at + 1);
-            return Some(Diagnostic::new(place, SpellingKind::TextNotClosed));
+            let span = stop.span(start + at, start + at + 1);
+            return Some(Diagnostic::new(span, SpellingKind::TextNotClosed));
         }
         start += line.len();
     }
     let before = stop.before();
-    let open = before.matches("/*").count() > before.matches("*/").count();
-    open.then(|| comment(before.rfind("/*").unwrap_or_default()))
+    let is_in_comment = before.matches("/*").count() > before.matches("*/").count();
+    is_in_comment.then(|| comment(before.rfind("/*").unwrap_or_default()))
 }
 
 /// Returns the error for a text that ends without a tool.
@@ -171,8 +171,9 @@ pub(super) fn no_tool(stop: &Stop<'_>) -> Diagnostic {
 /// Returns an error for a name with a dash, or one that begins with a digit.
 fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
-    let of_tool = |naming: &str| FILES.contains(&naming);
-    if rest.starts_with(|c: char| c.is_ascii_digit()) && NAMING.contains(&stop.last_word()) {
+    let of_tool = |naming: &str| FILE_KEYWORDS.contains(&naming);
+    if rest.starts_with(|c: char| c.is_ascii_digit()) && NAMING_KEYWORDS.contains(&stop.last_word())
+    {
         let length = rest.find(|c| !in_name(c)).unwrap_or(rest.len());
         let start = match of_tool(stop.last_word()) {
             true => NameStart::DigitOfTool,
@@ -181,17 +182,24 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
         return Some(Diagnostic::new(stop.next(length), SpellingKind::NameBegin { start }));
     }
     let begun = stop.last_word();
-    let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK);
+    let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK_CHARACTERS);
     let naming = &naming[naming.trim_end_matches(in_name).len()..];
-    if rest.starts_with('-') && NAMING.contains(&naming) {
+    if rest.starts_with('-') && NAMING_KEYWORDS.contains(&naming) {
         // Tokens of an inline tool are separated by blanks.
-        let tail = rest[1..].trim_start_matches(BLANK);
+        let tail = rest[1..].trim_start_matches(BLANK_CHARACTERS);
         let tail = &tail[..tail.find(|c| !in_name(c) && c != '-').unwrap_or(tail.len())];
-        let whole = format!("{begun}-{tail}");
+        let whole_name = format!("{begun}-{tail}");
         let end = stop.at + rest.find(tail).unwrap_or(0) + tail.len();
-        let place = stop.span(before.len() - begun.len(), end);
-        let meant = if of_tool(naming) { whole.replace('-', "") } else { whole.replace('-', "_") };
-        return Some(Diagnostic::new(place, SpellingKind::DashInName { written: whole, meant }));
+        let span = stop.span(before.len() - begun.len(), end);
+        let meant = if of_tool(naming) {
+            whole_name.replace('-', "")
+        } else {
+            whole_name.replace('-', "_")
+        };
+        return Some(Diagnostic::new(
+            span,
+            SpellingKind::DashInName { written: whole_name, meant },
+        ));
     }
     None
 }
