@@ -6,13 +6,14 @@ use tool_dsl::diagnostic::{Diagnostic, Refusal};
 use tool_dsl::source::Sources;
 
 /// Returns a tool's errors, each at its location.
-pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> TokenStream {
-    placed(refusal.errors(), sources, place)
+pub(crate) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> TokenStream {
+    located(refusal.errors(), sources, call_site)
         .map(|(message, [first, last])| {
             let mut tokens = quote_spanned! { first => ::core::compile_error! };
-            let mut said = Group::new(Delimiter::Brace, quote_spanned! { last => #message });
-            said.set_span(last);
-            tokens.extend([TokenTree::Group(said)]);
+            let mut message_group =
+                Group::new(Delimiter::Brace, quote_spanned! { last => #message });
+            message_group.set_span(last);
+            tokens.extend([TokenTree::Group(message_group)]);
             tokens
         })
         .collect()
@@ -22,8 +23,12 @@ pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> Token
 ///
 /// On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
 /// the text of its deprecation note.
-pub(crate) fn warnings(diagnostics: &[Diagnostic], sources: &Sources, place: Span) -> TokenStream {
-    placed(diagnostics.iter(), sources, place)
+pub(crate) fn warnings(
+    diagnostics: &[Diagnostic],
+    sources: &Sources,
+    call_site: Span,
+) -> TokenStream {
+    located(diagnostics.iter(), sources, call_site)
         .map(|(message, [first, _])| {
             quote_spanned! { first =>
                 const _: () = {
@@ -39,22 +44,22 @@ pub(crate) fn warnings(diagnostics: &[Diagnostic], sources: &Sources, place: Spa
 /// Returns texts, each with the first and last tokens at which rustc shows it. A diagnostic of the program's
 /// own text is shown at its tokens. One of a mounted file is shown at the mount, with the line of its file.
 /// All others are shown together at the macro's call.
-fn placed<'r>(
+fn located<'r>(
     diagnostics: impl Iterator<Item = &'r Diagnostic>,
     sources: &Sources,
-    place: Span,
+    call_site: Span,
 ) -> impl Iterator<Item = (String, [Span; 2])> {
     let (mut texts, mut rest) = (Vec::new(), Vec::new());
     for diagnostic in diagnostics {
         let (source, inside) = sources.locate(diagnostic.span);
         match (source.tokens_at(inside), sources.tokens_at(diagnostic.span)) {
-            (Some(place), _) => texts.push((in_words(diagnostic, sources), place)),
+            (Some(call_site), _) => texts.push((plain_message(diagnostic, sources), call_site)),
             (None, Some(mount)) => texts.push((excerpt(diagnostic, sources), mount)),
             (None, None) => rest.push(excerpt(diagnostic, sources)),
         }
     }
     if !rest.is_empty() {
-        texts.push((rest.join("\n\n"), [place, place]));
+        texts.push((rest.join("\n\n"), [call_site, call_site]));
     }
     texts.into_iter()
 }
@@ -68,12 +73,12 @@ fn excerpt(diagnostic: &Diagnostic, sources: &Sources) -> String {
 }
 
 /// Returns a diagnostic for a location that rustc shows itself.
-fn in_words(diagnostic: &Diagnostic, sources: &Sources) -> String {
+fn plain_message(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut text = format!("{} [{}]", diagnostic.message(), diagnostic.code());
     if let Some((span, label)) = &diagnostic.second {
         let (source, inside) = sources.locate(*span);
-        let place = sources.text(*span);
-        text.push_str(&format!("\nnote: {label}: `{place}`"));
+        let call_site = sources.text(*span);
+        text.push_str(&format!("\nnote: {label}: `{call_site}`"));
         text.push_str(&match source.tokens_at(inside) {
             Some([token, _]) => format!(", line {}", token.unwrap().line()),
             None => {

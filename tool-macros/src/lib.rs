@@ -2,7 +2,7 @@
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
-mod said;
+mod diagnostics;
 
 use proc_macro::TokenStream;
 use quote::quote;
@@ -200,8 +200,8 @@ fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenS
         _ => quote! {},
     };
     tokens.extend(match &compiled.outcome {
-        Ok(accepted) => said::warnings(&accepted.warnings, &compiled.sources, place),
-        Err(refusal) => said::errors(refusal, &compiled.sources, place),
+        Ok(accepted) => diagnostics::warnings(&accepted.warnings, &compiled.sources, place),
+        Err(refusal) => diagnostics::errors(refusal, &compiled.sources, place),
     });
     // Cargo rebuilds when an included file changes.
     for file in compiled.sources.files() {
