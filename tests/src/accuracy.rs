@@ -15,7 +15,7 @@ use touchoff::{Level, Tool};
 pub const DOUBT: f64 = 2.0;
 
 /// Number of points that are evaluated at a time.
-const CHUNK: usize = 1 << 15;
+const POINTS_PER_CHUNK: usize = 1 << 15;
 
 /// The largest error of one kind, and its point.
 #[derive(Clone, Debug, Default)]
@@ -144,8 +144,8 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
         points: points.len(),
         ..Row::default()
     };
-    let judge = PointChecker::new(tool, &reference, &oracle);
-    for chunk in points.chunks(CHUNK) {
+    let checker = PointChecker::new(tool, &reference, &oracle);
+    for chunk in points.chunks(POINTS_PER_CHUNK) {
         let mut list = PointBatch::default();
         chunk.iter().for_each(|p| list.push(*p));
         let [one, lanes] = [Level::baseline(), Level::new()].map(|level| {
@@ -155,7 +155,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
         });
         for (i, p) in chunk.iter().enumerate() {
             row.unlike += usize::from(bits(&one, i) != bits(&lanes, i));
-            row.see(*p, &judge.judge(*p, &one, i), info);
+            row.see(*p, &checker.judge(*p, &one, i), info);
         }
     }
     row
@@ -166,11 +166,11 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
 pub fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
     let (names, surfaces) = (oracle.regions(), oracle.surfaces());
     let surfaces: Vec<&str> = surfaces.map(|(surface, _)| surface).collect();
-    let places = |list: &[&str], name: &str| -> Vec<usize> {
+    let indices = |list: &[&str], name: &str| -> Vec<usize> {
         (0..list.len()).filter(|k| list[*k] == name).collect()
     };
-    let of = |name: &str| match places(&names, name) {
-        none if none.is_empty() => places(&surfaces, name),
+    let of = |name: &str| match indices(&names, name) {
+        none if none.is_empty() => indices(&surfaces, name),
         some => some,
     };
     tool.info().regions.iter().map(|region| of(&region.name)).collect()
@@ -216,7 +216,7 @@ pub struct PointChecker<'a> {
 
 /// Distance from the surface, in S, up to which a tool must have its distance outside. Farther than 64 sizes it has
 /// a bound.
-const HAS_DISTANCE: f64 = 16.0;
+const MAX_DISTANCE_IN_SIZES: f64 = 16.0;
 
 /// Results for one point.
 #[derive(Clone, Debug)]
@@ -262,9 +262,10 @@ impl<'a> PointChecker<'a> {
         let wrong = answer.is_some() != (depth > 0.0);
         let side = if wrong { depth.abs() / self.ulp } else { 0.0 };
         let Some(answer) = answer else {
-            let off = || (self.tool.clearance(p) + depth).abs() / self.ulp;
-            let has = self.tool.info().is_exact() && -depth < HAS_DISTANCE * self.reference.scale();
-            let clearance = has.then(off);
+            let clearance_error = || (self.tool.clearance(p) + depth).abs() / self.ulp;
+            let has = self.tool.info().is_exact()
+                && -depth < MAX_DISTANCE_IN_SIZES * self.reference.scale();
+            let clearance = has.then(clearance_error);
             return Judged { side, clearance, inside: None };
         };
         Judged { side, clearance: None, inside: Some(self.inside(&at, &exact, answer)) }
@@ -274,8 +275,9 @@ impl<'a> PointChecker<'a> {
         let [region, found, _, niceness, ux, uy, uz] = answer;
         let (region, depth) = (region as usize, exact.to_f64());
         let finite = answer.iter().all(|v| v.is_finite());
-        let far = |owner: &usize| self.reference.distance_to(at, *owner).to_f64();
-        let owner = self.owners[region].iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied();
+        let distance = |owner: &usize| self.reference.distance_to(at, *owner).to_f64();
+        let owner =
+            self.owners[region].iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied();
         let mut inside = Inside {
             region,
             senseless: !finite || found < 0.0 || niceness < 0.0 || owner.is_none(),
@@ -288,21 +290,23 @@ impl<'a> PointChecker<'a> {
             return inside;
         }
         // A point that only rounding puts inside has depth 0.
-        let deep = if depth > 0.0 { exact - &Big::exactly(found) } else { Big::exactly(found) };
-        inside.depth = deep.abs().to_f64() / self.ulp;
+        let depth_error =
+            if depth > 0.0 { exact - &Big::exactly(found) } else { Big::exactly(found) };
+        inside.depth = depth_error.abs().to_f64() / self.ulp;
         let Some(owner) = owner else { return inside };
         if depth > 0.0 {
-            inside.owner = (far(&owner) - depth).max(0.0) / self.ulp;
+            inside.owner = (distance(&owner) - depth).max(0.0) / self.ulp;
         }
         let u = [ux, uy, uz].map(Big::exactly);
         let size = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
         inside.length = (size.to_f64() - 1.0).abs() / f64::EPSILON;
         let expected = self.reference.direction(at, owner);
-        let apart = u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
+        let squared_difference =
+            u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
         let rho = self.reference.singular(at, owner);
         // Exactly where no direction exists, the one that the language fixes is required.
         let blur = if rho == 0.0 { 1.0 } else { (self.reference.scale() / rho).max(1.0) };
-        inside.direction = apart.sqrt() / (8.0 * f64::EPSILON * blur);
+        inside.direction = squared_difference.sqrt() / (8.0 * f64::EPSILON * blur);
         inside
     }
 }
@@ -313,8 +317,8 @@ impl Row {
         if judged.side > DOUBT {
             self.sides.see(judged.side, p, "");
         }
-        if let Some(off) = judged.clearance {
-            self.clearance.see(off, p, "");
+        if let Some(clearance_error) = judged.clearance {
+            self.clearance.see(clearance_error, p, "");
         }
         let Some(inside) = &judged.inside else { return };
         let name = &info.regions[inside.region].name;

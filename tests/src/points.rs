@@ -4,10 +4,10 @@ use crate::oracle::draw::Rng;
 use crate::oracle::{Nearest, Oracle};
 
 /// Number of points beside each border point that is found.
-const BESIDE: usize = 16;
+const POINTS_PER_BORDER_POINT: usize = 16;
 
 /// The points with the largest errors that a climbing search found: a tool's name and the coordinates, per line.
-const HARD: &str = include_str!("hard_points.tsv");
+const HARD_POINTS: &str = include_str!("hard_points.tsv");
 
 /// Returns `count` points: half of them anywhere in a box a tenth larger than the tool, half within 1e-6 of the
 /// surface or of a splitting curve. Adds every vertex, every centre, points on the axis, and the points with the
@@ -16,7 +16,7 @@ pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
     let mut draw = Rng::new(seed);
     let mut points = Vec::new();
     anywhere(oracle, count / 2, &mut draw, &mut points);
-    beside_borders(oracle, count.div_ceil(2 * BESIDE), &mut draw, &mut points);
+    beside_borders(oracle, count.div_ceil(2 * POINTS_PER_BORDER_POINT), &mut draw, &mut points);
     at_corners(oracle, &mut draw, &mut points);
     on_the_axis(oracle, &mut points);
     points.extend(hard(oracle.name()));
@@ -34,7 +34,7 @@ fn hard(tool: &str) -> impl Iterator<Item = [f64; 3]> {
         let [name, x, y, z] = words[..] else { panic!("no name and three numbers: {line}") };
         (name == tool).then(|| [x, y, z].map(coordinate))
     };
-    HARD.lines().filter_map(line)
+    HARD_POINTS.lines().filter_map(line)
 }
 
 fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
@@ -89,7 +89,7 @@ fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut V
             let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
             if owner(middle) == first { a = middle } else { b = middle }
         }
-        for _ in 0..BESIDE {
+        for _ in 0..POINTS_PER_BORDER_POINT {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
             let size = 10f64.powf(draw.between(-16.0, -6.0));
             let [cos, sin] = any_azimuth(draw);
@@ -100,10 +100,10 @@ fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut V
 
 /// Adds vertices, centres and ends of known curves, and points one ulp to either side in `d` and in `z`.
 fn at_corners(oracle: &Nearest, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
-    let around = |v: f64| [v, v.next_up(), v.next_down()];
+    let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     for [d, z] in oracle.corners() {
-        for d in around(d) {
-            for z in around(z) {
+        for d in neighbours(d) {
+            for z in neighbours(z) {
                 let straight = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([any_azimuth(draw)]);
                 points.extend(straight.map(|azimuth| over([d.abs(), z], azimuth)));
             }

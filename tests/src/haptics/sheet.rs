@@ -21,14 +21,14 @@ pub fn pressed(part: &Part, law: Law, rendering: Option<Rendering>) -> Vec<[f64;
     let settings = SessionSettings { stiffness: 100.0, rendering, ..SessionSettings::new(1000.0) };
     let probe = Probe::new(part, tool("D2Ball")).with_law(law);
     let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
-    let wanted = |time: f64| -10.0 * time;
-    let mut hand =
-        SimulatedHand::new(LIMITS, 1000.0, |time| upright(0.2 + wanted(time))).expect("a hand");
+    let hand_height = |time: f64| -10.0 * time;
+    let mut hand = SimulatedHand::new(LIMITS, 1000.0, |time| upright(0.2 + hand_height(time)))
+        .expect("a hand");
     (0..2_000)
         .filter_map(|cycle| {
             let state = session.cycle(&mut hand)?;
-            let wanted = wanted(f64::from(cycle) / 1000.0);
-            Some([-wanted, state.tool.tip().z, state.wrench_on_hand.force.z])
+            let hand_height = hand_height(f64::from(cycle) / 1000.0);
+            Some([-hand_height, state.tool.tip().z, state.wrench_on_hand.force.z])
         })
         .collect()
 }

@@ -38,32 +38,32 @@ fn exponential(matrix: Matrix2<f64>) -> Matrix2<f64> {
 
 /// Returns the largest stiffness of a wall, N/mm, at which a grip comes to rest by theory; `rate` in Hz.
 pub fn theory(grip: &HandImpedance, rate: f64) -> f64 {
-    let by = 1000.0 / grip.mass;
-    let own = Matrix2::new(0.0, 1.0, -grip.stiffness * by, -grip.damping * by);
-    let after = exponential(own / rate);
+    let per_mass = 1000.0 / grip.mass;
+    let dynamics = Matrix2::new(0.0, 1.0, -grip.stiffness * per_mass, -grip.damping * per_mass);
+    let transition = exponential(dynamics / rate);
     // The effect of a force of 1 N within a period.
-    let inverse = own.try_inverse().expect("a hand with a spring");
-    let force = inverse * (after - Matrix2::identity()) * Vector2::new(0.0, by);
+    let inverse = dynamics.try_inverse().expect("a hand with a spring");
+    let force = inverse * (transition - Matrix2::identity()) * Vector2::new(0.0, per_mass);
     largest(|stiffness| {
-        let closed = after - force * Vector2::new(stiffness, 0.0).transpose();
+        let closed = transition - force * Vector2::new(stiffness, 0.0).transpose();
         closed.complex_eigenvalues().iter().all(|value| value.norm() < 1.0)
     })
 }
 
-/// Returns the largest number for which `holds` is true, to one part in a hundred; infinity if it is beyond 10^5.
-fn largest(holds: impl Fn(f64) -> bool) -> f64 {
-    const MOST: f64 = 1e5;
+/// Returns the largest number for which `is_stable` is true, to one part in a hundred; infinity if it is beyond 10^5.
+fn largest(is_stable: impl Fn(f64) -> bool) -> f64 {
+    const MAX_STIFFNESS: f64 = 1e5;
     let mut high = 0.1;
-    while holds(high) {
+    while is_stable(high) {
         high *= 2.0;
-        if high > MOST {
+        if high > MAX_STIFFNESS {
             return f64::INFINITY;
         }
     }
     let mut low = high / 2.0;
     while high > low * 1.01 {
         let middle = (low * high).sqrt();
-        if holds(middle) { low = middle } else { high = middle }
+        if is_stable(middle) { low = middle } else { high = middle }
     }
     low
 }
@@ -93,9 +93,9 @@ impl Wall<'_> {
             ..SessionSettings::new(self.rate)
         };
         // Presses with a fifth of a newton, and a little more to begin with.
-        let wish = |time: f64| upright(if time < 0.2 { -1.05 } else { -1.0 });
+        let hand_pose = |time: f64| upright(if time < 0.2 { -1.05 } else { -1.0 });
         let limits = DeviceLimits { force: 1e6, torque: 1e9, ..LIMITS };
-        let hand = SimulatedHand::new(limits, self.rate, wish)
+        let hand = SimulatedHand::new(limits, self.rate, hand_pose)
             .and_then(|hand| hand.with_encoders(self.step, 0.0));
         let mut hand = hand.expect("a hand");
         let mut session = Session::new(probe, &settings, limits).expect("settings");
@@ -147,9 +147,9 @@ pub fn row(rate: f64) -> Row {
     let limits = DeviceLimits { force: 1e6, torque: 1e9, ..LIMITS };
     let scaled = Rendering::Direct { scaled: true, damping: 0.0 };
     let coupled = Rendering::Coupled(Coupling::of(&limits));
-    let ways = [(DIRECT, 0.0), (DIRECT, STEP), (scaled, 0.0), (coupled, 0.0)];
+    let renderings = [(DIRECT, 0.0), (DIRECT, STEP), (scaled, 0.0), (coupled, 0.0)];
     let measured =
-        ways.map(|(rendering, step)| Wall { part: &part, rate, rendering, step }.stiffest());
+        renderings.map(|(rendering, step)| Wall { part: &part, rate, rendering, step }.stiffest());
     let coupling = largest(|stiffness| {
         let rendering = Rendering::Coupled(Coupling { stiffness, ..Coupling::of(&limits) });
         Wall { part: &part, rate, rendering, step: 0.0 }.swing(1e4) <= 1e-3

@@ -125,8 +125,8 @@ mod tests {
         assert_eq!(Big::decimal(12.9).to_f64(), 12.9);
         assert!(Big::decimal(0.1) < Big::exactly(0.1));
         let two = Big::exactly(2.0);
-        let off = &(&two.sqrt() * &two.sqrt()) - &two;
-        assert!(off.abs() < Big::exactly(2f64.powi(-250)));
+        let difference = &(&two.sqrt() * &two.sqrt()) - &two;
+        assert!(difference.abs() < Big::exactly(2f64.powi(-250)));
         assert_eq!(Big::decimal(-12.75).written(), "-12.75");
         let tiny = Big::exactly(5e-324);
         assert_eq!((&tiny * &tiny).sqrt().to_f64(), 5e-324);

@@ -25,13 +25,13 @@ struct Hole {
 }
 
 impl Hole {
-    fn off(&self, p: P3) -> [f64; 2] {
+    fn offset(&self, p: P3) -> [f64; 2] {
         [p[0] - self.centre[0], p[1] - self.centre[1]]
     }
 
     /// Returns the point of the rim, or wall, that is nearest to `p`.
     fn rim(&self, p: P3) -> P3 {
-        let [x, y] = self.off(p);
+        let [x, y] = self.offset(p);
         let part = self.radius / x.hypot(y);
         [self.centre[0] + part * x, self.centre[1] + part * y, p[2]]
     }
@@ -49,7 +49,7 @@ impl Patch {
             Patch::Plate { low, high, hole, .. } => {
                 let foot = [0, 1, 2].map(|k| p[k].clamp(low[k], high[k]));
                 match hole {
-                    Some(hole) if length2(hole.off(foot)) < hole.radius => hole.rim(foot),
+                    Some(hole) if length2(hole.offset(foot)) < hole.radius => hole.rim(foot),
                     _ => foot,
                 }
             }
@@ -65,7 +65,7 @@ impl Patch {
             // More accurate than by the foot.
             Patch::Bore { hole, height } => {
                 let beyond = p[2] - p[2].clamp(0.0, height);
-                (length2(hole.off(p)) - hole.radius).abs().hypot(beyond)
+                (length2(hole.offset(p)) - hole.radius).abs().hypot(beyond)
             }
             Patch::Plate { .. } => {
                 let foot = self.foot(p);
@@ -80,17 +80,17 @@ impl Patch {
         match *self {
             Patch::Plate { axis, out, .. } => {
                 let foot = self.foot(p);
-                let way = [0, 1, 2].map(|k| foot[k] - p[k]);
-                if (0..3).all(|k| k == axis || way[k] == 0.0) {
+                let direction = [0, 1, 2].map(|k| foot[k] - p[k]);
+                if (0..3).all(|k| k == axis || direction[k] == 0.0) {
                     let mut normal = [0.0; 3];
                     normal[axis] = out;
                     return normal;
                 }
-                let size = way[0].hypot(way[1]).hypot(way[2]);
-                way.map(|c| c / size)
+                let size = direction[0].hypot(direction[1]).hypot(direction[2]);
+                direction.map(|c| c / size)
             }
             Patch::Bore { hole, .. } => {
-                let [x, y] = hole.off(p);
+                let [x, y] = hole.offset(p);
                 let size = x.hypot(y);
                 [-x / size, -y / size, 0.0]
             }
@@ -264,33 +264,33 @@ pub struct LBracket;
 
 const HOLE: Hole = Hole { centre: [10.0, 0.0], radius: 3.3 };
 /// The standing leg's inner face and the lying leg's upper one, which meet in the inner edge.
-const WALL: f64 = -4.0;
-const LEDGE: f64 = 6.0;
+const WALL_POSITION: f64 = -4.0;
+const LEDGE_HEIGHT: f64 = 6.0;
 
 impl LBracket {
     fn bottom() -> Patch {
         Self::drilled(-1.0, [-10.0, -10.0, 0.0], [20.0, 10.0, 0.0])
     }
     fn ledge() -> Patch {
-        Self::drilled(1.0, [WALL, -10.0, LEDGE], [20.0, 10.0, LEDGE])
+        Self::drilled(1.0, [WALL_POSITION, -10.0, LEDGE_HEIGHT], [20.0, 10.0, LEDGE_HEIGHT])
     }
     fn drilled(out: f64, low: P3, high: P3) -> Patch {
         Patch::Plate { axis: 2, out, low, high, hole: Some(HOLE) }
     }
     fn end() -> Patch {
-        Patch::plate(0, 1.0, [20.0, -10.0, 0.0], [20.0, 10.0, LEDGE])
+        Patch::plate(0, 1.0, [20.0, -10.0, 0.0], [20.0, 10.0, LEDGE_HEIGHT])
     }
     fn back() -> Patch {
         Patch::plate(0, -1.0, [-10.0, -10.0, 0.0], [-10.0, 10.0, 24.0])
     }
     fn wall() -> Patch {
-        Patch::plate(0, 1.0, [WALL, -10.0, LEDGE], [WALL, 10.0, 24.0])
+        Patch::plate(0, 1.0, [WALL_POSITION, -10.0, LEDGE_HEIGHT], [WALL_POSITION, 10.0, 24.0])
     }
     fn top() -> Patch {
-        Patch::plate(2, 1.0, [-10.0, -10.0, 24.0], [WALL, 10.0, 24.0])
+        Patch::plate(2, 1.0, [-10.0, -10.0, 24.0], [WALL_POSITION, 10.0, 24.0])
     }
     fn bore() -> Patch {
-        Patch::Bore { hole: HOLE, height: LEDGE }
+        Patch::Bore { hole: HOLE, height: LEDGE_HEIGHT }
     }
     /// Returns the rectangle of a leg on both sides. Each side is an L: two rectangles, one of which ends at `x`
     /// and `z`.
@@ -299,8 +299,8 @@ impl LBracket {
     }
 }
 
-const LYING: [f64; 2] = [20.0, LEDGE];
-const STANDING: [f64; 2] = [WALL, 24.0];
+const LYING: [f64; 2] = [20.0, LEDGE_HEIGHT];
+const STANDING: [f64; 2] = [WALL_POSITION, 24.0];
 
 impl Body for LBracket {
     const REGIONS: &'static [&'static str] = &[
@@ -320,9 +320,9 @@ impl Body for LBracket {
     ];
 
     fn inside(&self, [x, y, z]: P3) -> bool {
-        let lying = (WALL..=20.0).contains(&x) && (0.0..=LEDGE).contains(&z);
-        let standing = (-10.0..=WALL).contains(&x) && (0.0..=24.0).contains(&z);
-        (lying || standing) && y.abs() <= 10.0 && length2(HOLE.off([x, y, z])) >= HOLE.radius
+        let lying = (WALL_POSITION..=20.0).contains(&x) && (0.0..=LEDGE_HEIGHT).contains(&z);
+        let standing = (-10.0..=WALL_POSITION).contains(&x) && (0.0..=24.0).contains(&z);
+        (lying || standing) && y.abs() <= 10.0 && length2(HOLE.offset([x, y, z])) >= HOLE.radius
     }
 
     fn patches(&self) -> Vec<Patch> {
@@ -335,18 +335,18 @@ impl Body for LBracket {
     fn candidates(&self, [x, _, z]: P3) -> Vec<(usize, Patch)> {
         let sides = |region: usize, leg| Self::sides(leg).map(|side| (region, side));
         let mut all = Vec::new();
-        if x >= WALL {
+        if x >= WALL_POSITION {
             all.extend([(0, Self::bottom()), (1, Self::ledge()), (2, Self::end())]);
             all.extend(sides(3, LYING));
             all.push((4, Self::bore()));
         }
-        if x <= WALL && z <= LEDGE {
+        if x <= WALL_POSITION && z <= LEDGE_HEIGHT {
             all.extend([(5, Self::bottom()), (6, Self::back())]);
             all.extend(sides(7, STANDING));
             // Both end in the inner edge.
             all.extend([(8, Self::ledge()), (8, Self::wall())]);
         }
-        if x <= WALL && z >= LEDGE {
+        if x <= WALL_POSITION && z >= LEDGE_HEIGHT {
             all.extend([(9, Self::back()), (10, Self::wall())]);
             all.extend(sides(11, STANDING));
             all.push((12, Self::top()));
@@ -355,7 +355,11 @@ impl Body for LBracket {
     }
 
     fn zone(&self, [x, _, z]: P3) -> f64 {
-        (x - WALL).abs().min(if x <= WALL { (z - LEDGE).abs() } else { f64::INFINITY })
+        (x - WALL_POSITION).abs().min(if x <= WALL_POSITION {
+            (z - LEDGE_HEIGHT).abs()
+        } else {
+            f64::INFINITY
+        })
     }
 }
 
@@ -364,20 +368,23 @@ impl Oracle for LBracket {
 
     fn singular(&self, p: P3) -> f64 {
         match self.won(p) {
-            Some(((4, ..), _)) => length2(HOLE.off(p)),
-            Some(((8, ..), _)) => (p[0] - WALL).hypot(p[2] - LEDGE),
+            Some(((4, ..), _)) => length2(HOLE.offset(p)),
+            Some(((8, ..), _)) => (p[0] - WALL_POSITION).hypot(p[2] - LEDGE_HEIGHT),
             _ => f64::INFINITY,
         }
     }
 
     fn corner_points(&self) -> Vec<P3> {
-        let mut all =
-            grid(&[-10.0, -7.0, WALL, 5.0, 20.0], &[-10.0, 0.0, 10.0], &[0.0, 3.0, LEDGE]);
-        all.extend(grid(&[-10.0, -7.0, WALL], &[-10.0, 0.0, 10.0], &[15.0, 24.0]));
+        let mut all = grid(
+            &[-10.0, -7.0, WALL_POSITION, 5.0, 20.0],
+            &[-10.0, 0.0, 10.0],
+            &[0.0, 3.0, LEDGE_HEIGHT],
+        );
+        all.extend(grid(&[-10.0, -7.0, WALL_POSITION], &[-10.0, 0.0, 10.0], &[15.0, 24.0]));
         // The rim of the hole, and points half way up its wall.
         for k in 0..16 {
             let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-            all.extend([0.0, 3.0, LEDGE].map(|z| [10.0 + 3.3 * cos, 3.3 * sin, z]));
+            all.extend([0.0, 3.0, LEDGE_HEIGHT].map(|z| [10.0 + 3.3 * cos, 3.3 * sin, z]));
         }
         all
     }

@@ -125,17 +125,17 @@ fn a_shank_along_a_plane() {
 fn a_ball_on_a_ball_and_in_a_cavity() {
     let (h, part) = (0.3, 4.0);
     let down = [0.0, 0.0, -1.0];
-    let place = |dist: f64| Pose::along([0.0, 0.0, -dist - 1.0], [0.0, 0.0, 1.0]);
+    let point = |dist: f64| Pose::along([0.0, 0.0, -dist - 1.0], [0.0, 0.0, 1.0]);
     let outside = Cloud::cap(1000, part, 0.4, 1.0);
     compare(
-        outside.query(&UnitSphere, place(1.0 + part - h)),
+        outside.query(&UnitSphere, point(1.0 + part - h)),
         ball_on_ball(1.0, part, h),
         down,
         2e-5,
     );
     let cavity = Cloud::cap(1000, part, 0.4, -1.0);
     compare(
-        cavity.query(&UnitSphere, place(part - 1.0 + h)),
+        cavity.query(&UnitSphere, point(part - 1.0 + h)),
         ball_in_cavity(1.0, part, h),
         down,
         2e-5,
@@ -163,8 +163,8 @@ fn units_scale() {
     let one = cloud.query(&UnitSphere, pose).answer();
     let mm = |v: [f64; 3]| v.map(|c| 25.4 * c);
     let points: Vec<_> = cloud.points.iter().map(|p| mm(*p)).collect();
-    let big = Pose { tip: mm(pose.tip), ..pose };
-    let mut query = Query::new(&UnitSphere, big, &points, &cloud.normals, &cloud.weights);
+    let large_ball = Pose { tip: mm(pose.tip), ..pose };
+    let mut query = Query::new(&UnitSphere, large_ball, &points, &cloud.normals, &cloud.weights);
     query.scale = 1.0 / 25.4;
     let two = query.answer();
     assert_eq!(one.count, two.count);
@@ -209,7 +209,7 @@ fn the_gradient_law_is_conservative() {
 }
 
 #[test]
-fn facing_leaves_out_the_far_side() {
+fn the_facing_law_ignores_the_far_side() {
     let mut cloud = Cloud::plane(100, 1.0);
     let top = cloud.query(&UnitSphere, Pose::along([0.0, 0.0, -0.2], [0.0, 0.0, 1.0])).answer();
     // A second skin just below, facing down: the far side of a sheet.
@@ -225,7 +225,7 @@ fn facing_leaves_out_the_far_side() {
 }
 
 #[test]
-fn no_contact_is_nothing() {
+fn without_contacts_the_wrench_is_zero() {
     let cloud = Cloud::plane(10, 1.0);
     let a = cloud.query(&UnitSphere, Pose { tip: [0.0, 0.0, 9.0], ..Pose::IDENTITY }).answer();
     assert_eq!((a.count, a.deepest, a.niceness, a.force), (0, None, None, [0.0; 3]));

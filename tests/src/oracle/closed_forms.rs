@@ -156,17 +156,17 @@ pub fn quadrature(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn close(a: f64, b: f64, relative: f64) {
+    fn assert_close(a: f64, b: f64, relative: f64) {
         assert!((a - b).abs() <= relative * b.abs(), "{a} is not {b}");
     }
 
     #[test]
     fn quadrature_is_exact_for_degree_fifteen() {
-        close(quadrature(0.0, 2.0, |x| x.powi(15)), 4096.0, 1e-14);
-        close(quadrature(0.0, 1.0, f64::exp), 1f64.exp_m1(), 1e-15);
+        assert_close(quadrature(0.0, 2.0, |x| x.powi(15)), 4096.0, 1e-14);
+        assert_close(quadrature(0.0, 1.0, f64::exp), 1f64.exp_m1(), 1e-15);
         // E(π/2 | 1/2), and E(φ | 1) = sin φ.
-        close(elliptic_e(PI / 2.0, 0.5), 1.350_643_881_047_675_5, 1e-15);
-        close(elliptic_e(1.0, 1.0), 1f64.sin(), 1e-15);
+        assert_close(elliptic_e(PI / 2.0, 0.5), 1.350_643_881_047_675_5, 1e-15);
+        assert_close(elliptic_e(1.0, 1.0), 1f64.sin(), 1e-15);
     }
 
     #[test]
@@ -178,15 +178,15 @@ mod tests {
         ];
         for (h, integral, force) in printed {
             let c = ball_in_plane(1.0, h);
-            close(c.integral, integral, 1e-15);
-            close(c.force, force, 1e-15);
-            close(c.integral + c.gradient_force, force, 1e-15);
+            assert_close(c.integral, integral, 1e-15);
+            assert_close(c.force, force, 1e-15);
+            assert_close(c.integral + c.gradient_force, force, 1e-15);
         }
         // Stiffness changes sign at h = 0.8 r.
         let stiffness = |h: f64| {
             (ball_in_plane(1.0, h + 1e-6).force - ball_in_plane(1.0, h - 1e-6).force) / 2e-6
         };
-        close(stiffness(0.5), PI * 0.5 * 1.5, 1e-8);
+        assert_close(stiffness(0.5), PI * 0.5 * 1.5, 1e-8);
         assert!(stiffness(0.79) > 0.0 && stiffness(0.81) < 0.0);
     }
 
@@ -199,11 +199,11 @@ mod tests {
         ];
         for (r, h, integral, force) in printed {
             let c = cylinder_in_plane(r, h);
-            close(c.integral, integral, 1e-14);
-            close(c.force, force, 1e-14);
+            assert_close(c.integral, integral, 1e-14);
+            assert_close(c.force, force, 1e-14);
         }
         let h = 1e-6f64;
-        close(cylinder_in_plane(1.0, h).integral, 4.0 / 3.0 * h * (2.0 * h).sqrt(), 1e-5);
+        assert_close(cylinder_in_plane(1.0, h).integral, 4.0 / 3.0 * h * (2.0 * h).sqrt(), 1e-5);
     }
 
     #[test]
@@ -218,21 +218,21 @@ mod tests {
         ];
         for (contact, part, h, integral, on_part) in printed {
             let c = contact(1.0, part, h);
-            close(c.integral, integral, 1e-14);
-            close(-c.force, on_part, 1e-13);
+            assert_close(c.integral, integral, 1e-14);
+            assert_close(-c.force, on_part, 1e-13);
         }
         // A part of large radius approximates a plane.
         let (large, plane) = (ball_on_ball(1.0, 1e6, 0.3), ball_in_plane(1.0, 0.3));
-        close(large.force, plane.force, 1e-5);
-        close(large.gradient_force, plane.gradient_force, 1e-5);
-        close(large.energy, plane.energy, 1e-5);
+        assert_close(large.force, plane.force, 1e-5);
+        assert_close(large.gradient_force, plane.gradient_force, 1e-5);
+        assert_close(large.energy, plane.energy, 1e-5);
     }
 
     #[test]
     fn printed_figures_cf5() {
-        close(cylinder_in_bore(1.0, 3.0, 2.2).integral, 0.182_863_132_313_677_82, 1e-13);
-        close(cylinder_in_bore(2.9, 3.0, 0.3).integral, 0.916_568_383_211_115_4, 1e-13);
-        close(cylinder_in_bore(3.1, 3.0, 0.0).integral, 2.0 * PI * 3.0 * 0.1, 1e-13);
+        assert_close(cylinder_in_bore(1.0, 3.0, 2.2).integral, 0.182_863_132_313_677_82, 1e-13);
+        assert_close(cylinder_in_bore(2.9, 3.0, 0.3).integral, 0.916_568_383_211_115_4, 1e-13);
+        assert_close(cylinder_in_bore(3.1, 3.0, 0.0).integral, 2.0 * PI * 3.0 * 0.1, 1e-13);
         assert_eq!(cylinder_in_bore(1.0, 3.0, 2.0), Contact::NONE);
     }
 
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn cf5_against_itself() {
         let (wide, plane) = (cylinder_in_bore(1.0, 1e5, 1e5 - 0.7), cylinder_in_plane(1.0, 0.3));
-        close(-wide.force, plane.force, 1e-4);
+        assert_close(-wide.force, plane.force, 1e-4);
         for (r, bore, offset) in
             [(1.0, 3.0, 2.2), (2.9, 3.0, 0.3), (1.0, 3.0, 2.001), (3.2, 3.0, 0.1)]
         {

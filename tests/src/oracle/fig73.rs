@@ -54,9 +54,9 @@ fn evaluation(owner: usize, d: f64, z: f64) -> Value {
         _ => {
             let arm = [d, z - 19.0];
             // Where the direction vanishes, the tool's +z is the thesis's -z.
-            let away = if arm == [0.0, 0.0] { [0.0, -1.0] } else { unit_or_z(arm) };
+            let outward = if arm == [0.0, 0.0] { [0.0, -1.0] } else { unit_or_z(arm) };
             let nice = 2.0 * d * d + arm[1] * arm[1];
-            (1.0 - d.hypot(arm[1]), away.map(|c| -c), away, nice)
+            (1.0 - d.hypot(arm[1]), outward.map(|c| -c), outward, nice)
         }
     }
 }

@@ -12,7 +12,7 @@ fn at(d: f64, z: f64) -> [f64; 3] {
 
 /// Returns the index in the thesis's list, which runs from the spindle's end, of a region that is listed from the
 /// tip.
-fn place(owner: usize) -> usize {
+fn table_row(owner: usize) -> usize {
     8 - owner
 }
 
@@ -52,7 +52,7 @@ fn areas_and_integrals_of_the_table() {
     ];
     let found = integrate(&fig_7_3_exact(), 200);
     for (owner, row) in found.iter().enumerate() {
-        let want = table[place(owner)];
+        let want = table[table_row(owner)];
         assert!((row[0] - want[0]).abs() < 2e-3, "{row:?} {want:?}");
         assert!((row[1] - want[1]).abs() < 4e-3, "{row:?} {want:?}");
         assert!(row[2] <= want[2] && row[2] > want[2] - 0.02, "{row:?} {want:?}");
@@ -129,20 +129,20 @@ fn the_splits_find_the_nearest_feature() {
             skipped += 1;
             continue;
         }
-        assert_eq!(place(s.owner), owner, "{d} {z}");
+        assert_eq!(table_row(s.owner), owner, "{d} {z}");
         assert!((s.direction[0] - u[0]).abs() < 1e-12 && (s.direction[2] + u[1]).abs() < 1e-12);
     }
     assert!(skipped < 10);
 }
 
 #[test]
-fn the_axis_belongs_to() {
+fn the_axis_has_the_owners_of_the_table() {
     let tool = fig_7_3_exact();
     let ends = [0.0, 5.0, 7.0, 11.0, 16.0 - 3.0 * S2, 14.0, 15.0, 19.0, 20.0];
     for (w, owner) in ends.windows(2).zip([0, 1, 3, 4, 5, 6, 7, 8]) {
         for t in [0.01, 0.5, 0.99] {
             let s = tool.sense(at(0.0, w[0] + t * (w[1] - w[0]))).expect("inside");
-            assert_eq!(place(s.owner), owner);
+            assert_eq!(table_row(s.owner), owner);
         }
     }
 }
@@ -183,9 +183,9 @@ fn the_thesis_magnitudes_meet_without_a_jump() {
     for curve in tool.curves().iter().skip(7) {
         for c in curve {
             let m = |dd: f64, dz: f64| tool.sense([c[0] + dd, 0.0, c[1] + dz]).map(|s| s.magnitude);
-            let around = [m(1e-9, 0.0), m(-1e-9, 0.0), m(0.0, 1e-9), m(0.0, -1e-9)];
-            let seen = around.into_iter().flatten();
-            let (low, high) = seen.fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m), h.max(m)));
+            let neighbourhood = [m(1e-9, 0.0), m(-1e-9, 0.0), m(0.0, 1e-9), m(0.0, -1e-9)];
+            let found = neighbourhood.into_iter().flatten();
+            let (low, high) = found.fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m), h.max(m)));
             assert!(high - low < 1e-8, "{c:?}");
         }
     }

@@ -203,22 +203,22 @@ mod tests {
     use super::*;
 
     /// Returns a point of space over `[d, z]`, at a random angle.
-    fn over([d, z]: [f64; 2], draw: &mut Rng) -> [f64; 3] {
+    fn at_random_azimuth([d, z]: [f64; 2], draw: &mut Rng) -> [f64; 3] {
         let a = draw.between(0.0, std::f64::consts::TAU);
         [d * a.cos(), d * a.sin(), z]
     }
 
-    fn anywhere(o: &dyn Oracle, draw: &mut Rng) -> [f64; 3] {
+    fn random_point(o: &dyn Oracle, draw: &mut Rng) -> [f64; 3] {
         let [d, z] = o.extent();
-        over([draw.between(0.0, 1.2 * d), draw.between(-0.2 * d, z + 0.2 * d)], draw)
+        at_random_azimuth([draw.between(0.0, 1.2 * d), draw.between(-0.2 * d, z + 0.2 * d)], draw)
     }
 
     #[test]
-    fn answers_are_consistent() {
+    fn evaluations_are_consistent() {
         for o in all() {
             let mut draw = Rng::new(1);
             for _ in 0..20_000 {
-                let p = anywhere(&*o, &mut draw);
+                let p = random_point(&*o, &mut draw);
                 let sd = o.signed_distance(p);
                 let Some(s) = o.sense(p) else {
                     assert!(sd > -1e-12, "{} {p:?} {sd}", o.name());
@@ -242,7 +242,7 @@ mod tests {
         for o in all() {
             let mut draw = Rng::new(2);
             for _ in 0..20_000 {
-                let p = anywhere(&*o, &mut draw);
+                let p = random_point(&*o, &mut draw);
                 let reach = o.border(p) * 0.999_999;
                 let owner = o.sense(p).map(|s| s.owner);
                 let m = Meridian::of(p);
@@ -252,11 +252,11 @@ mod tests {
                     let q = if o.revolved() {
                         [d * m.radial[0], d * m.radial[1], p[2] + reach * sin]
                     } else {
-                        let way = draw.direction();
-                        [0, 1, 2].map(|axis| p[axis] + reach * way[axis])
+                        let direction = draw.direction();
+                        [0, 1, 2].map(|axis| p[axis] + reach * direction[axis])
                     };
-                    let there = o.sense(q).map(|s| s.owner);
-                    assert_eq!(owner, there, "{} {p:?} {q:?}", o.name());
+                    let other_owner = o.sense(q).map(|s| s.owner);
+                    assert_eq!(owner, other_owner, "{} {p:?} {q:?}", o.name());
                 }
             }
         }
@@ -275,8 +275,9 @@ mod tests {
                     let mut owners = (0..32).map(|k| {
                         let (sin, cos) =
                             (0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-                        let way = if o.revolved() { [cos, 0.0, sin] } else { draw.direction() };
-                        o.sense(moved(&*o, p, way.map(|c| 1e-6 * c), 0.0)).map(|s| s.owner)
+                        let direction =
+                            if o.revolved() { [cos, 0.0, sin] } else { draw.direction() };
+                        o.sense(moved(&*o, p, direction.map(|c| 1e-6 * c), 0.0)).map(|s| s.owner)
                     });
                     let first = owners.next().expect("many of them");
                     assert!(owners.any(|other| other != first), "{} {p:?}", o.name());
@@ -315,7 +316,7 @@ mod tests {
         for o in all() {
             let mut draw = Rng::new(4);
             for _ in 0..20_000 {
-                let p = anywhere(&*o, &mut draw);
+                let p = random_point(&*o, &mut draw);
                 let h = 1e-5;
                 if o.border(p) < 3.0 * h || o.singular(p) < 1e-2 {
                     continue;
@@ -338,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axis_answers() {
+    fn the_axis_has_evaluations() {
         for o in all().into_iter().filter(|o| o.revolved()) {
             // Some are hollow below.
             let on_axis = o.corners().into_iter().filter(|c| c[0] == 0.0);

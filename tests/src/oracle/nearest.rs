@@ -36,11 +36,12 @@ impl Nearest {
             tool.ways.iter().map(|way| (point(&way.to), way.centre.as_ref().map(point))).collect();
         let profile = Profile::new(point(&tool.start), &drafts);
         let surface = profile.surface();
-        let most = |axis: usize| surface.iter().flatten().fold(0.0f64, |most, p| most.max(p[axis]));
+        let largest =
+            |axis: usize| surface.iter().flatten().fold(0.0f64, |largest, p| largest.max(p[axis]));
         Self {
             name: tool.name,
             regions: regions(tool, &profile),
-            extent: [most(0), most(1)],
+            extent: [largest(0), largest(1)],
             profile,
             niceness: tool.niceness,
             splits: None,

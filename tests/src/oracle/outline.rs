@@ -76,13 +76,13 @@ impl Segment {
 
     fn distance(&self, p: Flat) -> f64 {
         let Segment { from, to, centre } = self;
-        let off = |q: &Flat| length([p[0] - q[0], p[1] - q[1]]);
+        let offset = |q: &Flat| length([p[0] - q[0], p[1] - q[1]]);
         let Some(centre) = centre else {
             let along = [to[0] - from[0], to[1] - from[1]];
             let square = along[0] * along[0] + along[1] * along[1];
             let part = (p[0] - from[0]) * along[0] + (p[1] - from[1]) * along[1];
             let part = (part / square).clamp(0.0, 1.0);
-            return off(&[from[0] + part * along[0], from[1] + part * along[1]]);
+            return offset(&[from[0] + part * along[0], from[1] + part * along[1]]);
         };
         let arm = |q: Flat| [q[0] - centre[0], q[1] - centre[1]];
         let cross = |a: Flat, b: Flat| a[0] * b[1] - a[1] * b[0];
@@ -91,7 +91,7 @@ impl Segment {
         if turn * cross(a, q) >= 0.0 && turn * cross(q, b) >= 0.0 {
             (length(q) - length(a)).abs()
         } else {
-            off(from).min(off(to))
+            offset(from).min(offset(to))
         }
     }
 

@@ -116,12 +116,12 @@ impl Profile {
             }
         }
         for (i, v) in self.vertices.iter().enumerate() {
-            let beside = [i.checked_sub(1), Some(i)].map(|k| self.pieces.get(k?));
+            let neighbour = [i.checked_sub(1), Some(i)].map(|k| self.pieces.get(k?));
             let from = sub(p, v.at);
-            let in_fan = beside.iter().zip([1.0, -1.0]).all(|(piece, sign)| {
+            let in_fan = neighbour.iter().zip([1.0, -1.0]).all(|(piece, sign)| {
                 piece.is_none_or(|piece| sign * dot(from, piece.tangent(v.at)) >= 0.0)
             });
-            let first = beside.iter().flatten().map(|piece| piece.rank).min();
+            let first = neighbour.iter().flatten().map(|piece| piece.rank).min();
             let (owner, corner) = match v.turn {
                 Turn::Reflex(rank) => (rank, true),
                 _ => (first.unwrap_or(0), false),
@@ -187,7 +187,7 @@ impl Profile {
         if !self.contains(p) {
             return near.distance;
         }
-        let mut least = near.distance;
+        let mut min_distance = near.distance;
         let mut linked = vec![near.owner];
         for (i, v) in self.vertices.iter().enumerate() {
             let (Some(before), Some(after)) =
@@ -204,19 +204,19 @@ impl Profile {
             if owners.contains(&Some(near.owner)) {
                 linked.extend(owners.into_iter().flatten());
                 for tangent in [before.tangent(v.at), after.tangent(v.at)] {
-                    least = least.min(dot(sub(p, v.at), tangent).abs());
+                    min_distance = min_distance.min(dot(sub(p, v.at), tangent).abs());
                 }
             }
         }
         for piece in self.pieces.iter().filter(|piece| !linked.contains(&piece.rank)) {
-            least = least.min((piece.clamped(p) - near.distance) / 2.0);
+            min_distance = min_distance.min((piece.clamped(p) - near.distance) / 2.0);
         }
         for v in &self.vertices {
             if matches!(v.turn, Turn::Reflex(rank) if !linked.contains(&rank)) {
-                least = least.min((len(sub(p, v.at)) - near.distance) / 2.0);
+                min_distance = min_distance.min((len(sub(p, v.at)) - near.distance) / 2.0);
             }
         }
-        least.max(0.0)
+        min_distance.max(0.0)
     }
 
     /// Returns the distance defined at [`super::Oracle::singular`].
@@ -286,9 +286,9 @@ mod tests {
                 let t = (dot(sub(p, a), e) / dot(e, e)).clamp(0.0, 1.0);
                 len([p[0] - a[0] - t * e[0], p[1] - a[1] - t * e[1]])
             });
-            let least = polyline.fold(f64::INFINITY, f64::min);
+            let min_distance = polyline.fold(f64::INFINITY, f64::min);
             let near = vase.nearest(p);
-            assert!((least - near.distance).abs() < 1e-6, "{p:?}");
+            assert!((min_distance - near.distance).abs() < 1e-6, "{p:?}");
             assert!((len(sub(p, near.foot)) - near.distance).abs() < 1e-14);
         }
     }

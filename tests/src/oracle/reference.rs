@@ -11,7 +11,7 @@ use super::{Meridian, Nearest};
 
 /// Margin, as a fraction of the tool's size, by which a piece may be farther than the nearest in doubles and is
 /// still considered.
-const MARGIN: f64 = 1e-9;
+const BORDER_MARGIN: f64 = 1e-9;
 
 /// A point, and the half plane through it and the axis.
 pub struct At {
@@ -95,7 +95,7 @@ fn double(p: &Point) -> [f64; 2] {
 }
 
 impl Part {
-    fn far(&self, p: &Point) -> Far {
+    fn distance(&self, p: &Point) -> Far {
         let ends = || {
             let [a, b] = [&self.a, &self.b].map(|end| norm(&sub(p, end)));
             Far { distance: if b < a { b } else { a }, side: None }
@@ -175,8 +175,8 @@ impl Reference {
         }
         let owners = profile.owners().to_vec();
         let turns = (0..parts.len()).map(|piece| profile.turn(piece)).collect();
-        let most = parts.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
-        Self { tool: tool.clone(), parts, turns, owners, size: most }
+        let largest = parts.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
+        Self { tool: tool.clone(), parts, turns, owners, size: largest }
     }
 
     /// Returns the restated tool.
@@ -187,32 +187,32 @@ impl Reference {
     /// Returns the depth of a point: the distance to the surface, negative outside.
     pub fn depth(&self, at: &At) -> Big {
         let rough: Vec<f64> = self.parts.iter().map(|part| part.rough.clamped(at.rough)).collect();
-        let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + MARGIN * self.size;
+        let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + BORDER_MARGIN * self.size;
         let mut best: Option<(Far, usize)> = None;
-        for (place, part) in self.parts.iter().enumerate().filter(|(k, _)| rough[*k] <= reach) {
-            let far = part.far(&at.dz);
+        for (index, part) in self.parts.iter().enumerate().filter(|(k, _)| rough[*k] <= reach) {
+            let distance = part.distance(&at.dz);
             let nearer = best.as_ref().is_none_or(|(best, _)| {
-                far.distance < best.distance
-                    || (far.distance == best.distance && best.side.is_none())
+                distance.distance < best.distance
+                    || (distance.distance == best.distance && best.side.is_none())
             });
             if nearer {
-                best = Some((far, place));
+                best = Some((distance, index));
             }
         }
-        let Some((far, place)) = best else { return Big::zero() };
-        if far.side.unwrap_or_else(|| self.beside(at, place)) {
-            far.distance
+        let Some((distance, index)) = best else { return Big::zero() };
+        if distance.side.unwrap_or_else(|| self.beside(at, index)) {
+            distance.distance
         } else {
-            -&far.distance
+            -&distance.distance
         }
     }
 
     /// Returns whether a point is inside whose nearest point is an end of a piece: in the fan of a reflex corner,
     /// or where rounding alone keeps it from facing the piece.
-    fn beside(&self, at: &At, place: usize) -> bool {
-        let part = &self.parts[place];
+    fn beside(&self, at: &At, index: usize) -> bool {
+        let part = &self.parts[index];
         let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
-        let turn = if b < a { Some(place) } else { place.checked_sub(1) };
+        let turn = if b < a { Some(index) } else { index.checked_sub(1) };
         match turn.map(|piece| self.turns[piece]) {
             Some(Turn::Reflex(_)) => true,
             Some(Turn::Smooth) => !part.inward(&at.dz).is_negative(),
@@ -227,7 +227,7 @@ impl Reference {
         if depth.is_negative() {
             return None;
         }
-        let reach = depth.to_f64() + MARGIN * self.size;
+        let reach = depth.to_f64() + BORDER_MARGIN * self.size;
         let near = |owner: &usize| match self.owners[*owner] {
             Feature::Piece(piece) | Feature::Corner(piece) => {
                 self.parts[piece].rough.clamped(at.rough) <= reach
@@ -250,7 +250,7 @@ impl Reference {
     /// Returns the distance to an owner: a piece with its ends, or a corner.
     pub fn distance_to(&self, at: &At, owner: usize) -> Big {
         match self.owners[owner] {
-            Feature::Piece(piece) => self.parts[piece].far(&at.dz).distance,
+            Feature::Piece(piece) => self.parts[piece].distance(&at.dz).distance,
             Feature::Corner(piece) => norm(&sub(&at.dz, &self.parts[piece].b)),
         }
     }
@@ -268,14 +268,14 @@ impl Reference {
 
     /// Returns the distance from a point to the nearest one at which its owner's direction does not exist.
     pub fn singular(&self, at: &At, owner: usize) -> f64 {
-        let (place, level) = match self.owners[owner] {
+        let (distance, level) = match self.owners[owner] {
             Feature::Piece(piece) => match &self.parts[piece].shape {
                 Shape::Line { along, .. } => (f64::INFINITY, along[1] == Big::zero()),
                 Shape::Arc { centre, .. } => (norm(&sub(&at.dz, centre)).to_f64(), false),
             },
             Feature::Corner(piece) => (norm(&sub(&at.dz, &self.parts[piece].b)).to_f64(), false),
         };
-        if level { place } else { place.min(at.dz[0].to_f64()) }
+        if level { distance } else { distance.min(at.dz[0].to_f64()) }
     }
 
     /// Returns the next power of two above the tool's largest coordinate, S; errors are measured in ulp(S).
@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn doubles_say_the_same() {
+    fn doubles_agree_with_256_bits() {
         for tool in restated::all() {
             let (rough, reference) = (Nearest::new(&tool), Reference::new(&tool));
             let [radius, height] = rough.extent();
