@@ -63,9 +63,14 @@ fn session<T: BatchEvaluator + ?Sized>(part: &Part, probe: &Probe<'_, T>, name: 
         assert!(growing > 120, "{name}, {rendering:?}: {growing}");
         // The bound that `Session::new` states; the memory that an interpreted tool keeps is the same for all
         // parts.
-        let each = reserved as f64 / POINTS as f64;
-        println!("{name}, {rendering:?}: {each:.1} bytes per point, {growing} cycles larger");
-        assert!(name.starts_with("interpreted") || each < 128.0, "{name}: {each}");
+        let bytes_per_point = reserved as f64 / POINTS as f64;
+        println!(
+            "{name}, {rendering:?}: {bytes_per_point:.1} bytes per point, {growing} cycles larger"
+        );
+        assert!(
+            name.starts_with("interpreted") || bytes_per_point < 128.0,
+            "{name}: {bytes_per_point}"
+        );
     }
 }
 
@@ -93,10 +98,10 @@ fn questions<'a, T: BatchEvaluator + ?Sized + 'a>(part: &Part, probe: impl Fn() 
         let poses: Vec<_> = (0..CYCLES).map(|cycle| upright(height(cycle))).collect();
         let [fresh, reserved] = [probe(), probe().with_reserved_memory()].map(|mut probe| {
             let region = Region::new(COUNTED);
-            let most = poses.iter().map(|pose| ask(&mut probe, pose)).max();
+            let max_contacts = poses.iter().map(|pose| ask(&mut probe, pose)).max();
             let change = region.change();
             let all = if matches!(name, "detect" | "deepest") { 1 } else { part.tree().len() };
-            assert_eq!(most, Some(all), "{name}");
+            assert_eq!(max_contacts, Some(all), "{name}");
             change.allocations + change.reallocations
         });
         assert_eq!(reserved, 0, "{name}");
@@ -104,10 +109,10 @@ fn questions<'a, T: BatchEvaluator + ?Sized + 'a>(part: &Part, probe: impl Fn() 
     }
     let region = Region::new(COUNTED);
     let probe = probe().with_reserved_memory();
-    let each = region.change().bytes_allocated as f64 / POINTS as f64;
+    let bytes_per_point = region.change().bytes_allocated as f64 / POINTS as f64;
     drop(probe);
-    println!("reserved: {each:.1} bytes per point");
-    assert!(each < 310.0, "{each}");
+    println!("reserved: {bytes_per_point:.1} bytes per point");
+    assert!(bytes_per_point < 310.0, "{bytes_per_point}");
 }
 
 fn source(text: &str) -> tool_dsl::source::Source {

@@ -103,12 +103,12 @@ fn a_haptic_loop() {
             let settings = SessionSettings { rendering, ..SessionSettings::new(rate) };
             let probe = Probe::new(&part, tool).with_law(Law::Gradient);
             let mut session = Session::new(probe, &settings, limits).expect("settings");
-            let wish = |time: f64| {
+            let hand_pose = |time: f64| {
                 let pose = ScenePath::Hold.pose((3e3 * (time % 1.0)) as usize, 10_000);
                 let [x, y, z, w] = [0, 1, 2, 3].map(|k| pose.to_isometry().rotation.coords[k]);
                 Pose::from_quaternion(pose.tip(), [x, y, z, w]).expect("a pose")
             };
-            let mut hand = SimulatedHand::new(limits, rate, wish).expect("a hand");
+            let mut hand = SimulatedHand::new(limits, rate, hand_pose).expect("a hand");
             let (mut watch, mut latest, samples) = state_channel(2 * cycles as usize);
             let stop = AtomicBool::new(false);
             let clock = &mut SimulatedClock::default();
@@ -120,9 +120,12 @@ fn a_haptic_loop() {
             let region = Region::new(COUNTED);
             let second = round(&mut watch);
             let change = region.change();
-            let seen = latest.read().is_some();
+            let was_published = latest.read().is_some();
             // Two histograms, before the first cycle.
-            assert_eq!((change.allocations, change.reallocations, seen), (HISTOGRAMS, 0, true));
+            assert_eq!(
+                (change.allocations, change.reallocations, was_published),
+                (HISTOGRAMS, 0, true)
+            );
             assert!(second > 0.0 && samples.count() == 2 * cycles as usize);
         }
     }

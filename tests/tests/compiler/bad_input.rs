@@ -45,7 +45,7 @@ fn refused(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn sizes_beyond_all_tools() {
+fn rejects_sizes_beyond_the_limits() {
     for text in [
         profile("(1e300, 0), (1e300, 1e300), (0, 1e300) as pin;"),
         profile("(1e-300, 0), (1e-300, 1e-300), (0, 1e-300) as pin;"),
@@ -70,7 +70,7 @@ fn sizes_beyond_all_tools() {
 }
 
 #[test]
-fn nesting_without_end() {
+fn rejects_deep_nesting() {
     let paren = format!("let a = {}1{};", "(".repeat(100_000), ")".repeat(100_000));
     let brace = format!("{}{}", "{".repeat(100_000), "}".repeat(100_000));
     for text in [tool(&paren), tool(&brace), "/*".repeat(100_000)] {
@@ -80,7 +80,7 @@ fn nesting_without_end() {
 }
 
 #[test]
-fn thousands_of_everything() {
+fn large_files_are_compiled_or_rejected() {
     let region = |k: usize| format!("region r{k} where hypot(d, z) <= {k} {{ depth: {k} - d; }}\n");
     let zigzag = numbered(10_000, |k| format!("({}, {}), ", 1 + k % 2, k + 1));
     let laws = "niceness ball: 1;".repeat(20_000);
@@ -114,7 +114,7 @@ fn thousands_of_everything() {
 }
 
 #[test]
-fn what_is_no_text_of_a_tool() {
+fn rejects_text_that_is_not_a_tool() {
     for (text, word) in [
         ("".to_owned(), "there is no tool in this text"),
         (" \n\n".to_owned(), "there is no tool in this text"),
@@ -156,7 +156,7 @@ fn mounted(mounts: &str) -> String {
 }
 
 #[test]
-fn mounts_without_end() {
+fn rejects_endless_mounts() {
     let part = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a; }";
     write("part.tool", format!("tool Part {{ units mm; {part} }}"));
     for k in 0..80 {
@@ -178,7 +178,7 @@ fn mounts_without_end() {
 }
 
 #[test]
-fn files_that_are_no_text() {
+fn rejects_files_that_are_not_text() {
     write("latin.tool", b"tool T {\n    units mm; // fr\xe4ser\n}");
     assert!(mounted("mount \"latin.tool\" as a;").contains("line 2 is no UTF-8 text"));
     write("long.tool", vec![b' '; 10_000_000]);
@@ -190,7 +190,7 @@ fn files_that_are_no_text() {
 
 /// Many regions by hand are planned in seconds.
 #[test]
-fn a_hundred_balls_on_a_string() {
+fn a_hundred_balls_in_a_row_compile() {
     let ball = |k: usize| {
         let z = 3 * k + 1;
         format!("region r{k} where hypot(d, z - {z}) <= 1 {{ depth: 1 - hypot(d, z - {z}); }}\n")

@@ -78,7 +78,7 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
 }
 
 #[test]
-fn cards_carry_the_bounds() {
+fn info_has_the_proved_bounds() {
     use touchoff::Tool;
     let info = tools_library::Fig73.info();
     assert!(info.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
@@ -135,7 +135,7 @@ fn profiles_that_are_smooth_but_for_rounding_are_proved() {
 }
 
 #[test]
-fn values_keep_what_is_proved() {
+fn sampled_values_keep_the_proved_bounds() {
     for source in library() {
         let tool = checked(&source);
         let proved = Certificate::of(&tool);
@@ -207,10 +207,10 @@ fn cored(depth: &str) -> Certificate {
 }
 
 /// Number of points of a region that are enough to show its rounding.
-const ENOUGH: usize = 300;
+const MIN_POINTS: usize = 300;
 
 #[test]
-fn rounding_stays_below_its_bound_and_within_ten_times() {
+fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
     let all: Vec<Box<CheckedTool>> = library().iter().map(checked).collect();
     let mut loosest = (0.0, String::new());
     for (compiled, restated) in tools() {
@@ -255,7 +255,7 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
             assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");
             // A proof that did not finish has boxes that are too large to be tight.
             if proved.undecided.is_empty()
-                && counts[region] >= ENOUGH
+                && counts[region] >= MIN_POINTS
                 && seen > 1e-60
                 && bound / seen > loosest.0
             {
@@ -397,7 +397,7 @@ fn a_direction_that_is_never_known_is_not_straight() {
 
 /// The certificate has the exact angle of a direction, and the points where it vanishes.
 #[test]
-fn directions_are_told() {
+fn direction_errors_are_reported() {
     let of = |direction: &str| {
         Certificate::of(&text(&format!(
             "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{

@@ -50,7 +50,7 @@ fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Evaluatio
 }
 
 #[test]
-fn a_tool_from_a_file_is_that_of_the_library() {
+fn a_tool_from_a_file_equals_the_library_tool() {
     assert_eq!(D2Ball.info(), tools_library::D2Ball.info());
     let p = [0.3, -0.4, 2.0];
     assert_eq!(D2Ball::owner(p), Some(1));
@@ -58,7 +58,7 @@ fn a_tool_from_a_file_is_that_of_the_library() {
 }
 
 #[test]
-fn a_tool_in_place_is_what_it_says() {
+fn an_inline_tool_has_the_written_values() {
     let info = Bull.info();
     assert_eq!((info.name.as_ref(), info.unit), ("Bull", Unit::Inch));
     assert_eq!(info.title, "torus end mill, 12 mm, corner 2 mm");
@@ -72,22 +72,22 @@ fn a_tool_in_place_is_what_it_says() {
 }
 
 #[test]
-fn laws_and_units_are_kept_apart() {
+fn laws_and_units_do_not_mix() {
     // Above the middle of the floor, 0.02 inch deep, and the part in mm: a magnitude that the file writes stays the
     // file's number, and its gradient is per millimetre of the part.
     let (region, evaluation) = at(&Bull, [0.01, 0.0, 0.02], 25.4).expect("inside");
     assert_eq!(region, 1);
-    let close = |a: f64, b: f64| (a - b).abs() < 1e-14;
-    assert!(close(evaluation.depth[0], 0.02));
-    assert!(close(evaluation.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
-    assert!(close(evaluation.niceness[0], 0.98));
-    assert!(close(evaluation.direction[2][0], -1.0));
-    assert!(close(evaluation.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
+    let is_close = |a: f64, b: f64| (a - b).abs() < 1e-14;
+    assert!(is_close(evaluation.depth[0], 0.02));
+    assert!(is_close(evaluation.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
+    assert!(is_close(evaluation.niceness[0], 0.98));
+    assert!(is_close(evaluation.direction[2][0], -1.0));
+    assert!(is_close(evaluation.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
     // The shank has the law for all, and does not cut.
     let (region, evaluation) = at(&Bull, [0.0, 0.23, 1.0], 25.4).expect("inside");
     assert_eq!(region, 2);
     let depth = 6.0 / 25.4 - 0.23;
-    assert!(close(evaluation.magnitude[0], 2.0 * depth));
+    assert!(is_close(evaluation.magnitude[0], 2.0 * depth));
     assert_eq!(evaluation.niceness[0], 0.0);
     assert!(at(&Bull, [0.24, 0.0, 1.0], 25.4).is_none());
 }

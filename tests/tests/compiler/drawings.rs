@@ -93,7 +93,7 @@ fn profiles_are_drawn() {
 }
 
 #[test]
-fn measures_are_the_files() {
+fn dimensions_are_in_the_unit_of_the_file() {
     let tool = profile(
         "start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 20) as flute cutting;
          line to (3, 30) as shank; line to (12.9, 30), (14, 31.1), (14, 47.5), (0, 47.5) as nut;",
@@ -114,7 +114,7 @@ fn measures_are_the_files() {
 
 /// A shortened needle is marked as such, and still shows its true length.
 #[test]
-fn what_is_long_is_shortened() {
+fn long_tools_are_shortened() {
     let needle = profile("start (0, 0); line to (0.5, 0), (0.5, 60), (0, 60) as shank;");
     let texts = texts(&drawn(&needle, Lettering::Strokes));
     assert!(texts.iter().any(|text| text == "shortened"), "{texts:?}");
@@ -122,7 +122,7 @@ fn what_is_long_is_shortened() {
 }
 
 #[test]
-fn the_type_shows_it_in_its_documentation() {
+fn the_documentation_includes_the_drawing() {
     let tool = library("unit_sphere.tool");
     assert!(emit::documented(&tool).to_string().contains("doc = \"<div><svg"));
     assert!(!emit::emit(&tool).to_string().contains("svg"));

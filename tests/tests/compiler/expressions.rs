@@ -193,7 +193,7 @@ proptest! {
     }
 
     #[test]
-    fn enclosures_enclose(
+    fn enclosures_contain_the_values(
         tree in tree(),
         (d, z) in (0.0..3.0f64, -3.0..3.0f64),
         (width, height) in (0.0..1.0f64, 0.0..1.0f64),
@@ -213,7 +213,7 @@ proptest! {
     }
 
     #[test]
-    fn in_space_too(
+    fn enclosures_enclose_in_space(
         tree in tree(),
         p in [-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64],
         width in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],

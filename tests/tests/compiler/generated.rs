@@ -141,7 +141,7 @@ fn fnv(bytes: &[u8]) -> u64 {
 
 /// A tool cannot have a name that its own code imports.
 #[test]
-fn imported_names_are_taken() {
+fn imported_names_are_reserved() {
     let code = generated("ball.tool");
     let (_, imports) = code.split_once("use ::touchoff::tool::{").expect("an import");
     let (imports, _) = imports.split_once('}').expect("its end");
@@ -186,7 +186,7 @@ snapshots!(
 
 /// The check above detects each kind of construct.
 #[test]
-fn what_is_refused() {
+fn rejects_code_that_is_not_straight_line() {
     let bad = "fn f(x: [f64; 2]) -> f64 {
         for _ in 0..2 {}
         let g = |a: f64| a.sin();

@@ -9,8 +9,8 @@ use tool_dsl::compile;
 use tool_dsl::diagnostic::{Diagnostic, Severity};
 use tool_dsl::source::Source;
 
-const PAGE: &str = include_str!("../../../docs/language.md");
-const WORD: &str = "// error: ";
+const LANGUAGE_PAGE: &str = include_str!("../../../docs/language.md");
+const ERROR_PREFIX: &str = "// error: ";
 
 struct Example {
     /// The rest of its fence behind `tool`.
@@ -24,7 +24,7 @@ impl Example {
     fn all() -> Vec<Example> {
         let mut all: Vec<Example> = Vec::new();
         let mut open = false;
-        for (at, line) in PAGE.lines().enumerate() {
+        for (at, line) in LANGUAGE_PAGE.lines().enumerate() {
             if open && line == "```" {
                 open = false;
             } else if open {
@@ -55,8 +55,8 @@ impl Example {
 
     /// Returns the complaint about a bad example; `None` if it fails as expected.
     fn fails(&self, source: &Source) -> Option<String> {
-        let Some((before, after)) = self.text.split_once(WORD) else {
-            return Some(format!("which error? write `{WORD}…` where it stands"));
+        let Some((before, after)) = self.text.split_once(ERROR_PREFIX) else {
+            return Some(format!("which error? write `{ERROR_PREFIX}…` where it stands"));
         };
         let (line, expected) = (before.lines().count(), after.lines().next().unwrap_or_default());
         let compiled = compile(source);
@@ -72,7 +72,7 @@ impl Example {
 }
 
 #[test]
-fn every_example_does_what_the_page_says() {
+fn every_example_has_the_documented_result() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("language");
     std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
     let examples = Example::all();

@@ -50,7 +50,7 @@ fn the_envelope_reaches_the_end() {
 }
 
 #[test]
-fn small_tools_are_looked_at_as_closely() {
+fn small_tools_are_linted_as_thoroughly() {
     let text = "tool T { units m; let r = 1e-5;
         region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
         region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
@@ -59,7 +59,7 @@ fn small_tools_are_looked_at_as_closely() {
 }
 
 #[test]
-fn what_outgrows_its_means_is_refused() {
+fn rejects_tools_beyond_the_limits() {
     let chain = |first: &str, step: fn(usize) -> String, count: usize| {
         let mut items = format!("curve c0 = {first};");
         for k in 1..=count {
@@ -89,7 +89,7 @@ fn what_outgrows_its_means_is_refused() {
 
 /// One mistake is reported once, however often the name it defines is used.
 #[test]
-fn what_only_follows_is_not_said() {
+fn consequential_errors_are_not_reported() {
     let message = refused(
         "let a = 1/0; let b = a + 1; region r where hypot(d, z - b) <= a { depth: a - d; }",
     );
@@ -97,14 +97,14 @@ fn what_only_follows_is_not_said() {
 }
 
 #[test]
-fn a_pose_beyond_all_parts_is_refused() {
+fn rejects_a_pose_beyond_the_coordinate_limit() {
     let tip = nalgebra::Point3::new(0.0, 0.0, -1.7e308);
     assert_eq!(Pose::from_axis(tip, nalgebra::Vector3::z()), Err(PoseError::NotFinite));
 }
 
 /// Warnings accompany a tool that is accepted.
 #[test]
-fn what_is_only_worth_knowing() {
+fn warnings_do_not_reject_a_tool() {
     let said = |items: &str| {
         let compiled = compiled(items);
         assert!(compiled.tool().is_some(), "{items}");

@@ -20,7 +20,7 @@ fn evaluation(part: &Part, budget: usize, path: ScenePath) -> Vec<touchoff::LodW
 }
 
 #[test]
-fn no_query_looks_at_more_nodes_than_it_may() {
+fn queries_keep_their_node_budget() {
     let part = detailed(100_000);
     let mut levels = BTreeSet::new();
     for path in [ScenePath::Outside, ScenePath::Inside, ScenePath::Hold] {
@@ -59,7 +59,7 @@ fn no_query_looks_at_more_nodes_than_it_may() {
 }
 
 #[test]
-fn a_budget_too_small_is_refused() {
+fn rejects_a_budget_that_is_too_small() {
     let part = detailed(2_000);
     let refused = LodProbe::new(&part, &Fig73, 5, Law::Thesis).expect_err("5 nodes are too few");
     assert!(refused.needed > 5 && refused.to_string().contains("a budget of 5 nodes is too small"));
@@ -99,7 +99,7 @@ fn force_is_continuous_where_the_level_changes() {
 }
 
 #[test]
-fn a_tool_that_trembles_about_its_budget_is_felt_all_the_same() {
+fn a_tool_oscillating_around_its_budget_keeps_its_forces() {
     let part = detailed(200_000);
     // Deep in the wall the budget is too small for the level that a light touch is evaluated at.
     let pose = |z: f64| Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose");
@@ -109,19 +109,19 @@ fn a_tool_that_trembles_about_its_budget_is_felt_all_the_same() {
     assert!(shallow < deep, "{shallow} {deep}");
     let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
     let mut alone = Probe::new(&part, &Ball).with_law(Law::Gradient);
-    let (mut last, mut changes, mut near) = (None, 0, 0);
+    let (mut last, mut changes, mut near_count) = (None, 0, 0);
     for k in 0..2_000 {
         let z = if k % 2 == 0 { 13.1 } else { 12.2 };
         let evaluation = graded.wrench(&pose(z));
         changes += usize::from(last.is_some_and(|level| level != evaluation.level));
         last = Some(evaluation.level);
         let true_force = alone.wrench(&pose(z)).force;
-        near += usize::from(
+        near_count += usize::from(
             (evaluation.wrench.force - true_force).norm() < 0.25 * true_force.norm() + 0.1,
         );
     }
     assert!(changes <= 2 * 2_000 / 32 + 2, "{changes}");
-    assert!(near > 1_000, "{near}");
+    assert!(near_count > 1_000, "{near_count}");
     // Out of the part no force of it is left.
     let away = graded.wrench(&pose(20.0)).wrench;
     assert_eq!((away.force, away.torque), (Vector3::zeros(), Vector3::zeros()));
@@ -143,9 +143,9 @@ fn left<'a>(
         Sampling::monte_carlo(60_000).with_seed((1e9 * draw.between(0.0, 1.0)) as u64),
     )
     .expect("a cloud");
-    cloud.points().to_vec().into_iter().filter(move |place| {
+    cloud.points().to_vec().into_iter().filter(move |point| {
         poses.iter().all(|pose| {
-            let from = pose.rotation().transpose() * (place - pose.tip());
+            let from = pose.rotation().transpose() * (point - pose.tip());
             // The ball end mill's ball and flute, restated.
             let (d, z) = (from.x.hypot(from.y), from.z);
             let inside = if z < 5.0 { d.hypot(z - 5.0) < 5.0 } else { d < 5.0 && z < 72.0 };
@@ -159,7 +159,7 @@ fn sums(part: &Part, tool: &dyn touchoff::Tool, pose: &Pose) -> Wrench {
 }
 
 #[test]
-fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
+fn removed_material_has_no_contacts_and_the_rest_is_covered() {
     let mesh = tube();
     let mut part = detailed(20_000);
     let cover = part.tree().covering_radius().expect("a cover");
@@ -184,23 +184,23 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
     assert!(taken > 1_000 && part.tree().len() < all);
     assert_eq!(part.tree().covering_radius(), Some(cover));
     let points: Vec<Point3<f64>> =
-        (0..all).map(|place| part.tree().point(place)).filter(|point| !point.x.is_nan()).collect();
+        (0..all).map(|index| part.tree().point(index)).filter(|point| !point.x.is_nan()).collect();
     assert_eq!(points.len(), part.tree().len());
     let mut looked = 0;
-    for place in left(&mesh, &poses, &mut draw).take(4_000) {
-        let nearest = points.iter().map(|p| (p - place).norm()).fold(f64::INFINITY, f64::min);
+    for remaining in left(&mesh, &poses, &mut draw).take(4_000) {
+        let nearest = points.iter().map(|p| (p - remaining).norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest <= cover.radius * (1.0 + 1e-6), "{nearest} of {}", cover.radius);
         looked += 1;
     }
     assert!(looked > 3_000);
     // The results are those of a part that never had those points.
     let tree = part.tree();
-    let places: Vec<usize> = (0..all).filter(|place| !tree.point(*place).x.is_nan()).collect();
+    let indices: Vec<usize> = (0..all).filter(|index| !tree.point(*index).x.is_nan()).collect();
     let fresh = Cloud::new(
         points,
-        places.iter().map(|place| tree.normal(*place).into()).collect(),
-        places.iter().map(|place| tree.triangle(*place)).collect(),
-        places.iter().map(|place| tree.weight(*place)).collect(),
+        indices.iter().map(|index| tree.normal(*index).into()).collect(),
+        indices.iter().map(|index| tree.triangle(*index)).collect(),
+        indices.iter().map(|index| tree.weight(*index)).collect(),
         part.unit(),
     );
     let fresh = Part::from_cloud(&fresh.expect("a cloud"));
@@ -213,7 +213,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
 }
 
 #[test]
-fn nothing_is_left_of_a_part_inside_a_tool() {
+fn cutting_a_part_inside_a_tool_removes_all_points() {
     let high = Point3::new(0.1, 0.1, 0.1);
     let cube = touchoff::mesh::shapes::cuboid(Point3::origin(), high, touchoff::Unit::Millimetre);
     let cloud = Cloud::sample(&cube.expect("a cube"), Sampling::monte_carlo(500)).expect("a cloud");
@@ -226,7 +226,7 @@ fn nothing_is_left_of_a_part_inside_a_tool() {
 }
 
 #[test]
-fn a_part_that_bends_is_felt_where_it_is() {
+fn a_deformed_part_has_contacts_at_its_new_points() {
     let bend = |k: f64| {
         move |p: Point3<f64>, n: Vector3<f64>| (Point3::new(p.x + k * p.z * p.z, p.y, p.z), n)
     };

@@ -11,12 +11,12 @@ fn fig73() -> &'static dyn Tool {
 }
 
 fn near(what: &str, found: Vector3<f64>, expected: Vector3<f64>) {
-    let off = (found - expected).norm();
-    assert!(off <= 1e-9 * (1.0 + expected.norm()), "{what}: {found} for {expected}");
+    let difference = (found - expected).norm();
+    assert!(difference <= 1e-9 * (1.0 + expected.norm()), "{what}: {found} for {expected}");
 }
 
 #[test]
-fn a_pair_is_a_probe() {
+fn a_scene_of_one_pair_equals_a_probe() {
     let part = part(5_000);
     let mut scene = Scene::new(Unit::Millimetre);
     let tube = scene.add_part(&part, Pose::default()).expect("millimetres");
@@ -36,7 +36,7 @@ fn a_pair_is_a_probe() {
 }
 
 #[test]
-fn what_moves_together_feels_the_same() {
+fn moving_tool_and_part_together_keeps_the_wrench() {
     let part = part(5_000);
     let moved = Isometry3::from_parts(
         Translation3::new(300.0, -40.0, 7.0),
@@ -68,16 +68,16 @@ fn parts_add_up_and_move() {
     let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre);
     let cube = Part::from_mesh(&cube.expect("a cube"), Sampling::new(4_000)).expect("a part");
     let mut scene = Scene::new(Unit::Millimetre);
-    let beside = |x: f64| Pose::try_from(Isometry3::translation(x, 0.0, 0.0)).expect("finite");
-    let left = scene.add_part(&cube, beside(-20.5)).expect("millimetres");
+    let shifted = |x: f64| Pose::try_from(Isometry3::translation(x, 0.0, 0.0)).expect("finite");
+    let left_part = scene.add_part(&cube, shifted(-20.5)).expect("millimetres");
     let tool = scene.add_tool(fig73());
-    let right = scene.add_part(&cube, beside(0.5)).expect("millimetres");
+    let right_part = scene.add_part(&cube, shifted(0.5)).expect("millimetres");
     // The cutter of radius 1 stands in a slot 1 wide.
     scene.move_tool(
         tool,
         Pose::from_axis(Point3::new(0.0, 10.0, 15.0), Vector3::z()).expect("unit"),
     );
-    let [a, b] = [left, right].map(|part| scene.pair_wrench(tool, part));
+    let [a, b] = [left_part, right_part].map(|part| scene.pair_wrench(tool, part));
     assert!(a.colliding > 10 && b.colliding > 10 && a.force.x > 0.0 && b.force.x < 0.0);
     let both = scene.wrench(tool);
     let mut sum = Wrench { force: a.force + b.force, torque: a.torque + b.torque, ..a };
@@ -87,9 +87,9 @@ fn parts_add_up_and_move() {
     assert_eq!((both.force, both.torque, both.colliding), (sum.force, sum.torque, sum.colliding));
     assert_eq!((both.integral, both.energy), (sum.integral, sum.energy));
     assert_eq!(both.depth(), a.depth().max(b.depth()));
-    assert_eq!(scene.detect(tool), Some(left));
-    scene.move_part(left, beside(-60.0));
-    assert_eq!((scene.wrench(tool), scene.detect(tool)), (b, Some(right)));
+    assert_eq!(scene.detect(tool), Some(left_part));
+    scene.move_part(left_part, shifted(-60.0));
+    assert_eq!((scene.wrench(tool), scene.detect(tool)), (b, Some(right_part)));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn a_part_in_another_unit_is_converted() {
 }
 
 #[test]
-fn many_poses_at_once_are_one_after_the_other() {
+fn batched_poses_equal_successive_ones() {
     let part = part(5_000);
     let poses = poses(ScenePath::Outside, 3_000);
     let mut probe = Probe::new(&part, &tools_library::Fig73);

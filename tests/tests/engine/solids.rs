@@ -44,26 +44,29 @@ fn a_block_at_faces_edges_and_corners() {
 
 #[test]
 fn a_bracket_at_its_hole_and_edges() {
-    let close = |p: [f64; 3], region: &str, depth: f64| {
-        let (name, there) = at::<LBracket>(p).unwrap_or_else(|| panic!("{p:?} is outside"));
+    let assert_close = |p: [f64; 3], region: &str, depth: f64| {
+        let (name, evaluation) = at::<LBracket>(p).unwrap_or_else(|| panic!("{p:?} is outside"));
         assert_eq!(name, region, "{p:?}");
-        assert!((there - depth).abs() <= 32.0 * f64::EPSILON, "{p:?}: {there}, not {depth}");
+        assert!(
+            (evaluation - depth).abs() <= 32.0 * f64::EPSILON,
+            "{p:?}: {evaluation}, not {depth}"
+        );
     };
-    close([0.0, 0.0, 2.0], "lying_bottom", 2.0);
-    close([0.0, 9.0, 3.0], "lying_side", 1.0);
-    close([19.5, 0.0, 3.0], "lying_end", 0.5);
-    close([-7.5, 0.0, 15.0], "standing_back", 2.5);
-    close([-4.5, -2.0, 15.0], "standing_inner", 0.5);
-    close([-7.0, 9.5, 20.0], "standing_side", 0.5);
-    close([-7.0, 0.0, 23.0], "standing_top", 1.0);
+    assert_close([0.0, 0.0, 2.0], "lying_bottom", 2.0);
+    assert_close([0.0, 9.0, 3.0], "lying_side", 1.0);
+    assert_close([19.5, 0.0, 3.0], "lying_end", 0.5);
+    assert_close([-7.5, 0.0, 15.0], "standing_back", 2.5);
+    assert_close([-4.5, -2.0, 15.0], "standing_inner", 0.5);
+    assert_close([-7.0, 9.5, 20.0], "standing_side", 0.5);
+    assert_close([-7.0, 0.0, 23.0], "standing_top", 1.0);
     // In the heel the inner edge is nearer than either of its faces' planes would suggest.
-    close([-5.0, 0.0, 5.0], "heel_edge", 2f64.sqrt());
-    close([-7.0, 3.0, 2.0], "heel_bottom", 2.0);
-    close([-5.0, 9.25, 5.0], "heel_side", 0.75);
+    assert_close([-5.0, 0.0, 5.0], "heel_edge", 2f64.sqrt());
+    assert_close([-7.0, 3.0, 2.0], "heel_bottom", 2.0);
+    assert_close([-5.0, 9.25, 5.0], "heel_side", 0.75);
     // The wall of the hole, its rims, and half way through.
-    close([14.0, 0.0, 3.0], "bore", 0.7);
-    close([10.0, -4.3, 3.0], "bore", 1.0);
-    close([14.5, 0.0, 0.5], "lying_bottom", 0.5);
+    assert_close([14.0, 0.0, 3.0], "bore", 0.7);
+    assert_close([10.0, -4.3, 3.0], "bore", 1.0);
+    assert_close([14.5, 0.0, 0.5], "lying_bottom", 0.5);
     for z in [0.0, 6.0] {
         assert!(!LBracket::contains([13.299_999, 0.0, z]));
         let (_, depth) = at::<LBracket>([13.300_001, 0.0, z]).expect("the rim");
@@ -77,8 +80,9 @@ fn a_bracket_at_its_hole_and_edges() {
     let toward = LBracket::direction([14.0, 0.0, 3.0]);
     assert_eq!(toward, [-1.0, 0.0, 0.0]);
     let half = 0.5f64.sqrt();
-    for (part, wanted) in LBracket::direction([-5.0, 0.0, 5.0]).into_iter().zip([half, 0.0, half]) {
-        assert!((part - wanted).abs() < 1e-15);
+    for (part, expected) in LBracket::direction([-5.0, 0.0, 5.0]).into_iter().zip([half, 0.0, half])
+    {
+        assert!((part - expected).abs() < 1e-15);
     }
 }
 
@@ -102,7 +106,7 @@ fn clearance_is_that_of_the_box() {
 
 /// A block of any sides, given from outside, is divided as well.
 #[test]
-fn a_block_of_other_sides() {
+fn a_block_with_other_dimensions() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
     let block = Source::read(folder.join("block.tool")).expect("the library has it");
     for (w, l, h) in [(10, 50, 80), (30, 30, 30), (100, 1, 1)] {
@@ -129,7 +133,7 @@ fn a_block_of_other_sides() {
 
 /// Bounds are proved, and hardly wider than the solid.
 #[test]
-fn cards_say_how_far_solids_reach() {
+fn info_has_the_extents_of_solids() {
     let info = Block::info();
     assert_eq!(info.unit, Unit::Millimetre);
     let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
@@ -162,8 +166,9 @@ fn taken(items: &str) -> CheckedTool {
 fn refused(items: &str) -> String {
     let compiled = solid(items);
     assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
-    let said = |r: &tool_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
-    compiled.diagnostics().iter().map(said).collect::<Vec<_>>().join("; ")
+    let format_diagnostic =
+        |r: &tool_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
+    compiled.diagnostics().iter().map(format_diagnostic).collect::<Vec<_>>().join("; ")
 }
 
 const BALL: &str = "region b where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z);";
@@ -185,7 +190,7 @@ fn a_round_solid_is_bounded_closely() {
 }
 
 #[test]
-fn coordinates_of_the_other_kind_are_named() {
+fn diagnostics_name_coordinates_of_the_other_domain() {
     let message = refused(&format!("{BALL} magnitude: d; }}"));
     assert_eq!(message, "`d` exists in a `tool` only: in a `solid` write `hypot(x, y)`");
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
@@ -200,7 +205,7 @@ fn coordinates_of_the_other_kind_are_named() {
 }
 
 #[test]
-fn what_only_a_tool_has_is_named() {
+fn diagnostics_name_items_that_only_tools_have() {
     let ball = format!("{BALL} }}");
     for (item, word) in [
         ("tip z = 3;", "tip"),
@@ -209,8 +214,8 @@ fn what_only_a_tool_has_is_named() {
         ("regions nearest;", "regions"),
     ] {
         let message = refused(&format!("{item} {ball}"));
-        let wanted = format!("`{word}` exists in a `tool` only: a `solid` has no axis");
-        assert!(message.starts_with(&wanted), "{message}");
+        let expected = format!("`{word}` exists in a `tool` only: a `solid` has no axis");
+        assert!(message.starts_with(&expected), "{message}");
         assert!(!message.contains("; `"), "{message}");
     }
 }
@@ -228,7 +233,7 @@ fn points_have_three_numbers() {
 
 /// Each mistake is shown with a point of space.
 #[test]
-fn mistakes_come_with_a_point() {
+fn diagnostics_include_a_point() {
     let both = "region a where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z); }
         region b where hypot(x - 1, y, z) <= 3 { depth: 3 - hypot(x - 1, y, z); }";
     let message = refused(both);
@@ -252,7 +257,7 @@ fn mistakes_come_with_a_point() {
 }
 
 #[test]
-fn other_beginnings() {
+fn rejects_files_with_another_first_keyword() {
     let message = |text: &str| {
         let report = compile(&Source::new("t.tool", text)).diagnostics()[0].clone();
         format!("{}: {}", report.message(), report.help())

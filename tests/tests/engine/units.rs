@@ -57,11 +57,11 @@ fn tool(name: &str) -> &'static dyn Tool {
 
 /// Returns the scenes' tube, given in mm and scaled to a unit.
 fn tube(unit: Unit, count: usize) -> Part {
-    let long = Unit::Millimetre.factor_to(unit);
+    let length_unit = Unit::Millimetre.factor_to(unit);
     let mesh = shapes::tube(3.0, 5.0, HEIGHT, 256, 4, Unit::Millimetre).expect("a tube");
     let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(3)).expect("a cloud");
-    let points = cloud.points().iter().map(|p| p * long).collect();
-    let weights = cloud.weights().iter().map(|w| w * long * long).collect();
+    let points = cloud.points().iter().map(|p| p * length_unit).collect();
+    let weights = cloud.weights().iter().map(|w| w * length_unit * length_unit).collect();
     let ids = (0..count as u32).collect();
     let scaled = Cloud::new(points, cloud.normals().to_vec(), ids, weights, unit);
     Part::from_cloud(&scaled.expect("a cloud"))
@@ -69,8 +69,8 @@ fn tube(unit: Unit, count: usize) -> Part {
 
 /// Scales a pose given in mm to a unit.
 fn scaled(pose: &Pose, unit: Unit) -> Pose {
-    let long = Unit::Millimetre.factor_to(unit);
-    Pose::from_axis(pose.tip() * long, pose.axis()).expect("a pose")
+    let length_unit = Unit::Millimetre.factor_to(unit);
+    Pose::from_axis(pose.tip() * length_unit, pose.axis()).expect("a pose")
 }
 
 /// Returns a compliance centre off the tip, given in mm, in a unit.
@@ -94,28 +94,28 @@ fn evaluation(part: &Part, tool: &dyn Tool, law: Law, weights: Weights) -> Vec<W
     poses().iter().map(|pose| probe.wrench(&scaled(pose, unit))).collect()
 }
 
-/// Asserts that `b` is `a` in another unit, in which the length of `a`'s unit is `long`. Points are stored to 2^-24
+/// Asserts that `b` is `a` in another unit, in which the length of `a`'s unit is `length_unit`. Points are stored to 2^-24
 /// of their leaf, relative to a power of two that differs between units: that is `slack`, in mm, and sums differ by
 /// it for every unit of weight.
-fn scales(a: &Wrench, b: &Wrench, long: f64, powers: Powers, slack: f64, what: &str) {
-    let [depth, integral, energy, force, torque] = powers.map(|power| long.powi(power));
+fn scales(a: &Wrench, b: &Wrench, length_unit: f64, powers: Powers, slack: f64, what: &str) {
+    let [depth, integral, energy, force, torque] = powers.map(|power| length_unit.powi(power));
     assert_eq!(a.colliding, b.colliding, "{what}");
-    let near = |got: f64, want: f64, bound: f64| {
+    let assert_near = |got: f64, want: f64, bound: f64| {
         assert!((got - want).abs() <= bound, "{what}: {got}, not {want} to {bound:e}");
     };
-    near(b.depth() / depth, a.depth(), slack);
+    assert_near(b.depth() / depth, a.depth(), slack);
     let size = 10.0 * a.colliding as f64 * slack;
-    near(b.integral / integral, a.integral, size);
-    near(b.energy / energy, a.energy, 5.0 * size);
-    near((b.force / force - a.force).norm(), 0.0, 5.0 * size);
-    near((b.torque / torque - a.torque).norm(), 0.0, 100.0 * size);
+    assert_near(b.integral / integral, a.integral, size);
+    assert_near(b.energy / energy, a.energy, 5.0 * size);
+    assert_near((b.force / force - a.force).norm(), 0.0, 5.0 * size);
+    assert_near((b.torque / torque - a.torque).norm(), 0.0, 100.0 * size);
     match (a.niceness, b.niceness) {
-        (Some(a), Some(b)) => near(b, a, 10.0 * slack),
+        (Some(a), Some(b)) => assert_near(b, a, 10.0 * slack),
         (a, b) => assert_eq!(a, b),
     }
 }
 
-const SLACK: f64 = 3e-7;
+const RELATIVE_TOLERANCE: f64 = 3e-7;
 
 #[test]
 fn one_scene_in_three_units() {
@@ -132,16 +132,23 @@ fn one_scene_in_three_units() {
             // Powers of a weight, of a magnitude, and of a push: a gradient is the magnitude over a length.
             let w = if weights == Weights::Area { 2 } else { 0 };
             let m = i32::from(depth);
-            let push = if law == Law::Gradient { m - 1 } else { 0 };
-            let powers = [1, w + m, w + 2 * m, w + m + push, w + m + push + 1];
+            let exponent = if law == Law::Gradient { m - 1 } else { 0 };
+            let powers = [1, w + m, w + 2 * m, w + m + exponent, w + m + exponent + 1];
             let first = evaluation(&parts[0], tool(name), law, weights);
             let touching = first.iter().filter(|wrench| wrench.colliding > 0).count();
             assert!(touching > 50, "{name} {touching}");
             for part in &parts[1..] {
                 let unit = part.unit();
-                let long = Unit::Millimetre.factor_to(unit);
+                let length_unit = Unit::Millimetre.factor_to(unit);
                 for (a, b) in first.iter().zip(evaluation(part, tool(name), law, weights)) {
-                    scales(a, &b, long, powers, SLACK, &format!("{name} {law} {weights} {unit}"));
+                    scales(
+                        a,
+                        &b,
+                        length_unit,
+                        powers,
+                        RELATIVE_TOLERANCE,
+                        &format!("{name} {law} {weights} {unit}"),
+                    );
                 }
             }
         }
@@ -153,25 +160,25 @@ fn one_scene_in_three_units() {
 fn one_tool_in_two_units() {
     for unit in UNITS {
         let part = tube(unit, 6_000);
-        let long = Unit::Millimetre.factor_to(unit);
+        let length_unit = Unit::Millimetre.factor_to(unit);
         for law in [Law::Thesis, Law::Gradient, Law::Facing] {
             let mm = evaluation(&part, tool("D2Ball"), law, Weights::Area);
             let inch = evaluation(&part, &InchBall, law, Weights::Area);
             for (a, b) in mm.iter().zip(&inch) {
                 // Points are the same; only lengths of the tool are rounded elsewhere.
-                let size = a.integral + long.powi(3) * 1e-9;
-                let near = |a: f64, b: f64, size: f64| {
+                let size = a.integral + length_unit.powi(3) * 1e-9;
+                let assert_near = |a: f64, b: f64, size: f64| {
                     assert!((a - b).abs() <= 1e-9 * size, "{unit} {law}: {a} {b} {size}");
                 };
                 assert_eq!(a.colliding, b.colliding);
-                near(a.depth(), b.depth(), long);
-                near(a.integral, b.integral, size);
-                near(a.energy, b.energy, size * long);
-                near((a.force - b.force).norm(), 0.0, size);
-                near((a.torque - b.torque).norm(), 0.0, 40.0 * size * long);
+                assert_near(a.depth(), b.depth(), length_unit);
+                assert_near(a.integral, b.integral, size);
+                assert_near(a.energy, b.energy, size * length_unit);
+                assert_near((a.force - b.force).norm(), 0.0, size);
+                assert_near((a.torque - b.torque).norm(), 0.0, 40.0 * size * length_unit);
                 assert_eq!(a.niceness.is_some(), b.niceness.is_some());
                 if let (Some(a), Some(b)) = (a.niceness, b.niceness) {
-                    near(a, b, 1.0);
+                    assert_near(a, b, 1.0);
                 }
             }
         }
@@ -192,25 +199,25 @@ fn a_written_magnitude_stays() {
         // A quarter of an inch deep.
         let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
         let wrench = Probe::new(&part, &Written).with_law(Law::Gradient).wrench(&pose);
-        let near = |got: f64, want: f64| {
+        let assert_near = |got: f64, want: f64| {
             assert!((got - want).abs() < 1e-12 * want.abs(), "{unit}: {got}, not {want}");
         };
-        near(wrench.depth(), 0.25 * inch);
-        near(wrench.integral, 3.0 * 0.25);
-        near(wrench.energy, 0.5 * 3.0 * 0.0625);
-        near(wrench.force.z, 3.0 * 0.25 / inch);
+        assert_near(wrench.depth(), 0.25 * inch);
+        assert_near(wrench.integral, 3.0 * 0.25);
+        assert_near(wrench.energy, 0.5 * 3.0 * 0.0625);
+        assert_near(wrench.force.z, 3.0 * 0.25 / inch);
         let mut probe = Probe::new(&part, &Written);
-        near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
+        assert_near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
         let contact = probe.contacts(&pose)[0];
-        near(contact.magnitude, 0.25);
-        near(contact.depth, 0.25 * inch);
-        near(contact.gradient.z, 1.0 / inch);
+        assert_near(contact.magnitude, 0.25);
+        assert_near(contact.depth, 0.25 * inch);
+        assert_near(contact.gradient.z, 1.0 / inch);
     }
 }
 
 /// Compares with brute force, which handles units by itself.
 #[test]
-fn in_every_unit_as_the_oracle_says() {
+fn every_unit_agrees_with_the_oracle() {
     let tools: [(&dyn Tool, &dyn Oracle); 4] = [
         (tool("Fig73"), &Fig73::default()),
         (tool("Fig73Exact"), &fig_7_3_exact()),
@@ -221,11 +228,11 @@ fn in_every_unit_as_the_oracle_says() {
     for unit in UNITS {
         let part = tube(unit, 1_500);
         let tree = part.tree();
-        let places = 0..tree.len();
-        let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
-        let normals: Vec<[f64; 3]> = places.clone().map(|i| tree.normal(i)).collect();
-        let weights: Vec<f64> = places.map(|i| tree.weight(i)).collect();
-        let long = Unit::Millimetre.factor_to(unit);
+        let indices = 0..tree.len();
+        let points: Vec<[f64; 3]> = indices.clone().map(|i| tree.point(i).into()).collect();
+        let normals: Vec<[f64; 3]> = indices.clone().map(|i| tree.normal(i)).collect();
+        let weights: Vec<f64> = indices.map(|i| tree.weight(i)).collect();
+        let length_unit = Unit::Millimetre.factor_to(unit);
         for (tool, oracle) in tools {
             for (law, same) in
                 [(Law::Thesis, brute::Law::Thesis), (Law::Gradient, brute::Law::Gradient)]
@@ -233,13 +240,13 @@ fn in_every_unit_as_the_oracle_says() {
                 let mut probe = Probe::new(&part, tool).with_law(law).with_centre(centre(unit));
                 for pose in poses().iter().step_by(6).map(|pose| scaled(pose, unit)) {
                     let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
-                    let there = brute::Pose { tip: pose.tip().into(), axes };
-                    let mut query = Query::new(oracle, there, &points, &normals, &weights);
+                    let brute_pose = brute::Pose { tip: pose.tip().into(), axes };
+                    let mut query = Query::new(oracle, brute_pose, &points, &normals, &weights);
                     query.law = same;
                     query.scale = unit.factor_to(Unit::Millimetre);
                     query.centre = (pose.tip() + pose.rotation() * centre(unit).coords).into();
                     let (want, got) = (query.answer(), probe.wrench(&pose));
-                    let near = |error: f64, size: f64, what: &str| {
+                    let assert_near = |error: f64, size: f64, what: &str| {
                         let name = oracle.name();
                         assert!(
                             error.abs() <= 1e-9 * size,
@@ -248,21 +255,25 @@ fn in_every_unit_as_the_oracle_says() {
                     };
                     assert_eq!(want.count, got.colliding, "{} {unit}", oracle.name());
                     let depth = want.deepest.map_or(0.0, |(depth, _)| depth);
-                    near(got.depth() - depth, long, "depth");
+                    assert_near(got.depth() - depth, length_unit, "depth");
                     // Magnitudes near 0 err by the tool's rounding, not their own.
                     let [force, torque] = want.size;
                     let sum: f64 = want.contacts.iter().map(|&i| weights[i]).sum();
-                    let m = if query.magnitude_is_depth { long } else { 1.0 };
-                    near(got.integral - want.integral, want.integral + sum * m, "integral");
-                    near(got.energy - want.energy, want.energy + sum * m * m, "energy");
-                    let push = if law == Law::Gradient { m / long } else { 1.0 };
-                    let off = (got.force - Vector3::from(want.force)).norm();
-                    near(off, force + sum * m * push, "force");
-                    let off = (got.torque - Vector3::from(want.torque)).norm();
-                    near(off, torque + 20.0 * sum * m * push * long, "torque");
+                    let m = if query.magnitude_is_depth { length_unit } else { 1.0 };
+                    assert_near(got.integral - want.integral, want.integral + sum * m, "integral");
+                    assert_near(got.energy - want.energy, want.energy + sum * m * m, "energy");
+                    let scale = if law == Law::Gradient { m / length_unit } else { 1.0 };
+                    let difference = (got.force - Vector3::from(want.force)).norm();
+                    assert_near(difference, force + sum * m * scale, "force");
+                    let difference = (got.torque - Vector3::from(want.torque)).norm();
+                    assert_near(
+                        difference,
+                        torque + 20.0 * sum * m * scale * length_unit,
+                        "torque",
+                    );
                     assert_eq!(got.niceness.is_some(), want.niceness.is_some());
                     if let (Some(got), Some(want)) = (got.niceness, want.niceness) {
-                        near(got - want, 1.0, "niceness");
+                        assert_near(got - want, 1.0, "niceness");
                     }
                 }
             }

@@ -27,7 +27,7 @@ fn refused(text: &str, given: &[&str], words: &[&str]) {
 }
 
 #[test]
-fn what_is_given_replaces_the_default() {
+fn arguments_replace_defaults() {
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-3, "{a}, not {b}");
     near(radius(&with(BALL, &[])), 3.0);
     near(radius(&with(BALL, &["D = 8, flute = 18,"])), 4.0);
@@ -36,7 +36,7 @@ fn what_is_given_replaces_the_default() {
 }
 
 #[test]
-fn what_cannot_be_given_is_refused() {
+fn rejects_invalid_arguments() {
     refused(
         BALL,
         &["Dia = 8"],
@@ -92,7 +92,7 @@ fn a_mount_gives_lengths_in_its_own_unit() {
 }
 
 #[test]
-fn a_mounts_params_are_looked_at_as_others() {
+fn params_of_mounted_files_are_linted() {
     let ball = |with: &str| mounts(&format!("mount \"ball.tool\" as a with {with};"));
     refused(&ball("Dia = 8"), &[], &["`BallCutter` has no param `Dia`", "own.tool:1:"]);
     refused(&ball("D = 8, D = 9"), &[], &["`D` is given twice"]);

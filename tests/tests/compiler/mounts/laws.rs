@@ -23,7 +23,7 @@ fn a_law_keeps_its_unit_and_frame() {
 
 /// A law also keeps its frame when mounted farther up, by files in two units.
 #[test]
-fn a_law_keeps_its_place() {
+fn a_law_keeps_its_location() {
     let text = mounts("mount \"pin.tool\" as pin; mount \"inch_flat.tool\" as mill at z = 5;");
     let (_, niceness) = evaluation(&text, [3.0, 0.0, 17.7]);
     let depth = 0.125 - 3.0 / 25.4;
@@ -31,7 +31,7 @@ fn a_law_keeps_its_place() {
 }
 
 #[test]
-fn a_law_speaks_of_what_its_file_was_given() {
+fn a_law_uses_the_arguments_of_its_file() {
     let text = mounts(
         "let r = 60; mount \"ball.tool\" as cutter with D = 2*r/24; mount \"er16.tool\" as nut at z = 30;",
     );

@@ -18,7 +18,7 @@ fn refused(items: &str, words: &[&str]) {
 }
 
 #[test]
-fn files_that_cannot_be_mounted() {
+fn rejects_files_that_cannot_be_mounted() {
     refused("mount \"none.tool\" as a;", &["cannot read `none.tool`", "relative to the file"]);
     refused(
         "mount \"regions.tool\" as a;",
@@ -59,7 +59,7 @@ fn files_that_mount_themselves() {
 }
 
 #[test]
-fn a_file_that_is_compiled_is_in_the_ring() {
+fn the_compiled_file_is_part_of_the_mount_cycle() {
     let tools =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compiler/mounts/tools/ring_b.tool");
     let compiled = compile(&Source::read(tools).expect("a file beside these tests"));
@@ -69,7 +69,7 @@ fn a_file_that_is_compiled_is_in_the_ring() {
 }
 
 #[test]
-fn places_that_do_not_join() {
+fn rejects_mount_heights_that_do_not_join() {
     let on_ball = |at: &str| {
         format!("mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = {at};")
     };
@@ -103,7 +103,7 @@ fn places_that_do_not_join() {
 }
 
 #[test]
-fn what_does_not_go_with_mounts() {
+fn rejects_items_that_exclude_mounts() {
     let nut = "mount \"er16.tool\" as nut;";
     let profile = "profile { start (0, 0); line to (1, 0), (1, 5), (0, 5) as a; }";
     refused(&format!("{nut} tip z = 0;"), &["mounts bring their own tip and spindle"]);
@@ -145,7 +145,7 @@ fn laws_name_the_parts_surfaces() {
 }
 
 #[test]
-fn more_mounts_than_anyone_has() {
+fn rejects_too_many_mounts() {
     let many: String =
         (1..=64).map(|k| format!("mount \"pin.tool\" as p{k} at z = {k};")).collect();
     refused(&format!("mount \"pin.tool\" as p; {many}"), &["more than 64 mounted files"]);

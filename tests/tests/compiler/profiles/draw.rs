@@ -4,7 +4,7 @@ use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 use proptest::prelude::*;
 
 /// Largest number of segments of a profile.
-const MOST: usize = 12;
+const MAX_SEGMENTS: usize = 12;
 /// Number of grid steps per unit of length in a recipe.
 const GRID: f64 = 64.0;
 
@@ -136,7 +136,7 @@ impl Recipe {
         let mut pen = Pen { scale, at: start, steps: Vec::new(), fillet: None };
         self.nose.draw(&mut pen);
         for step in &self.moves {
-            if pen.steps.len() < MOST {
+            if pen.steps.len() < MAX_SEGMENTS {
                 step.draw(&mut pen);
             }
         }

@@ -76,7 +76,7 @@ fn wanted(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64
 }
 
 #[test]
-fn each_region_feels_what_the_table_says() {
+fn each_region_has_the_tabulated_values() {
     for down in [false, true] {
         let text = text(down, REGIONS);
         let tool = warned(&text).expect("good regions");

@@ -58,10 +58,10 @@ impl Piece {
     pub(crate) fn by_radius(from: P2, to: P2, radius: f64, convex: bool) -> Piece {
         let chord = sub(to, from);
         let half = len(chord) / 2.0;
-        let off = ((radius - half) * (radius + half)).max(0.0).sqrt();
-        let left = unit([-chord[1], chord[0]]);
+        let distance = ((radius - half) * (radius + half)).max(0.0).sqrt();
+        let normal = unit([-chord[1], chord[0]]);
         let middle = [0, 1].map(|k| f64::midpoint(from[k], to[k]));
-        let centre = add(middle, left, if convex { off } else { -off });
+        let centre = add(middle, normal, if convex { distance } else { -distance });
         Piece { from, to, round: Some(Round { centre, radius, convex, by_radius: true }) }
     }
 
@@ -204,7 +204,7 @@ impl Outline {
     /// Returns the largest coordinate.
     pub(crate) fn size(&self) -> f64 {
         let ends = self.pieces.iter().flat_map(|piece| [piece.from, piece.to]);
-        ends.flatten().fold(0.0, |most, part| part.abs().max(most))
+        ends.flatten().fold(0.0, |largest, part| part.abs().max(largest))
     }
 
     /// Returns the least and the largest `[d, z]`.
@@ -220,8 +220,8 @@ impl Outline {
             widen(piece.from);
             widen(piece.to);
             let Some(round) = piece.round else { continue };
-            for way in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
-                let p = add(round.centre, way, round.radius);
+            for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                let p = add(round.centre, direction, round.radius);
                 if piece.faces(p) {
                     widen(p);
                 }

@@ -3,15 +3,15 @@
 use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 
 /// Least distance of a profile from itself, as a fraction of its size.
-const MARGIN: f64 = 3e-4;
+const MIN_DISTANCE_FRACTION: f64 = 3e-4;
 /// Sharpest corner that is allowed, as a sine.
-const SHARP: f64 = 0.03;
+const MIN_CORNER_SINE: f64 = 0.03;
 const CHORDS: u32 = 48;
 
 /// Returns whether the profile is valid, and stays so if moved a little.
 pub(crate) fn is_valid(outline: &Outline) -> bool {
     let size = outline.size();
-    let margin = MARGIN * size;
+    let margin = MIN_DISTANCE_FRACTION * size;
     let pieces = &outline.pieces;
     let count = pieces.len();
     if count == 0 {
@@ -28,7 +28,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
     };
     let sharp = |k: usize| {
         let [a, b] = outline.ways(k);
-        dot(a, b) < 0.0 && cross(a, b).abs() < SHARP
+        dot(a, b) < 0.0 && cross(a, b).abs() < MIN_CORNER_SINE
     };
     if !pieces.iter().all(long) || (0..=count).any(sharp) || area(&lines) < margin * size {
         return false;
@@ -37,7 +37,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
         // Off the axis, and beside the ends steadily away from it.
         let clear = |p: &P2| {
             let from = len(sub(*p, first)).min(len(sub(*p, last)));
-            p[0] >= margin.min(SHARP * from)
+            p[0] >= margin.min(MIN_CORNER_SINE * from)
         };
         let ends = usize::from(k == 0)..line.len() - usize::from(k + 1 == count);
         if !line[ends].iter().all(clear) {
@@ -55,31 +55,35 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
 
 /// Returns points along a piece; those of lines are close together near the ends.
 fn chords(piece: &Piece) -> Vec<P2> {
-    let share = |k: u32| f64::from(k) / f64::from(CHORDS);
+    let fraction = |k: u32| f64::from(k) / f64::from(CHORDS);
     match piece.round {
-        None => (0..=CHORDS).map(|k| piece.at(share(k).powi(2) * (3.0 - 2.0 * share(k)))).collect(),
-        Some(_) => (0..=CHORDS).map(|k| piece.at(share(k))).collect(),
+        None => (0..=CHORDS)
+            .map(|k| piece.at(fraction(k).powi(2) * (3.0 - 2.0 * fraction(k))))
+            .collect(),
+        Some(_) => (0..=CHORDS).map(|k| piece.at(fraction(k))).collect(),
     }
 }
 
 /// Returns whether a point of one polyline is too near the other, or they cross. Beside a joint they may be as near
 /// as it is.
 fn near(line: &[P2], other: &[P2], joint: Option<P2>, margin: f64) -> bool {
-    let limit = |p: P2| joint.map_or(margin, |joint| margin.min(0.5 * SHARP * len(sub(p, joint))));
+    let limit = |p: P2| {
+        joint.map_or(margin, |joint| margin.min(0.5 * MIN_CORNER_SINE * len(sub(p, joint))))
+    };
     line.windows(2).any(|a| {
         other.windows(2).any(|b| {
-            let beside = joint.is_some_and(|joint| {
+            let is_adjacent = joint.is_some_and(|joint| {
                 a.iter().chain(b).any(|p| len(sub(*p, joint)) < 1e-9 * margin)
             });
-            distance(a[1], b[0], b[1]) < limit(a[1]) || (!beside && cross_each_other(a, b))
+            distance(a[1], b[0], b[1]) < limit(a[1]) || (!is_adjacent && cross_each_other(a, b))
         })
     })
 }
 
 fn distance(p: P2, a: P2, b: P2) -> f64 {
-    let way = sub(b, a);
-    let share = (dot(sub(p, a), way) / dot(way, way)).clamp(0.0, 1.0);
-    len(sub(p, add(a, way, share)))
+    let vector = sub(b, a);
+    let fraction = (dot(sub(p, a), vector) / dot(vector, vector)).clamp(0.0, 1.0);
+    len(sub(p, add(a, vector, fraction)))
 }
 
 fn cross_each_other(a: &[P2], b: &[P2]) -> bool {

@@ -9,10 +9,10 @@ use touchoff_tests::oracle::reference::{At, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
-const CLOSE: f64 = 1e-12;
+const BORDER_DISTANCE_FRACTION: f64 = 1e-12;
 
 /// Error in ulp(S) beyond which the oracle, itself in doubles, is doubted, and 256 bits decide.
-const ROUGH: f64 = 0.5;
+const ULPS_IN_DOUBT: f64 = 0.5;
 
 /// The largest error of one kind, and its point.
 #[derive(Default)]
@@ -70,7 +70,9 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
         }
         let owner = T::owner(p);
         let sense = oracle.sense(p);
-        if oracle.border(p) > CLOSE * s && owner != sense.map(|sense| sense.owner) {
+        if oracle.border(p) > BORDER_DISTANCE_FRACTION * s
+            && owner != sense.map(|sense| sense.owner)
+        {
             found.owners.push(format!("{owner:?}, not {sense:?}: {}", shown(p)));
         }
         if let Some(owner) = owner.filter(|_| contained) {
@@ -122,7 +124,7 @@ fn evaluation<T: Evaluators>(
     assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
     // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
     let mut deep = sense.map_or(0.0, |sense| sense.depth);
-    if (depth - deep).abs() > ROUGH * ulp
+    if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
         && let Some(reference) = reference
     {
         deep = reference.depth(&At::new(p)).to_f64().max(0.0);
@@ -151,7 +153,7 @@ fn evaluation<T: Evaluators>(
         rho => (ulp / f64::EPSILON / rho.max(ulp)).max(1.0),
     };
     let doubt = closeness * f64::EPSILON;
-    found.direction.see(apart(direction, sense.direction) / doubt, p, || {
+    found.direction.see(distance(direction, sense.direction) / doubt, p, || {
         format!("{direction:?}, not {:?}, rho {rho:e}", sense.direction)
     });
     let error = (niceness - sense.niceness).abs() / ulp;
@@ -164,7 +166,7 @@ fn evaluation<T: Evaluators>(
     for length in LENGTHS {
         let per = if is_depth { 1.0 } else { length };
         let gradient = T::gradient(p, length).map(|part| part * per);
-        let error = apart(gradient, slope) / norm(slope).max(1.0) / doubt;
+        let error = distance(gradient, slope) / norm(slope).max(1.0) / doubt;
         found.gradient.see(error, p, || format!("{gradient:?}, not {slope:?}"));
     }
 }
@@ -179,6 +181,6 @@ fn norm(v: [f64; 3]) -> f64 {
     v.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     norm([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
 }

@@ -34,23 +34,23 @@ pub(crate) fn of<T: Evaluators>(
     for length in LENGTHS {
         let mut reference = Interpreter::new(checked);
         let code: Vec<Answer> = points.iter().map(|p| scalar::<T>(*p, length)).collect();
-        let alike = |what: &str, got: &[Answer]| {
+        let assert_same_bits = |what: &str, got: &[Answer]| {
             for ((got, expected), p) in got.iter().zip(&code).zip(points) {
-                let said = || format!("{what} at {}: {:?}", shown(*p), numbers(*got));
-                assert_eq!(got, expected, "{}", said());
+                let message = || format!("{what} at {}: {:?}", shown(*p), numbers(*got));
+                assert_eq!(got, expected, "{}", message());
             }
         };
-        alike("tape", &everything(tape, "the tape", Level::baseline(), &list, length));
+        assert_same_bits("tape", &everything(tape, "the tape", Level::baseline(), &list, length));
         for (name, level) in levels() {
-            alike(name, &everything(&tool, name, level, &list, length));
+            assert_same_bits(name, &everything(&tool, name, level, &list, length));
         }
         for (p, code) in points.iter().zip(&code) {
             let expected = answer_of(reference.at(*p, length));
             if *code != expected {
                 let border = oracle.border(*p) / (scale(oracle) * f64::EPSILON);
                 let (code, expected) = (numbers(*code), numbers(expected));
-                let place = shown(*p);
-                assert!(border <= CORNER, "{code:?}, not {expected:?} as the reference at {place}");
+                let point = shown(*p);
+                assert!(border <= CORNER, "{code:?}, not {expected:?} as the reference at {point}");
                 corners += 1;
             }
         }

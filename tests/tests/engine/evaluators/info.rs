@@ -10,7 +10,7 @@ pub(crate) fn of(tool: &dyn Tool, oracle: &Nearest) {
         // Regions written by hand have an order and names of their own.
         return;
     }
-    let said: Vec<(&str, &str, bool)> = info
+    let actual: Vec<(&str, &str, bool)> = info
         .regions
         .iter()
         .map(|region| {
@@ -20,7 +20,7 @@ pub(crate) fn of(tool: &dyn Tool, oracle: &Nearest) {
         .collect();
     let regions = oracle.regions().into_iter().zip(oracle.surfaces());
     let expected: Vec<_> = regions.map(|(name, (surface, cuts))| (name, surface, cuts)).collect();
-    assert_eq!(said, expected);
+    assert_eq!(actual, expected);
     let [radius, height] = oracle.extent();
     let reach = info.envelope.iter().map(|slab| slab.radius).fold(0.0, f64::max);
     let top = info.envelope.iter().map(|slab| slab.high).fold(0.0, f64::max);

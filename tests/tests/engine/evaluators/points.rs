@@ -4,10 +4,10 @@ use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Meridian, Oracle, moved};
 
 /// Number of points spread over the box; as many are close to borders.
-const UNIFORM: usize = 60_000;
+const UNIFORM_POINTS: usize = 60_000;
 /// Number of border points to find, and of points beside each.
-const BORDERS: usize = 15_000;
-const BESIDE: usize = 4;
+const BORDER_POINTS: usize = 15_000;
+const POINTS_PER_BORDER_POINT: usize = 4;
 
 /// Returns at least 100,000 points for a tool, from a seed.
 pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
@@ -37,7 +37,7 @@ fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
 /// Adds points in a box a tenth larger than the tool.
 fn uniform(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
-    for _ in 0..UNIFORM {
+    for _ in 0..UNIFORM_POINTS {
         let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
         points.push([across[0], across[1], draw.between(-0.05 * height, 1.05 * height)]);
     }
@@ -49,7 +49,7 @@ fn beside_borders(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]
     let samples: Vec<[f64; 3]> = oracle.curve_points().into_iter().flatten().collect();
     let owner = |p: [f64; 3]| oracle.sense(p).map(|sense| sense.owner);
     let mut found = 0;
-    while found < BORDERS {
+    while found < BORDER_POINTS {
         let sample = samples[draw.bits() as usize % samples.len()];
         let reach = 0.05 * oracle.extent()[0];
         let mut near = || {
@@ -66,28 +66,28 @@ fn beside_borders(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]
             let middle = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
             if owner(middle) == first { a = middle } else { b = middle }
         }
-        for _ in 0..BESIDE {
+        for _ in 0..POINTS_PER_BORDER_POINT {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
             let size = 10f64.powf(draw.between(-16.0, -6.0));
-            let beside = moved(oracle, a, draw.direction().map(|c| size * c), 0.0);
+            let neighbour = moved(oracle, a, draw.direction().map(|c| size * c), 0.0);
             let azimuths = azimuths(draw);
             let azimuth = azimuths[draw.bits() as usize % azimuths.len()];
-            points.push(turned(oracle, beside, azimuth));
+            points.push(turned(oracle, neighbour, azimuth));
         }
     }
 }
 
 /// Adds every corner and every sample of a curve, and points one ulp to either side of it in each coordinate.
 fn exact(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
-    let around = |v: f64| [v, v.next_up(), v.next_down()];
+    let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     let curves = oracle.curve_points().into_iter().flatten();
     for [x, y, z] in oracle.corner_points().into_iter().chain(curves) {
-        for x in around(x) {
-            for z in around(z) {
+        for x in neighbours(x) {
+            for z in neighbours(z) {
                 if oracle.revolved() {
                     points.extend(azimuths(draw).map(|azimuth| over([x.abs(), z], azimuth)));
                 } else {
-                    points.extend(around(y).map(|y| [x, y, z]));
+                    points.extend(neighbours(y).map(|y| [x, y, z]));
                 }
             }
         }

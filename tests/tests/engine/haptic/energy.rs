@@ -17,7 +17,7 @@ struct Account {
     /// The balance after the last cycle.
     last: EnergyBalance,
     /// The largest energy held.
-    most: f64,
+    max_held: f64,
     /// The work that pushes did because each was held for a cycle: the sum of `-½ (p' - p)·d` where it is positive.
     /// That is the difference between the trapezoid of the pushes `p` and `p'` at both ends of a step `d` and the
     /// rectangle of `p`. It is negative where the tool springs to another grain.
@@ -35,17 +35,18 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
     let tool = tool("Fig73Exact");
     let probe = Probe::new(part, tool).with_law(law);
     let mut session = Session::new(probe, settings, STRONG).expect("settings");
-    const WAY: u64 = 20_000;
+    const CYCLES_PER_DIRECTION: u64 = 20_000;
     let mut device = ScriptedDevice::new(STRONG, |cycle| {
-        let at = if cycle <= WAY { cycle } else { 2 * WAY - cycle };
+        let at =
+            if cycle <= CYCLES_PER_DIRECTION { cycle } else { 2 * CYCLES_PER_DIRECTION - cycle };
         // A tenth of the path, which takes seconds instead of minutes.
-        Ok(path.pose(at as usize, 10 * WAY as usize))
+        Ok(path.pose(at as usize, 10 * CYCLES_PER_DIRECTION as usize))
     });
-    let (mut most, mut lag) = (0.0f64, 0.0);
+    let (mut max_held, mut lag) = (0.0f64, 0.0);
     let mut last = session.cycle(&mut device).expect("it was somewhere");
-    for _ in 0..2 * WAY {
+    for _ in 0..2 * CYCLES_PER_DIRECTION {
         let state = session.cycle(&mut device).expect("it was somewhere");
-        most = most.max(state.energy.held);
+        max_held = max_held.max(state.energy.held);
         let (from, to) = (last.device, state.device);
         let by_force =
             (state.wrench_on_hand.force - last.wrench_on_hand.force).dot(&(to.tip() - from.tip()));
@@ -54,7 +55,7 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
         lag += (-0.5 * (by_force + by_torque)).max(0.0);
         last = state;
     }
-    Account { last: last.energy, most, lag }
+    Account { last: last.energy, max_held, lag }
 }
 
 /// With a coupling, the push is the gradient of the energy that contact and spring hold. A way there and back then
@@ -62,7 +63,7 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
 /// energy held; on the path inside, where only 2.6e-4 N·mm are held, less than 9 %. The controller leaves less than
 /// 0.02 % everywhere. Where the tool springs from one grain of the cloud to the next, some energy is lost.
 #[test]
-fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
+fn gradient_coupling_generates_at_most_the_lag_of_held_wrenches() {
     let part = Part::from_mesh(&tube(), Sampling::new(20_000)).expect("points of a tube");
     let coupling = Coupling { damping: 0.0, ..Coupling::of(&STRONG) };
     let rendering = Some(Rendering::Coupled(coupling));
@@ -74,18 +75,18 @@ fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
                 passive,
                 ..SessionSettings::new(1000.0)
             };
-            let Account { last: energy, most, lag } =
+            let Account { last: energy, max_held, lag } =
                 there_and_back(&part, Law::Gradient, &settings, path);
-            println!("{path:?}: {energy:?}, most {most}, lag {lag}");
-            assert!(most > 0.0, "{path:?}");
-            let share = match (passive, path) {
+            println!("{path:?}: {energy:?}, most {max_held}, lag {lag}");
+            assert!(max_held > 0.0, "{path:?}");
+            let tolerance = match (passive, path) {
                 (true, _) => 2e-4,
                 (false, ScenePath::Inside) => 0.09,
                 (false, _) => 1e-3,
             };
             let net = energy.put_in - energy.held;
-            assert!(net > -share * most, "{path:?}: {net} of {most}");
-            assert!(energy.generated < share * most, "{path:?}: {energy:?} of {most}");
+            assert!(net > -tolerance * max_held, "{path:?}: {net} of {max_held}");
+            assert!(energy.generated < tolerance * max_held, "{path:?}: {energy:?} of {max_held}");
             assert!(energy.generated < lag, "{path:?}: {energy:?}, lag {lag}");
         }
     }
@@ -95,11 +96,11 @@ fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
 /// The controller takes that out as far as its damper may brake: half the device's stiffness times the squares of
 /// the displacements, `½ k Σ d²`, 0.125 N·mm in these taps.
 #[test]
-fn what_comes_from_nowhere_is_taken_out_up_to_the_dampers_limit() {
+fn generated_energy_is_dissipated_up_to_the_damper_limit() {
     let part = plane();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
-    let ways = (1..5_000).map(|cycle| height(cycle) - height(cycle - 1));
-    let limit = 0.5 * LIMITS.stiffness * ways.map(|way| way * way).sum::<f64>();
+    let steps = (1..5_000).map(|cycle| height(cycle) - height(cycle - 1));
+    let limit = 0.5 * LIMITS.stiffness * steps.map(|step| step * step).sum::<f64>();
     let mut reached = [false; 2];
     for stiffness in [0.25, 0.5, 1.0, 2.0, 4.0] {
         let [free, passive] = [false, true]
@@ -110,8 +111,8 @@ fn what_comes_from_nowhere_is_taken_out_up_to_the_dampers_limit() {
         if beyond {
             // The controller takes out all that it may; the rest stays.
             assert!(passive.taken_out > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
-            let left = free.generated - passive.taken_out;
-            assert!(passive.generated < 1.01 * left, "{stiffness}: {passive:?} {free:?}");
+            let remaining = free.generated - passive.taken_out;
+            assert!(passive.generated < 1.01 * remaining, "{stiffness}: {passive:?} {free:?}");
         } else {
             // The controller takes out all but the energy of the last cycles.
             assert!(passive.generated < 0.002 * free.generated, "{passive:?} {free:?}");

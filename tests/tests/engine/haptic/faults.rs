@@ -24,7 +24,7 @@ fn gone() -> DeviceError {
 }
 
 #[test]
-fn what_is_no_pose_is_held_and_counted() {
+fn invalid_poses_are_replaced_by_the_last_and_counted() {
     let part = block(20_000);
     let mut session = session(&part);
     let nan = |cycle| (300..320).contains(&cycle).then_some(Err(PoseError::NotFinite.into()));
@@ -42,7 +42,7 @@ fn what_is_no_pose_is_held_and_counted() {
 }
 
 #[test]
-fn a_device_that_vanishes_and_returns_is_held_meanwhile() {
+fn the_last_pose_is_held_while_a_device_is_gone() {
     let part = block(20_000);
     let mut session = session(&part);
     let mut device = deep(|cycle| (300..400).contains(&cycle).then(|| Err(gone())));
@@ -54,7 +54,7 @@ fn a_device_that_vanishes_and_returns_is_held_meanwhile() {
 }
 
 #[test]
-fn before_it_is_anywhere_nothing_is_pushed() {
+fn no_wrench_is_sent_before_the_first_pose() {
     let part = block(20_000);
     let mut session = session(&part);
     let mut device = deep(|cycle| (cycle < 10).then(|| Err(gone())));
@@ -65,13 +65,13 @@ fn before_it_is_anywhere_nothing_is_pushed() {
 
 /// One wild pose is not followed; if the device stays there, rendering begins anew, gently.
 #[test]
-fn a_jump_is_not_followed_unless_it_stays() {
+fn a_jump_is_followed_only_if_it_persists() {
     let part = block(20_000);
     let mut session = session(&part);
-    let far = || Some(Ok(upright(500.0)));
+    let far_pose = || Some(Ok(upright(500.0)));
     let mut device = deep(|cycle| match cycle {
-        300 => far(),
-        400..500 => far(),
+        300 => far_pose(),
+        400..500 => far_pose(),
         _ => None,
     });
     let mut largest = 0.0f64;
@@ -107,7 +107,7 @@ impl Device for Deaf {
 }
 
 #[test]
-fn a_push_that_fails_is_counted() {
+fn failed_wrench_commands_are_counted() {
     let part = block(20_000);
     let mut session = session(&part);
     for _ in 0..5 {
@@ -117,7 +117,7 @@ fn a_push_that_fails_is_counted() {
 }
 
 #[test]
-fn never_more_than_the_device_can_push() {
+fn wrenches_keep_the_device_limits() {
     let part = block(20_000);
     for stiffness in [1.0, 1e3, 1e9] {
         let settings = SessionSettings { stiffness, ..SessionSettings::new(1000.0) };
@@ -126,9 +126,9 @@ fn never_more_than_the_device_can_push() {
         let mut device =
             ScriptedDevice::new(LIMITS, |cycle| Ok(upright(0.1 - 0.005 * cycle as f64)));
         for _ in 0..4000 {
-            let push = session.cycle(&mut device).expect("it was somewhere").wrench_on_hand;
-            assert!(push.force.norm() <= LIMITS.force * (1.0 + 1e-12));
-            assert!(push.torque.norm() <= LIMITS.torque * (1.0 + 1e-12));
+            let wrench = session.cycle(&mut device).expect("it was somewhere").wrench_on_hand;
+            assert!(wrench.force.norm() <= LIMITS.force * (1.0 + 1e-12));
+            assert!(wrench.torque.norm() <= LIMITS.torque * (1.0 + 1e-12));
         }
     }
 }

@@ -27,7 +27,7 @@ fn refused<T>(made: Result<T, SettingError>) -> String {
 }
 
 #[test]
-fn a_session_refuses_what_it_cannot_run_with() {
+fn rejects_invalid_session_settings() {
     let good = SessionSettings::new(1000.0);
     let origin = Point3::origin();
     assert_eq!(session(&good, LIMITS, origin), Ok(()));
@@ -86,17 +86,17 @@ fn coupled(change: impl Fn(&mut Coupling)) -> Option<Rendering> {
 
 /// The error names the number and the valid range.
 #[test]
-fn an_error_says_what_is_wrong_and_what_to_give() {
+fn errors_name_the_problem_and_the_valid_range() {
     let rate = |rate| refused(session(&SessionSettings::new(rate), LIMITS, Point3::origin()));
     assert_eq!(rate(0.0), "the rate in Hz is 0: give 0.001 to 1000000 cycles per second");
     assert_eq!(rate(1e9), "the rate in Hz is 1000000000: give 0.001 to 1000000 cycles per second");
     let settings = SessionSettings { stiffness: f64::NAN, ..SessionSettings::new(1000.0) };
-    let said = refused(session(&settings, LIMITS, Point3::origin()));
-    assert_eq!(said, "the stiffness of contact is NaN: give a finite number above 0");
+    let message = refused(session(&settings, LIMITS, Point3::origin()));
+    assert_eq!(message, "the stiffness of contact is NaN: give a finite number above 0");
 }
 
 #[test]
-fn a_hand_refuses_what_it_cannot_move_with() {
+fn rejects_invalid_hand_settings() {
     let hand = || SimulatedHand::new(LIMITS, 1000.0, |_| -> Pose { upright(0.0) }).expect("a hand");
     let grip = HandImpedance::default();
     for bad in &BAD[1..] {
@@ -130,19 +130,20 @@ fn a_hand_refuses_what_it_cannot_move_with() {
 
 #[cfg(unix)]
 #[test]
-fn a_space_mouse_refuses_a_rate_of_zero() {
+fn a_space_mouse_rejects_a_rate_of_zero() {
     use touchoff::haptic::spacenav::{Spacenav, SpeedGains};
     let nobody = std::path::Path::new("nobody.sock");
-    let open = |rate, way, turn| {
-        let (start, gains) = (upright(10.0), SpeedGains { linear: way, angular: turn });
+    let open = |rate, linear, angular| {
+        let (start, gains) = (upright(10.0), SpeedGains { linear, angular });
         match Spacenav::open(nobody, start, Unit::Millimetre, rate, gains) {
             Ok(_) => panic!("it was accepted"),
             Err(error) => error.kind(),
         }
     };
     for bad in BAD {
-        for (rate, way, turn) in [(bad, 100.0, 1.0), (1000.0, bad, 1.0), (1000.0, 100.0, bad)] {
-            assert_eq!(open(rate, way, turn), std::io::ErrorKind::InvalidInput);
+        for (rate, linear, angular) in [(bad, 100.0, 1.0), (1000.0, bad, 1.0), (1000.0, 100.0, bad)]
+        {
+            assert_eq!(open(rate, linear, angular), std::io::ErrorKind::InvalidInput);
         }
     }
     // These are valid; only nobody listens.

@@ -8,7 +8,7 @@ use touchoff_tests::haptics::sheet::{pressed, sheet};
 /// The hand feels its grip of 0.2 N/mm and the coupling of 1 N/mm in series, as far as it wants the tool below its
 /// position.
 #[test]
-fn a_coupled_tool_stays_on_its_side() {
+fn a_coupled_tool_stays_on_its_side_of_the_sheet() {
     let all = pressed(&sheet(), Law::Gradient, None);
     for [wanted, tip, force] in &all {
         assert!(*tip > -0.25, "{wanted}: {tip}");
@@ -21,7 +21,7 @@ fn a_coupled_tool_stays_on_its_side() {
 
 /// By the thesis's law alone the tool goes to the pose that the hand wants.
 #[test]
-fn without_a_coupling_it_is_pulled_through() {
+fn without_a_coupling_the_tool_is_pulled_through_the_sheet() {
     let direct = Rendering::Direct { scaled: true, damping: 0.0 };
     let all = pressed(&sheet(), Law::Thesis, Some(direct));
     let [_, tip, _] = all.last().expect("two seconds");

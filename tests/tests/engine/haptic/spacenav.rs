@@ -12,8 +12,8 @@ use touchoff_tests::haptics::upright;
 fn event(kind: i32, pushed: [i32; 6]) -> [u8; 32] {
     let mut bytes = [0; 32];
     let numbers = std::iter::once(kind).chain(pushed).chain([16]);
-    for (place, number) in bytes.chunks_exact_mut(4).zip(numbers) {
-        place.copy_from_slice(&number.to_ne_bytes());
+    for (bytes_of_number, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+        bytes_of_number.copy_from_slice(&number.to_ne_bytes());
     }
     bytes
 }
@@ -36,9 +36,9 @@ fn until(
 ) -> Result<Pose, DeviceError> {
     let start = Instant::now();
     loop {
-        let said = device.pose();
-        if so(&said) || start.elapsed() > Duration::from_secs(2) {
-            return said;
+        let result = device.pose();
+        if so(&result) || start.elapsed() > Duration::from_secs(2) {
+            return result;
         }
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -50,7 +50,7 @@ fn moves(device: &mut Spacenav) -> Vector3<f64> {
 }
 
 #[test]
-fn the_cap_is_the_tools_speed() {
+fn cap_deflection_sets_the_tool_speed() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_listener, mut stream, mut device) = opened(&folder);
     assert_eq!(device.pose().expect("a pose"), upright(10.0));
@@ -60,11 +60,13 @@ fn the_cap_is_the_tools_speed() {
     stream.flush().expect("sent");
     stream.write_all(&right[13..]).expect("sent");
     stream.write_all(&event(1, [3, 0, 0, 0, 0, 0])).expect("sent");
-    until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().x > 0.0)).expect("a pose");
+    until(&mut device, |result| result.as_ref().is_ok_and(|pose| pose.tip().x > 0.0))
+        .expect("a pose");
     assert!((moves(&mut device) - Vector3::new(0.1, 0.0, 0.0)).norm() < 1e-12);
     stream.write_all(&event(0, [0, 175, 0, 0, 0, 0])).expect("sent");
     let x = device.pose().expect("a pose").tip().z;
-    until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().z > x + 0.04)).expect("up");
+    until(&mut device, |result| result.as_ref().is_ok_and(|pose| pose.tip().z > x + 0.04))
+        .expect("up");
     assert!((moves(&mut device) - Vector3::new(0.0, 0.0, 0.05)).norm() < 1e-12);
     // A released cap reports so; one that reports nothing counts as released.
     std::thread::sleep(Duration::from_millis(600));
@@ -73,21 +75,22 @@ fn the_cap_is_the_tools_speed() {
 }
 
 #[test]
-fn a_daemon_that_goes_away_is_called_again() {
+fn reconnects_to_a_daemon_that_was_restarted() {
     let folder = tempfile::tempdir().expect("a folder");
     let (listener, stream, mut device) = opened(&folder);
     drop(stream);
-    let said = until(&mut device, Result::is_err);
-    assert!(matches!(said, Err(DeviceError::NotResponding(_))), "{said:?}");
+    let result = until(&mut device, Result::is_err);
+    assert!(matches!(result, Err(DeviceError::NotResponding(_))), "{result:?}");
     let (mut stream, _) = listener.accept().expect("it calls again");
     until(&mut device, Result::is_ok).expect("it is there again");
     stream.write_all(&event(0, [0, 0, 350, 0, 0, 0])).expect("sent");
-    let away = until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().y > 0.0));
-    assert!(away.expect("a pose").tip().y > 0.0);
+    let reconnected =
+        until(&mut device, |result| result.as_ref().is_ok_and(|pose| pose.tip().y > 0.0));
+    assert!(reconnected.expect("a pose").tip().y > 0.0);
 }
 
 #[test]
-fn nobody_there_is_an_error() {
+fn a_missing_daemon_is_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let nobody = folder.path().join("nobody.sock");
     assert!(Spacenav::open(&nobody, upright(10.0), Unit::Millimetre, 1000.0, FLIGHT).is_err());

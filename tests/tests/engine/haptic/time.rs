@@ -27,7 +27,7 @@ fn ran(clock: &mut impl Clock) -> LoopReport {
 }
 
 #[test]
-fn a_second_takes_a_second() {
+fn a_second_of_cycles_takes_a_second() {
     let mut clock = MonotonicClock::new(Duration::from_micros(100));
     let report = ran(&mut clock);
     assert_eq!(report.cycles + report.skipped, 1000);
@@ -63,7 +63,7 @@ fn wrong(jump: fn(Duration) -> Duration) -> LoopReport {
 }
 
 #[test]
-fn a_clock_that_jumps_is_survived() {
+fn clock_jumps_do_not_stop_the_loop() {
     let ahead = wrong(|time| time + Duration::from_secs(3600));
     assert_eq!((ahead.cycles, ahead.skipped, ahead.stalls), (1000, 0, 1));
     let back = wrong(|time| time - Duration::from_secs(50));
@@ -93,7 +93,7 @@ fn cycles_that_begin_more_than_a_second_late_are_in_the_histogram() {
 }
 
 #[test]
-fn a_starved_thread_leaves_cycles_out() {
+fn a_starved_thread_skips_cycles() {
     let late = wrong(|time| time + Duration::from_micros(7_500));
     assert_eq!((late.cycles, late.missed, late.skipped, late.stalls), (994, 1, 6, 0));
     // To three digits.
@@ -105,7 +105,7 @@ fn a_starved_thread_leaves_cycles_out() {
 }
 
 #[test]
-fn it_stops_when_it_is_told_or_nothing_is_left() {
+fn the_loop_stops_on_request_or_at_the_end_of_input() {
     let part = block(5_000);
     let (mut watch, _latest, _samples) = state_channel(16);
     let stop = AtomicBool::new(false);
@@ -130,7 +130,7 @@ fn it_stops_when_it_is_told_or_nothing_is_left() {
 /// A reader sees states in order, and a record has all of them; one that is not emptied loses some and reports
 /// their number.
 #[test]
-fn others_see_it() {
+fn other_threads_see_the_state() {
     let part = block(5_000);
     let script = |cycle: u64| -> Result<Pose, DeviceError> { Ok(upright(-1e-4 * cycle as f64)) };
     let (mut watch, mut latest, samples) = state_channel(1000);
@@ -142,11 +142,11 @@ fn others_see_it() {
             let clock = &mut MonotonicClock::new(Duration::ZERO);
             session(&part).run(&mut device, clock, SECOND, &mut watch, &stop)
         });
-        let mut seen = 0;
+        let mut read_count = 0;
         while !looped.is_finished() {
             if let Some(state) = latest.read() {
-                assert!(state.cycle >= seen);
-                seen = state.cycle;
+                assert!(state.cycle >= read_count);
+                read_count = state.cycle;
             }
         }
         looped.join().expect("the loop panics at nothing")

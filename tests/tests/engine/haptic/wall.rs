@@ -6,7 +6,7 @@ use touchoff_tests::haptics::block;
 use touchoff_tests::haptics::wall::{DIRECT, LIMITS, Wall, theory};
 
 #[test]
-fn it_is_stable_as_far_as_theory_says() {
+fn direct_rendering_is_stable_up_to_the_theoretical_stiffness() {
     let part = block(100_000);
     for rate in [500.0, 1000.0, 5000.0] {
         let limit = theory(&HandImpedance::default(), rate);
@@ -19,7 +19,7 @@ fn it_is_stable_as_far_as_theory_says() {
 }
 
 #[test]
-fn with_a_coupling_no_wall_is_too_stiff() {
+fn a_coupling_is_stable_for_any_wall_stiffness() {
     let part = block(100_000);
     let limit = theory(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Coupled(Coupling::of(&LIMITS));
@@ -31,7 +31,7 @@ fn with_a_coupling_no_wall_is_too_stiff() {
 }
 
 #[test]
-fn scaled_to_what_the_device_bears_it_is_stable_too() {
+fn scaled_rendering_is_stable() {
     let part = block(100_000);
     let limit = theory(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Direct { scaled: true, damping: 0.0 };

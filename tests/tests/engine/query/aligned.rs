@@ -44,7 +44,7 @@ fn tips() -> [Point3<f64>; 3] {
 }
 
 #[test]
-fn quarter_and_half_turns() {
+fn quarter_and_half_turns_agree_with_the_oracle() {
     let part = grid(7);
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
@@ -55,35 +55,35 @@ fn quarter_and_half_turns() {
             let axes = axes.into_iter().flat_map(|axis| [axis, -axis]);
             let axes = axes.map(|axis| Pose::from_axis(tip, axis));
             for pose in turns.into_iter().chain(axes).map(|pose| pose.expect("a pose")) {
-                let before = case.seen.disputed;
+                let before = case.statistics.disputed;
                 assert!(case.check(&pose, k) > 0);
                 k += 1;
                 if pose.rotation().iter().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
                     // Nothing is rounded: points on the surface belong to the tool on both sides.
-                    assert_eq!(case.seen.disputed, before, "{} {pose:?}", oracle.name());
+                    assert_eq!(case.statistics.disputed, before, "{} {pose:?}", oracle.name());
                 }
             }
         }
-        println!("{}: {:?}", oracle.name(), case.seen);
-        assert!(case.seen.doubtful > 50);
+        println!("{}: {:?}", oracle.name(), case.statistics);
+        assert!(case.statistics.doubtful > 50);
     }
 }
 
 #[test]
-fn hardly_tilted() {
+fn slightly_tilted_poses_agree_with_the_oracle() {
     let part = grid(7);
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
         let mut k = 0;
         for tilt in [1e-5, 1e-9, 1e-13, 1e-17, 1e-300] {
             for up in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
-                for way in [Vector3::new(tilt, tilt, 0.0), Vector3::new(0.0, -tilt, tilt)] {
-                    let pose = Pose::from_axis(tips()[k % 3], up + way).expect("a pose");
+                for axis in [Vector3::new(tilt, tilt, 0.0), Vector3::new(0.0, -tilt, tilt)] {
+                    let pose = Pose::from_axis(tips()[k % 3], up + axis).expect("a pose");
                     assert!(case.check(&pose, k) > 0);
                     k += 1;
                 }
             }
         }
-        println!("{}: {:?}", oracle.name(), case.seen);
+        println!("{}: {:?}", oracle.name(), case.statistics);
     }
 }

@@ -14,14 +14,19 @@ fn all_tools(what: &str, part: &Part, count: usize) {
         for k in 0..count {
             case.check(&poses::about(part, &*oracle, k, &mut draw), k);
         }
-        println!("{what} {}: {:?}", oracle.name(), case.seen);
-        assert!(5 * case.seen.touching > 2 * count, "{what} {}: {:?}", oracle.name(), case.seen);
-        assert_eq!(case.seen.disputed, 0);
+        println!("{what} {}: {:?}", oracle.name(), case.statistics);
+        assert!(
+            5 * case.statistics.touching > 2 * count,
+            "{what} {}: {:?}",
+            oracle.name(),
+            case.statistics
+        );
+        assert_eq!(case.statistics.disputed, 0);
     }
 }
 
 #[test]
-fn surfaces() {
+fn random_poses_on_surfaces() {
     all_tools("tube", &parts::tube(4_000), 120);
     all_tools("sphere", &parts::sphere(7.0, 4_000), 120);
     all_tools("cuboid", &parts::cuboid(9.0, 4_000), 120);
@@ -29,7 +34,7 @@ fn surfaces() {
 
 /// Trees that are just full, just not full, and one level deeper.
 #[test]
-fn counts_about_powers_of_sixteen() {
+fn point_counts_near_powers_of_sixteen() {
     for count in [1, 2, 15, 16, 17, 255, 256, 257, 4095, 4096, 4097] {
         let poses = if count > 1000 { 60 } else { 180 };
         all_tools(&format!("soup of {count}"), &parts::soup(6.0, count, count as u64), poses);
@@ -37,7 +42,7 @@ fn counts_about_powers_of_sixteen() {
 }
 
 #[test]
-fn a_point_again_and_again() {
+fn repeated_points() {
     for count in [1, 16, 100, 300] {
         for at in [Point3::origin(), Point3::new(0.1, -70.3, 1e3)] {
             all_tools(&format!("{count} times {at}"), &parts::identical(at, count), 120);
@@ -84,7 +89,7 @@ fn clear_of_the_part() {
 
 /// All of the part is in the tool: every point counts.
 #[test]
-fn swallowed() {
+fn parts_inside_the_tool() {
     for (tool, oracle) in tools() {
         let part = parts::soup(0.2, 3_000, 3);
         let mut case = Case::new(&part, tool, &*oracle);
@@ -98,15 +103,20 @@ fn swallowed() {
 
 /// A pose as far away as a pose may be: no contact, and no panic.
 #[test]
-fn at_the_end_of_the_world() {
+fn poses_at_the_largest_coordinates() {
     let part = parts::soup(6.0, 500, 8);
     for (tool, _) in tools() {
         let mut probe = Probe::new(&part, tool);
-        for far in [1e20, 1e38, 1e39, 1e50, 1e60] {
-            for way in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
+        for distance in [1e20, 1e38, 1e39, 1e50, 1e60] {
+            for direction in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
                 for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, -0.8)] {
-                    let pose = Pose::from_axis(Point3::from(far * way), axis).expect("a pose");
-                    assert!(!probe.detect(&pose), "{} {far:e} {way} {axis}", tool.info().name);
+                    let pose =
+                        Pose::from_axis(Point3::from(distance * direction), axis).expect("a pose");
+                    assert!(
+                        !probe.detect(&pose),
+                        "{} {distance:e} {direction} {axis}",
+                        tool.info().name
+                    );
                     let wrench = probe.wrench(&pose);
                     assert_eq!((wrench.colliding, wrench.force.norm()), (0, 0.0));
                     assert!(probe.contacts(&pose).is_empty());

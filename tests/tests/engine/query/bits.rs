@@ -1,6 +1,6 @@
 //! The same bits at every SIMD level, from a fresh probe and a used one, compiled or interpreted.
 
-use super::compare::{WAYS, tools};
+use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::{parts, poses};
 use std::path::Path;
 use touchoff::tool::Interpreted;
@@ -24,7 +24,7 @@ fn levels() -> Vec<Level> {
 
 /// Formats all results of a probe at a pose. No two different numbers have the same text, the sign of zeros
 /// included.
-fn said(probe: &mut Probe<'_>, pose: &Pose) -> String {
+fn formatted_results(probe: &mut Probe<'_>, pose: &Pose) -> String {
     let (wrench, detected) = (probe.wrench(pose), probe.detect(pose));
     format!("{wrench:?} {detected} {:?}", probe.contacts(pose))
 }
@@ -35,22 +35,22 @@ fn parts() -> Vec<Part> {
 }
 
 /// Returns poses about a part.
-fn some(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
+fn random_poses(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
     let mut draw = Rng::new(seed);
     (0..count).map(|k| poses::about(part, oracle, k, &mut draw)).collect()
 }
 
 #[test]
-fn at_every_level() {
+fn every_simd_level_gives_the_same_bits() {
     let levels = levels();
     println!("{levels:?}");
     for part in parts() {
         for (tool, oracle) in tools() {
-            for (k, pose) in some(&part, &*oracle, 60, 2).iter().enumerate() {
-                let (law, weights) = WAYS[k % 6];
+            for (k, pose) in random_poses(&part, &*oracle, 60, 2).iter().enumerate() {
+                let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let at = |level: &Level| {
                     let probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
-                    said(&mut probe.with_level(*level), pose)
+                    formatted_results(&mut probe.with_level(*level), pose)
                 };
                 let best = at(&levels[0]);
                 for level in &levels[1..] {
@@ -62,20 +62,20 @@ fn at_every_level() {
 }
 
 #[test]
-fn fresh_and_used() {
+fn fresh_and_reused_probes_give_the_same_bits() {
     for part in parts() {
         for (tool, oracle) in tools() {
             let mut used = Probe::new(&part, tool);
-            for (k, pose) in some(&part, &*oracle, 1_000, 3).iter().enumerate() {
+            for (k, pose) in random_poses(&part, &*oracle, 1_000, 3).iter().enumerate() {
                 match k % 3 {
                     0 => drop(used.wrench(pose)),
                     1 => drop(used.contacts(pose).len()),
                     _ => drop(used.detect(pose)),
                 }
             }
-            for pose in &some(&part, &*oracle, 40, 4) {
-                let fresh = said(&mut Probe::new(&part, tool), pose);
-                assert_eq!(fresh, said(&mut used, pose), "{}", oracle.name());
+            for pose in &random_poses(&part, &*oracle, 40, 4) {
+                let fresh = formatted_results(&mut Probe::new(&part, tool), pose);
+                assert_eq!(fresh, formatted_results(&mut used, pose), "{}", oracle.name());
             }
         }
     }
@@ -83,10 +83,10 @@ fn fresh_and_used() {
 
 /// Detects first: the evaluator must not find anything of an earlier query.
 #[test]
-fn whatever_was_asked_first() {
+fn earlier_queries_do_not_change_the_bits() {
     let part = parts::tube(3_000);
     for (tool, oracle) in tools() {
-        for pose in &some(&part, &*oracle, 60, 5) {
+        for pose in &random_poses(&part, &*oracle, 60, 5) {
             let mut probe = Probe::new(&part, tool);
             let detected = probe.detect(pose);
             let listed = probe.contacts(pose).len();
@@ -101,28 +101,31 @@ fn whatever_was_asked_first() {
 }
 
 #[test]
-fn compiled_and_interpreted() {
+fn compiled_and_interpreted_tools_give_the_same_bits() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
     let oracles = touchoff_tests::oracle::all();
     let files = std::fs::read_dir(folder).expect("the library's folder");
     let files = files.map(|file| file.expect("a file").path());
-    let mut seen = 0;
+    let mut count = 0;
     for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
         let interpreted = Interpreted::load(file).expect("a tool");
         let name = &interpreted.info().name;
         let tool = tools_library::find(name).expect("compiled too");
         let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
         assert_eq!(interpreted.info(), tool.info());
-        seen += 1;
+        count += 1;
         for part in parts() {
-            for (k, pose) in some(&part, &**oracle, 60, 6).iter().enumerate() {
-                let (law, weights) = WAYS[k % 6];
+            for (k, pose) in random_poses(&part, &**oracle, 60, 6).iter().enumerate() {
+                let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let by = |tool| {
-                    said(&mut Probe::new(&part, tool).with_law(law).with_weights(weights), pose)
+                    formatted_results(
+                        &mut Probe::new(&part, tool).with_law(law).with_weights(weights),
+                        pose,
+                    )
                 };
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }
         }
     }
-    assert_eq!(seen, tools_library::TOOLS.len());
+    assert_eq!(count, tools_library::TOOLS.len());
 }

@@ -24,7 +24,7 @@ pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
 }
 
 /// All laws with all weights.
-pub(crate) const WAYS: [(Law, Weights); 6] = [
+pub(crate) const LAWS_AND_WEIGHTS: [(Law, Weights); 6] = [
     (Law::Thesis, Weights::Area),
     (Law::Gradient, Weights::Unit),
     (Law::Facing, Weights::Area),
@@ -35,7 +35,7 @@ pub(crate) const WAYS: [(Law, Weights); 6] = [
 
 /// Statistics over several poses.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct Statistics {
     pub(crate) poses: usize,
     pub(crate) touching: usize,
     pub(crate) contacts: usize,
@@ -57,18 +57,18 @@ pub(crate) struct Case<'a> {
     weights: Vec<f64>,
     ones: Vec<f64>,
     /// Per id, the index of its point in the tree.
-    places: Vec<usize>,
+    indices: Vec<usize>,
     /// The largest coordinate.
     reach: f64,
     /// S, 1 ulp(S) and the Lipschitz constant.
     size: f64,
     ulp: f64,
     steep: f64,
-    pub(crate) seen: Seen,
+    pub(crate) statistics: Statistics,
 }
 
 /// The results of both sides at one pose.
-struct Asked<'a> {
+struct CheckedQuery<'a> {
     query: Query<'a>,
     answer: Answer,
     wrench: Wrench,
@@ -89,14 +89,14 @@ struct Bounds {
 }
 
 /// Bound on the difference of two directions, and on a law's force per weight and magnitude.
-const PUSH: f64 = 2.3;
+const MAX_FORCE_PER_MAGNITUDE: f64 = 2.3;
 
 impl<'a> Case<'a> {
     pub(crate) fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
         let tree = part.tree();
-        let places = 0..tree.len();
-        let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
-        let ids: BTreeMap<u32, usize> = places.clone().map(|i| (tree.triangle(i), i)).collect();
+        let indices = 0..tree.len();
+        let points: Vec<[f64; 3]> = indices.clone().map(|i| tree.point(i).into()).collect();
+        let ids: BTreeMap<u32, usize> = indices.clone().map(|i| (tree.triangle(i), i)).collect();
         assert!(ids.keys().copied().eq(0..tree.len() as u32), "an id for every point");
         let largest = oracle.extent().into_iter().fold(0.0, f64::max);
         let size = largest.log2().ceil().exp2();
@@ -104,16 +104,16 @@ impl<'a> Case<'a> {
             part,
             tool,
             oracle,
-            normals: places.clone().map(|i| tree.normal(i)).collect(),
-            weights: places.map(|i| tree.weight(i)).collect(),
+            normals: indices.clone().map(|i| tree.normal(i)).collect(),
+            weights: indices.map(|i| tree.weight(i)).collect(),
             ones: vec![1.0; points.len()],
-            places: ids.into_values().collect(),
+            indices: ids.into_values().collect(),
             reach: points.iter().flatten().fold(0.0, |m, c| m.max(c.abs())),
             points,
             size,
             ulp: size * f64::EPSILON,
             steep: if oracle.name() == "Fig73" { 5f64.sqrt() } else { 1.0 },
-            seen: Seen::default(),
+            statistics: Statistics::default(),
         }
     }
 
@@ -122,7 +122,7 @@ impl<'a> Case<'a> {
     pub(crate) fn check(&mut self, pose: &Pose, k: usize) -> usize {
         // A compliance centre at the tip, up the tool, and beside it.
         let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3].into();
-        let (law, weights) = WAYS[k % 6];
+        let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
         let mut probe = Probe::new(self.part, self.tool)
             .with_law(law)
             .with_weights(weights)
@@ -131,32 +131,32 @@ impl<'a> Case<'a> {
         assert_eq!((wrench.law, wrench.weights), (law, weights));
         assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");
         let contacts = probe.contacts(pose).to_vec();
-        let mut seen = self.seen;
-        let asked = self.ask(pose, wrench, contacts, centre);
-        self.compare_points(&asked, &mut seen);
-        let bounds = self.compare_sums(&asked, &mut seen);
-        consistent(&asked, &bounds);
-        seen.poses += 1;
-        seen.touching += usize::from(wrench.colliding > 0);
-        seen.contacts += wrench.colliding;
-        self.seen = seen;
+        let mut statistics = self.statistics;
+        let checked_query = self.checked_query(pose, wrench, contacts, centre);
+        self.compare_points(&checked_query, &mut statistics);
+        let bounds = self.compare_sums(&checked_query, &mut statistics);
+        assert_consistent(&checked_query, &bounds);
+        statistics.poses += 1;
+        statistics.touching += usize::from(wrench.colliding > 0);
+        statistics.contacts += wrench.colliding;
+        self.statistics = statistics;
         wrench.colliding
     }
 
-    fn ask(
+    fn checked_query(
         &self,
         pose: &Pose,
         wrench: Wrench,
         contacts: Vec<Contact>,
         centre: Point3<f64>,
-    ) -> Asked<'_> {
+    ) -> CheckedQuery<'_> {
         let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
-        let there = brute::Pose { tip: pose.tip().into(), axes };
+        let brute_pose = brute::Pose { tip: pose.tip().into(), axes };
         let weights = match wrench.weights {
             Weights::Area => &self.weights,
             Weights::Unit => &self.ones,
         };
-        let mut query = Query::new(self.oracle, there, &self.points, &self.normals, weights);
+        let mut query = Query::new(self.oracle, brute_pose, &self.points, &self.normals, weights);
         query.law = match wrench.law {
             Law::Thesis => brute::Law::Thesis,
             Law::Gradient => brute::Law::Gradient,
@@ -166,56 +166,76 @@ impl<'a> Case<'a> {
         let world = pose.tip().coords.amax().max(self.reach);
         let noise = 8.0 * self.ulp + 4.0 * f64::EPSILON * world;
         let band = 1e-12 * self.size + 2.0 * noise;
-        Asked { answer: query.answer(), query, wrench, contacts, noise, band }
+        CheckedQuery { answer: query.answer(), query, wrench, contacts, noise, band }
     }
 
     /// Compares the points that touch, one by one; both sides list them in the tree's order.
-    fn compare_points(&self, asked: &Asked<'_>, seen: &mut Seen) {
-        let place = |contact: &Contact| self.places[contact.triangle.index()];
-        assert!(asked.contacts.is_sorted_by_key(place));
+    fn compare_points(&self, checked_query: &CheckedQuery<'_>, statistics: &mut Statistics) {
+        let index = |contact: &Contact| self.indices[contact.triangle.index()];
+        assert!(checked_query.contacts.is_sorted_by_key(index));
         let mut evaluation: BTreeMap<usize, &Contact> =
-            asked.contacts.iter().map(|contact| (place(contact), contact)).collect();
-        for &i in &asked.answer.contacts {
-            let q = asked.query.in_tool(self.points[i]);
+            checked_query.contacts.iter().map(|contact| (index(contact), contact)).collect();
+        for &i in &checked_query.answer.contacts {
+            let q = checked_query.query.in_tool(self.points[i]);
             match evaluation.remove(&i) {
-                Some(contact) => self.compare_point(asked, i, q, contact),
-                None => self.dispute(asked, q, "was not felt", seen),
+                Some(contact) => self.compare_point(checked_query, i, q, contact),
+                None => self.check_doubtful_point(checked_query, q, "was not felt", statistics),
             }
         }
         for i in evaluation.into_keys() {
-            self.dispute(asked, asked.query.in_tool(self.points[i]), "should not be felt", seen);
+            self.check_doubtful_point(
+                checked_query,
+                checked_query.query.in_tool(self.points[i]),
+                "should not be felt",
+                statistics,
+            );
         }
     }
 
     /// Asserts that a point which touches for one side only is on the surface.
-    fn dispute(&self, asked: &Asked<'_>, q: [f64; 3], what: &str, seen: &mut Seen) {
-        let off = self.oracle.signed_distance(q);
-        let (name, pose) = (self.oracle.name(), asked.query.pose);
-        assert!(off.abs() <= asked.band, "{name}: {q:?} {what}, {off:e} outside; {pose:?}");
-        seen.disputed += 1;
+    fn check_doubtful_point(
+        &self,
+        checked_query: &CheckedQuery<'_>,
+        q: [f64; 3],
+        what: &str,
+        statistics: &mut Statistics,
+    ) {
+        let distance = self.oracle.signed_distance(q);
+        let (name, pose) = (self.oracle.name(), checked_query.query.pose);
+        assert!(
+            distance.abs() <= checked_query.band,
+            "{name}: {q:?} {what}, {distance:e} outside; {pose:?}"
+        );
+        statistics.disputed += 1;
     }
 
-    fn compare_point(&self, asked: &Asked<'_>, i: usize, q: [f64; 3], contact: &Contact) {
+    fn compare_point(
+        &self,
+        checked_query: &CheckedQuery<'_>,
+        i: usize,
+        q: [f64; 3],
+        contact: &Contact,
+    ) {
         let tree = self.part.tree();
         let sense = self.oracle.sense(q).expect("a contact");
-        let (name, query) = (self.oracle.name(), &asked.query);
+        let (name, query) = (self.oracle.name(), &checked_query.query);
         let near = |got: f64, want: f64, bound: f64, what: &str| {
             assert!((got - want).abs() <= bound, "{name} {what} at {q:?}: {got}, not {want}");
         };
-        let level = self.steep * asked.noise;
+        let level = self.steep * checked_query.noise;
         near(contact.depth, sense.depth, level, "depth");
         near(contact.magnitude, sense.magnitude, level, "magnitude");
-        assert!((contact.point - Point3::from(self.points[i])).norm() <= asked.noise);
+        assert!((contact.point - Point3::from(self.points[i])).norm() <= checked_query.noise);
         assert_eq!(contact.normal, Vector3::from(tree.normal(i)));
         assert_eq!(contact.weight, query.weights[i]);
         assert_eq!(contact.surface, self.tool.info().regions[contact.region].surface);
-        let doubt = self.oracle.border(q) <= asked.band;
+        let doubt = self.oracle.border(q) <= checked_query.band;
         if doubt {
             return;
         }
         assert_eq!(contact.region, sense.owner, "{name} region at {q:?}");
-        near(contact.niceness, sense.niceness, 16.0 * asked.noise, "niceness");
-        let turn = self.turn(asked, q);
+        near(contact.niceness, sense.niceness, 16.0 * checked_query.noise, "niceness");
+        let turn = self.turn(checked_query, q);
         let along = Vector3::from(query.pose.turn(sense.direction));
         near((contact.direction - along).norm(), 0.0, turn, "direction");
         let slope = Vector3::from(query.pose.turn(self.oracle.gradient(q).expect("inside")));
@@ -223,15 +243,20 @@ impl<'a> Case<'a> {
     }
 
     /// Returns the bound on the difference of directions at a point.
-    fn turn(&self, asked: &Asked<'_>, q: [f64; 3]) -> f64 {
-        (16.0 * f64::EPSILON + 2.0 * asked.noise / self.oracle.singular(q)).min(PUSH)
+    fn turn(&self, checked_query: &CheckedQuery<'_>, q: [f64; 3]) -> f64 {
+        (16.0 * f64::EPSILON + 2.0 * checked_query.noise / self.oracle.singular(q))
+            .min(MAX_FORCE_PER_MAGNITUDE)
     }
 
     /// Compares the wrenches.
-    fn compare_sums(&self, asked: &Asked<'_>, seen: &mut Seen) -> Bounds {
-        let (answer, wrench) = (&asked.answer, &asked.wrench);
-        let level = self.steep * asked.noise;
-        let (bounds, sizes) = self.bounds(asked, seen);
+    fn compare_sums(
+        &self,
+        checked_query: &CheckedQuery<'_>,
+        statistics: &mut Statistics,
+    ) -> Bounds {
+        let (answer, wrench) = (&checked_query.answer, &checked_query.wrench);
+        let level = self.steep * checked_query.noise;
+        let (bounds, sizes) = self.bounds(checked_query, statistics);
         let name = self.oracle.name();
         let near = |got: f64, want: f64, bound: f64, what: &str| {
             assert!(
@@ -242,7 +267,11 @@ impl<'a> Case<'a> {
         };
         let deepest = answer.deepest.map_or(0.0, |(depth, _)| depth);
         // A point that touches for one side only is no deeper than the band.
-        let deeper = if asked.contacts.len() == answer.count { level } else { level + asked.band };
+        let deeper = if checked_query.contacts.len() == answer.count {
+            level
+        } else {
+            level + checked_query.band
+        };
         let depth = near(wrench.depth(), deepest, self.steep * deeper, "depth");
         near(wrench.integral, answer.integral, bounds.integral, "integral");
         near(wrench.energy, answer.energy, bounds.energy, "energy");
@@ -252,52 +281,59 @@ impl<'a> Case<'a> {
         near(torque, 0.0, bounds.torque, "torque");
         match (wrench.niceness, answer.niceness) {
             (Some(got), Some(want)) if !bounds.nice => {
-                near(got, want, 16.0 * asked.noise, "niceness");
+                near(got, want, 16.0 * checked_query.noise, "niceness");
             }
             (got, want) => assert!(bounds.nice || got == want, "{got:?}, not {want:?}"),
         }
         let relative = |error: f64, size: f64| if size > 0.0 { error / size } else { 0.0 };
         let errors = [depth / self.ulp, relative(force, sizes[0]), relative(torque, sizes[1])];
-        for (worst, error) in seen.worst.iter_mut().zip(errors) {
+        for (worst, error) in statistics.worst.iter_mut().zip(errors) {
             *worst = worst.max(error);
         }
         bounds
     }
 
     /// Returns the bounds on the differences of sums, and the sums of the terms' sizes.
-    fn bounds(&self, asked: &Asked<'_>, seen: &mut Seen) -> (Bounds, [f64; 2]) {
-        let (query, noise) = (&asked.query, asked.noise);
+    fn bounds(
+        &self,
+        checked_query: &CheckedQuery<'_>,
+        statistics: &mut Statistics,
+    ) -> (Bounds, [f64; 2]) {
+        let (query, noise) = (&checked_query.query, checked_query.noise);
         let tip = Point3::from(query.pose.tip);
         let lever = (Point3::from(query.centre) - tip).norm();
         let level = self.steep * noise;
         let mut bounds = Bounds::default();
         let mut sizes = [0.0; 2];
-        let rounding = f64::EPSILON * (16.0 + asked.answer.count as f64 / 4.0);
-        for &i in &asked.answer.contacts {
+        let rounding = f64::EPSILON * (16.0 + checked_query.answer.count as f64 / 4.0);
+        for &i in &checked_query.answer.contacts {
             let p = self.points[i];
             let q = query.in_tool(p);
             let s = self.oracle.sense(q).expect("a contact");
-            let (w, m, turn) = (query.weights[i], s.magnitude, self.turn(asked, q));
-            let doubt = self.oracle.border(q) <= asked.band;
+            let (w, m, turn) = (query.weights[i], s.magnitude, self.turn(checked_query, q));
+            let doubt = self.oracle.border(q) <= checked_query.band;
             let normal = Vector3::from(self.normals[i]);
             let across = Vector3::from(query.pose.turn(s.direction)).dot(&normal).abs();
             let dropped = query.law == brute::Law::Facing && across <= 1e-12 + turn;
-            let swing = if doubt || dropped { 2.0 * PUSH } else { turn };
-            let force = w * PUSH * (level + m * (swing + rounding));
+            let swing = if doubt || dropped { 2.0 * MAX_FORCE_PER_MAGNITUDE } else { turn };
+            let force = w * MAX_FORCE_PER_MAGNITUDE * (level + m * (swing + rounding));
             let arm = (Point3::from(p) - tip).norm() + lever;
             bounds.force += force;
-            bounds.torque += arm * force + noise * w * m * PUSH;
+            bounds.torque += arm * force + noise * w * m * MAX_FORCE_PER_MAGNITUDE;
             bounds.integral += w * (level + rounding * m);
             bounds.energy += w * (m + level) * (level + rounding * m);
             bounds.nice |= doubt;
-            sizes[0] += w * m * PUSH;
-            sizes[1] += arm * w * m * PUSH;
-            seen.doubtful += usize::from(doubt);
+            sizes[0] += w * m * MAX_FORCE_PER_MAGNITUDE;
+            sizes[1] += arm * w * m * MAX_FORCE_PER_MAGNITUDE;
+            statistics.doubtful += usize::from(doubt);
         }
         // Points that touch for the probe only are hardly inside, if at all.
-        let tally = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();
-        if asked.contacts.len() != asked.answer.count {
-            let slight = self.steep * asked.band * tally(&asked.contacts).max(1.0) * PUSH;
+        let total_weight = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();
+        if checked_query.contacts.len() != checked_query.answer.count {
+            let slight = self.steep
+                * checked_query.band
+                * total_weight(&checked_query.contacts).max(1.0)
+                * MAX_FORCE_PER_MAGNITUDE;
             bounds.force += slight;
             bounds.torque += slight * (4.0 * self.size + lever);
             bounds.integral += slight;
@@ -310,8 +346,8 @@ impl<'a> Case<'a> {
 
 /// Asserts that wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is
 /// added.
-fn consistent(asked: &Asked<'_>, bounds: &Bounds) {
-    let (wrench, contacts) = (&asked.wrench, &asked.contacts[..]);
+fn assert_consistent(checked_query: &CheckedQuery<'_>, bounds: &Bounds) {
+    let (wrench, contacts) = (&checked_query.wrench, &checked_query.contacts[..]);
     assert_eq!(contacts.len(), wrench.colliding);
     let depths = summary(contacts, |contact| contact.depth);
     assert_eq!(depths.map(|depths| depths.max), wrench.deepest.map(|deepest| deepest.depth));
@@ -322,21 +358,22 @@ fn consistent(asked: &Asked<'_>, bounds: &Bounds) {
         let first = first.map(|contact| (contact.point, contact.triangle));
         assert_eq!(first, Some((deepest.point, deepest.triangle)), "the first of the deepest");
     }
-    let push = summary(contacts, |contact| contact.weight * contact.magnitude);
-    let (sum, mean) = push.map_or((0.0, 0.0), |push| (push.sum, push.mean));
+    let summary_of_push = summary(contacts, |contact| contact.weight * contact.magnitude);
+    let (sum, mean) = summary_of_push
+        .map_or((0.0, 0.0), |summary_of_push| (summary_of_push.sum, summary_of_push.mean));
     assert!((sum - wrench.integral).abs() <= bounds.integral, "{sum} {}", wrench.integral);
     assert_eq!(mean, if contacts.is_empty() { 0.0 } else { sum / contacts.len() as f64 });
     let energy: f64 = contacts.iter().map(|c| 0.5 * c.weight * c.magnitude * c.magnitude).sum();
     assert!((energy - wrench.energy).abs() <= bounds.energy);
-    let centre = Point3::from(asked.query.centre);
+    let centre = Point3::from(checked_query.query.centre);
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for c in contacts {
-        let way = match wrench.law {
+        let direction = match wrench.law {
             Law::Facing if c.direction.dot(&c.normal) > 0.0 => continue,
             Law::Thesis | Law::Facing => c.normal - c.direction,
             Law::Gradient => c.gradient,
         };
-        let f = c.weight * c.magnitude * way;
+        let f = c.weight * c.magnitude * direction;
         force += f;
         torque += (c.point - centre).cross(&f);
     }

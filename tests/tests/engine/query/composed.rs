@@ -6,7 +6,7 @@ use touchoff::Pose;
 use touchoff_tests::oracle::draw::Rng;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
-const APART: f64 = 4.0;
+const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;
 
 /// Axes and angles (rad), small and large, about any axis and about those of the frame.
 const TURNS: [([f64; 3], f64); 7] = [
@@ -21,8 +21,8 @@ const TURNS: [([f64; 3], f64); 7] = [
 
 /// Returns the largest entry of `RᵀR - I`, in ε: products without rounding, sums of six as if in twice the
 /// precision.
-fn apart(rotation: &Matrix3<f64>) -> f64 {
-    let mut most = 0f64;
+fn orthogonality_error(rotation: &Matrix3<f64>) -> f64 {
+    let mut largest = 0f64;
     for i in 0..3 {
         for j in i..3 {
             let (mut sum, mut rest) = (if i == j { -1.0 } else { 0.0 }, 0.0);
@@ -36,10 +36,10 @@ fn apart(rotation: &Matrix3<f64>) -> f64 {
                 rest += (sum - (total - back)) + (product - back);
                 sum = total;
             }
-            most = most.max((sum + rest).abs());
+            largest = largest.max((sum + rest).abs());
         }
     }
-    most / f64::EPSILON
+    largest / f64::EPSILON
 }
 
 /// Returns the rotation by `times` an angle about an axis.
@@ -60,18 +60,21 @@ fn motion(by: ([f64; 3], f64)) -> Pose {
 
 #[test]
 fn rotations_stay_rotations() {
-    const TIMES: u32 = 30_000;
+    const COMPOSITIONS: u32 = 30_000;
     for by in TURNS {
         let step = motion(by);
         let mut pose = Pose::default();
-        for _ in 0..TIMES {
+        for _ in 0..COMPOSITIONS {
             pose = pose.then(&step);
-            assert!(apart(pose.rotation()) <= APART, "{by:?}");
+            assert!(orthogonality_error(pose.rotation()) <= MAX_ORTHOGONALITY_ERROR, "{by:?}");
         }
         // Each composition, and the step itself, is off by some ε.
-        let exact = turn(by, f64::from(TIMES)).to_rotation_matrix();
-        let off = (pose.rotation() - exact.matrix()).norm();
-        assert!(off <= 2.0 * f64::EPSILON * f64::from(TIMES), "{by:?}: {off:e}");
+        let exact = turn(by, f64::from(COMPOSITIONS)).to_rotation_matrix();
+        let difference = (pose.rotation() - exact.matrix()).norm();
+        assert!(
+            difference <= 2.0 * f64::EPSILON * f64::from(COMPOSITIONS),
+            "{by:?}: {difference:e}"
+        );
     }
 }
 
@@ -92,9 +95,12 @@ fn any_chain_of_poses_ends_in_a_rotation() {
     let mut pose = Pose::default();
     for _ in 0..20_000 {
         for other in any() {
-            assert!(apart(other.rotation()) <= 2.0 * APART, "{other:?}");
+            assert!(
+                orthogonality_error(other.rotation()) <= 2.0 * MAX_ORTHOGONALITY_ERROR,
+                "{other:?}"
+            );
             pose = pose.then(&other).relative_to(&any()[1]);
-            assert!(apart(pose.rotation()) <= APART, "{pose:?}");
+            assert!(orthogonality_error(pose.rotation()) <= MAX_ORTHOGONALITY_ERROR, "{pose:?}");
             // A pose composed with another and taken relative to it is the same again.
             let back = pose.then(&other).relative_to(&other);
             assert!((back.rotation() - pose.rotation()).norm() < 3e-15, "{other:?}");
@@ -105,7 +111,7 @@ fn any_chain_of_poses_ends_in_a_rotation() {
 
 /// One motion after another is the product, point by point.
 #[test]
-fn one_motion_after_another() {
+fn composed_motions_agree_with_successive_ones() {
     let mut draw = Rng::new(5);
     for by in TURNS {
         let first = motion(by);
@@ -113,8 +119,8 @@ fn one_motion_after_another() {
         let both = first.then(&second);
         let through = |pose: &Pose, p: Point3<f64>| pose.tip() + pose.rotation() * p.coords;
         let p = Point3::from(draw.direction());
-        let off = through(&both, p) - through(&second, through(&first, p));
-        assert!(off.norm() < 1e-12, "{off}");
+        let difference = through(&both, p) - through(&second, through(&first, p));
+        assert!(difference.norm() < 1e-12, "{difference}");
         assert!(both.has_spin());
         let spun = Pose::from_axis(p, Vector3::z()).expect("a unit vector");
         assert!(!spun.then(&second).has_spin());

@@ -8,7 +8,7 @@ use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::reference::{At, Reference};
 
 #[test]
-fn depths_keep_the_error_that_is_stated() {
+fn depths_keep_the_stated_error_bound() {
     let mut draw = Rng::new(3);
     let mut tightest = f64::INFINITY;
     for (tool, restated) in tools() {

@@ -13,34 +13,34 @@ fn on_a_grid(p: Point3<f64>) -> Point3<f64> {
 
 fn moved(part: &Part, by: Vector3<f64>) -> Part {
     let tree = part.tree();
-    let places = 0..tree.len();
+    let indices = 0..tree.len();
     parts::of(
-        places.clone().map(|i| on_a_grid(tree.point(i)) + by).collect(),
-        places.clone().map(|i| tree.normal(i).into()).collect(),
-        places.map(|i| tree.weight(i)).collect(),
+        indices.clone().map(|i| on_a_grid(tree.point(i)) + by).collect(),
+        indices.clone().map(|i| tree.normal(i).into()).collect(),
+        indices.map(|i| tree.weight(i)).collect(),
     )
 }
 
 /// Part and pose that are moved together, by an amount that loses no bit, give the same results to the last bit.
 #[test]
-fn moved_without_a_trace() {
+fn exact_translations_do_not_change_the_result() {
     let part = parts::tube(2_000);
-    let here = moved(&part, Vector3::zeros());
+    let original = moved(&part, Vector3::zeros());
     for power in [10, 20, 30, 40] {
         let by = 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5);
-        let there = moved(&part, by);
+        let translated = moved(&part, by);
         for (tool, oracle) in tools() {
             let mut draw = Rng::new(21);
             for k in 0..30 {
-                let pose = poses::about(&here, &*oracle, k, &mut draw);
+                let pose = poses::about(&original, &*oracle, k, &mut draw);
                 let tip = on_a_grid(pose.tip());
                 if tip.coords.amax() > 1024.0 {
                     continue;
                 }
                 let axis = pose.axis();
                 let at = |tip| Pose::from_axis(tip, axis).expect("a pose");
-                let a = Probe::new(&here, tool).wrench(&at(tip));
-                let mut b = Probe::new(&there, tool).wrench(&at(tip + by));
+                let a = Probe::new(&original, tool).wrench(&at(tip));
+                let mut b = Probe::new(&translated, tool).wrench(&at(tip + by));
                 if let Some(deepest) = &mut b.deepest {
                     let point = a.deepest.expect("as deep").point;
                     assert!((deepest.point - by - point).amax() <= 2f64.powi(power - 51));
@@ -54,9 +54,9 @@ fn moved_without_a_trace() {
 
 /// After any other move, all differences are those of the points' own last bits.
 #[test]
-fn moved_far_away() {
-    for far in [1e3, 1e6, 1e9, 1e12] {
-        let by = far * Vector3::new(1.0, -0.7, 0.3);
+fn other_translations_change_results_by_rounding_only() {
+    for distance in [1e3, 1e6, 1e9, 1e12] {
+        let by = distance * Vector3::new(1.0, -0.7, 0.3);
         let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
         for (tool, oracle) in tools() {
             let mut draw = Rng::new(22);
@@ -64,8 +64,8 @@ fn moved_far_away() {
             for k in 0..48 {
                 case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
             }
-            println!("{far:e} {}: {:?}", oracle.name(), case.seen);
-            assert!(case.seen.touching > 20);
+            println!("{distance:e} {}: {:?}", oracle.name(), case.statistics);
+            assert!(case.statistics.touching > 20);
         }
     }
 }
@@ -81,8 +81,8 @@ fn tiny_and_huge_parts() {
             for k in 0..24 {
                 case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
             }
-            println!("{size:e} {}: {:?}", oracle.name(), case.seen);
-            assert!(case.seen.touching > 8, "{size:e} {}", oracle.name());
+            println!("{size:e} {}: {:?}", oracle.name(), case.statistics);
+            assert!(case.statistics.touching > 8, "{size:e} {}", oracle.name());
         }
     }
 }
@@ -91,11 +91,11 @@ fn tiny_and_huge_parts() {
 #[test]
 fn a_small_tool_on_a_large_part() {
     for size in [1e3, 1e5, 1e8, 1e12] {
-        for off in [0.0, 0.6 * size] {
+        for offset in [0.0, 0.6 * size] {
             let mut draw = Rng::new(25);
-            let here = Point3::new(off, -off, 0.5 * off);
+            let original = Point3::new(offset, -offset, 0.5 * offset);
             let close =
-                (0..1_000).map(|_| here + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
+                (0..1_000).map(|_| original + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
             let wide = (0..1_000).map(|_| Point3::from(parts::vector(&mut draw, size)));
             let points: Vec<_> = close.into_iter().chain(wide).collect();
             let normals = (0..2_000).map(|_| parts::direction(&mut draw)).collect();
@@ -105,11 +105,11 @@ fn a_small_tool_on_a_large_part() {
                 for k in 0..24 {
                     let [_, height] = oracle.extent();
                     let own = Vector3::new(0.0, 0.0, draw.between(0.0, height));
-                    let at = here + parts::vector(&mut draw, 4.0);
+                    let at = original + parts::vector(&mut draw, 4.0);
                     case.check(&poses::bringing(own, at, &mut draw), k);
                 }
-                println!("{size:e} at {off:e} {}: {:?}", oracle.name(), case.seen);
-                assert!(case.seen.touching > 12, "{size:e} {}", oracle.name());
+                println!("{size:e} at {offset:e} {}: {:?}", oracle.name(), case.statistics);
+                assert!(case.statistics.touching > 12, "{size:e} {}", oracle.name());
             }
         }
     }

@@ -67,7 +67,7 @@ fn plate() -> Part {
 
 /// A ball pressed into a plate from above is pushed up, and pushed harder the deeper it is.
 #[test]
-fn up_out_of_a_plate() {
+fn the_force_points_out_of_a_plate() {
     let part = plate();
     for tool in ["UnitSphere", "Fig73", "Fig73Exact", "D2Ball"] {
         let tool = tools_library::find(tool).expect("in the library");
@@ -88,17 +88,17 @@ fn up_out_of_a_plate() {
 /// One point, worked out on paper. The ball (radius 1) enters the plate by 0.25 below its middle: `m = 0.25`, `u
 /// = -z`, `n = +z`.
 #[test]
-fn one_contact_by_hand() {
+fn one_contact_agrees_with_a_hand_calculation() {
     let weight = 2.0;
     let part = parts::of(vec![Point3::new(10.0, 20.0, 30.0)], vec![Vector3::z()], vec![weight]);
     let tool = tools_library::find("UnitSphere").expect("in the library");
     let pose = Pose::from_axis(Point3::new(10.0, 20.0, 29.75), Vector3::z()).expect("a pose");
-    for (law, push) in [(Law::Thesis, 2.0), (Law::Gradient, 1.0), (Law::Facing, 2.0)] {
+    for (law, expected_force) in [(Law::Thesis, 2.0), (Law::Gradient, 1.0), (Law::Facing, 2.0)] {
         // Torque about a centre beside the tool, 3 below x: r = (3, 0, 0.25), F = (0, 0, f), r × F = (0, -3 f, 0).
         let mut probe =
             Probe::new(&part, tool).with_law(law).with_centre(Point3::new(-3.0, 0.0, 0.0));
         let wrench = probe.wrench(&pose);
-        let force = weight * 0.25 * push;
+        let force = weight * 0.25 * expected_force;
         assert_eq!(wrench.force, Vector3::new(0.0, 0.0, force));
         assert_eq!(wrench.torque, Vector3::new(0.0, -3.0 * force, 0.0));
         assert_eq!((wrench.depth(), wrench.integral, wrench.energy), (0.25, 0.5, 0.0625));
@@ -111,7 +111,7 @@ fn one_contact_by_hand() {
 
 /// The compliance centre turns with the tool: the ball comes from the side, +x, into a wall that faces +x.
 #[test]
-fn the_centre_is_the_tools() {
+fn the_compliance_centre_turns_with_the_tool() {
     let part = parts::of(vec![Point3::origin()], vec![Vector3::x()], vec![1.0]);
     let tool = tools_library::find("UnitSphere").expect("in the library");
     let pose = Pose::from_axis(Point3::new(-0.25, 0.0, 0.0), Vector3::x()).expect("a pose");
@@ -125,7 +125,7 @@ fn the_centre_is_the_tools() {
 
 /// Two faces of a thin sheet in one ball: under `facing` the far one exerts no force, and still counts.
 #[test]
-fn the_far_side_of_a_sheet() {
+fn the_facing_law_ignores_the_far_side_of_a_sheet() {
     let points = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.0, 0.0, -0.0625)];
     let part = parts::of(points, vec![Vector3::z(), -Vector3::z()], vec![1.0; 2]);
     let tool = tools_library::find("UnitSphere").expect("in the library");

@@ -1,7 +1,7 @@
 //! Points so close to the tool's surface and splitting curves that only margins keep them. Every one that belongs
 //! to the tool must be found, however large the part that it lies on.
 
-use super::compare::{Case, Seen, tools};
+use super::compare::{Case, Statistics, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff_tests::oracle::draw::Rng;
@@ -9,10 +9,10 @@ use touchoff_tests::oracle::{Oracle, moved};
 
 /// Checks points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, moved to a pose, among others over a
 /// part of `size`.
-fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
+fn compare_surface_points(tool_at: usize, size: f64, offset: f64, seed: u64) -> Statistics {
     let (tool, oracle) = tools().swap_remove(tool_at);
     let mut draw = Rng::new(seed);
-    let here = Point3::from(off * parts::direction(&mut draw));
+    let here = Point3::from(offset * parts::direction(&mut draw));
     let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
     let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut draw)
         .into_iter()
@@ -26,7 +26,7 @@ fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
     for k in 0..6 {
         case.check(&pose, k);
     }
-    case.seen
+    case.statistics
 }
 
 fn own_points(oracle: &dyn Oracle, draw: &mut Rng) -> Vec<Vector3<f64>> {
@@ -45,12 +45,12 @@ fn own_points(oracle: &dyn Oracle, draw: &mut Rng) -> Vec<Vector3<f64>> {
 #[test]
 fn on_the_surface_and_the_curves() {
     for at in 0..tools().len() {
-        for (seed, (size, off)) in
+        for (seed, (size, offset)) in
             (1..).zip([(10.0, 0.0), (1e3, 5e2), (1e5, 9e4), (1e8, 3e7), (1e11, 1e11)])
         {
-            let seen = skin(at, size, off, seed);
-            println!("{} {size:e}: {seen:?}", tools()[at].1.name());
-            assert!(seen.contacts > 1_000, "{seen:?}");
+            let statistics = compare_surface_points(at, size, offset, seed);
+            println!("{} {size:e}: {statistics:?}", tools()[at].1.name());
+            assert!(statistics.contacts > 1_000, "{statistics:?}");
         }
     }
 }
@@ -60,25 +60,25 @@ fn on_the_surface_and_the_curves() {
 fn one_point_at_a_time() {
     for (tool, oracle) in tools() {
         let mut draw = Rng::new(43);
-        let mut seen = Seen::default();
+        let mut statistics = Statistics::default();
         for (k, own) in own_points(&*oracle, &mut draw).into_iter().enumerate() {
             let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut draw);
             let pose = poses::bringing(own, Point3::from(at), &mut draw);
             let part = parts::identical(Point3::from(at), 1);
             let mut case = Case::new(&part, tool, &*oracle);
             case.check(&pose, k);
-            seen.contacts += case.seen.contacts;
-            seen.doubtful += case.seen.doubtful;
-            seen.disputed += case.seen.disputed;
+            statistics.contacts += case.statistics.contacts;
+            statistics.doubtful += case.statistics.doubtful;
+            statistics.disputed += case.statistics.disputed;
         }
-        println!("one point, {}: {seen:?}", oracle.name());
-        assert!(seen.contacts > 300 && seen.doubtful > 100, "{seen:?}");
+        println!("one point, {}: {statistics:?}", oracle.name());
+        assert!(statistics.contacts > 300 && statistics.doubtful > 100, "{statistics:?}");
     }
 }
 
 /// Points a little outside the tool never touch; points a little inside all do.
 #[test]
-fn a_hair_to_either_side() {
+fn points_just_outside_never_touch_and_points_just_inside_do() {
     for (tool, oracle) in tools() {
         let mut draw = Rng::new(41);
         for size in [1e2, 1e4, 1e6] {
@@ -91,12 +91,13 @@ fn a_hair_to_either_side() {
                     let angle = draw.between(0.0, std::f64::consts::TAU);
                     for turn in 0..8 {
                         let (up, out) = (f64::from(turn) * std::f64::consts::FRAC_PI_4).sin_cos();
-                        let way = if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
-                        let q = moved(&*oracle, p, way.map(|c| hair * c), angle);
-                        let off = oracle.signed_distance(q);
-                        if off.abs() > 0.3 * hair && off.abs() < 2.0 * hair {
+                        let direction =
+                            if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
+                        let q = moved(&*oracle, p, direction.map(|c| hair * c), angle);
+                        let offset = oracle.signed_distance(q);
+                        if offset.abs() > 0.3 * hair && offset.abs() < 2.0 * hair {
                             let q = Vector3::from(q);
-                            both[usize::from(off < 0.0)].push(pose.tip() + pose.rotation() * q);
+                            both[usize::from(offset < 0.0)].push(pose.tip() + pose.rotation() * q);
                         }
                     }
                 }
@@ -113,7 +114,7 @@ fn a_hair_to_either_side() {
                     if 1e-6 * size < hair {
                         assert_eq!(found, if inside { count } else { 0 }, "{}", oracle.name());
                     }
-                    assert_eq!(case.seen.disputed, 0);
+                    assert_eq!(case.statistics.disputed, 0);
                 }
             }
         }

@@ -35,8 +35,8 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Rng) 
     let point = tree.point(draw.bits() as usize % tree.len());
     let [width, height] = oracle.extent();
     if k % 8 == 7 {
-        let far = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
-        return bringing(vector(draw, height), point + far * height * direction(draw), draw);
+        let distance = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
+        return bringing(vector(draw, height), point + distance * height * direction(draw), draw);
     }
     if !oracle.revolved() {
         // A solid may fill little of the box about it, so the point is near a face or a splitting surface.
@@ -45,9 +45,9 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Rng) 
         let own = Vector3::from(curve[draw.bits() as usize % curve.len()]);
         return bringing(own + vector(draw, 0.02 * height), point, draw);
     }
-    let around = direction(draw);
+    let axis = direction(draw);
     let d = 1.05 * width * draw.between(0.0, 1.0);
     let z = draw.between(-0.05, 1.05) * height;
-    let d = d / around.x.hypot(around.y).max(1e-9);
-    bringing(Vector3::new(d * around.x, d * around.y, z), point, draw)
+    let d = d / axis.x.hypot(axis.y).max(1e-9);
+    bringing(Vector3::new(d * axis.x, d * axis.y, z), point, draw)
 }

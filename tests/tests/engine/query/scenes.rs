@@ -1,13 +1,13 @@
 //! The scenes that figures are quoted on.
 
-use super::compare::{Case, Seen, tools};
+use super::compare::{Case, Statistics, tools};
 use super::parts;
 use touchoff::scenes::ScenePath;
 
 /// Checks the poses of a path cut into `poses`, with every tool. Returns the statistics of the thesis's tool.
-fn along(path: ScenePath, count: usize, poses: usize) -> Seen {
+fn along(path: ScenePath, count: usize, poses: usize) -> Statistics {
     let part = parts::tube(count);
-    let mut fig73 = Seen::default();
+    let mut fig73 = Statistics::default();
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
         // The scenes are those of the thesis's tool; for the others every fifth pose is enough.
@@ -15,10 +15,10 @@ fn along(path: ScenePath, count: usize, poses: usize) -> Seen {
         for k in (0..poses).step_by(step) {
             case.check(&path.pose(k, poses), k / step);
         }
-        println!("{} {count} {}: {:?}", path.name(), oracle.name(), case.seen);
-        assert_eq!(case.seen.disputed, 0);
+        println!("{} {count} {}: {:?}", path.name(), oracle.name(), case.statistics);
+        assert_eq!(case.statistics.disputed, 0);
         if step == 1 {
-            fig73 = case.seen;
+            fig73 = case.statistics;
         }
     }
     fig73

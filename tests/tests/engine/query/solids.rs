@@ -56,12 +56,12 @@ fn a_block_on_a_plane() {
                 evaluation.integral
             );
             let up = h * (w - 2.0 * h) * (l - 2.0 * h);
-            let push = there.rotation().transpose() * evaluation.force;
-            assert!((push.z / up - 1.0).abs() < 0.03, "{push} {up}");
+            let force_in_tool = there.rotation().transpose() * evaluation.force;
+            assert!((force_in_tool.z / up - 1.0).abs() < 0.03, "{force_in_tool} {up}");
             // Everything cancels but the points of the hips themselves, which may fall to either side.
             assert!(
-                push.xy().norm() < 0.01 * up && evaluation.torque.norm() < 0.1 * up,
-                "{push} {up}"
+                force_in_tool.xy().norm() < 0.01 * up && evaluation.torque.norm() < 0.1 * up,
+                "{force_in_tool} {up}"
             );
         }
         let clear = shifted(&there, Vector3::new(0.0, 0.0, 1e-3));
@@ -139,11 +139,11 @@ fn a_bracket_around_a_rail() {
 /// Spin matters without an axis: a pose from an axis does not place a solid, and reports that it has no spin.
 #[test]
 fn the_spin_matters() {
-    let there = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose");
+    let pose = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose");
     let point = Point3::new(18.0, 0.0, 5.0);
     let part = parts::identical(point, 1);
     let mut probe = Probe::new(&part, &Block);
-    assert!(there.has_spin() && probe.detect(&there));
+    assert!(pose.has_spin() && probe.detect(&pose));
     let half = 0.5f64.sqrt();
     let turned = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, half, half]).expect("a pose");
     assert!(turned.has_spin() && !probe.detect(&turned));

@@ -16,8 +16,8 @@ const STEP: f64 = 1e-6;
 fn moved(pose: &Pose, centre: Point3<f64>, step: &Vector6<f64>) -> Pose {
     let about = pose.tip() + pose.rotation() * centre.coords;
     let turn = Rotation3::from_scaled_axis(Vector3::new(step[3], step[4], step[5]));
-    let way = Vector3::new(step[0], step[1], step[2]);
-    let tip = about + way + turn * (pose.tip() - about);
+    let displacement = Vector3::new(step[0], step[1], step[2]);
+    let tip = about + displacement + turn * (pose.tip() - about);
     let rotation = turn * Rotation3::from_matrix_unchecked(*pose.rotation());
     let q = UnitQuaternion::from_rotation_matrix(&rotation).coords;
     Pose::from_quaternion(tip, [q.x, q.y, q.z, q.w]).expect("a pose")
@@ -43,43 +43,47 @@ fn differences(probe: &mut Probe<'_>, pose: &Pose, centre: Point3<f64>) -> Matri
 
 /// Returns the differences between the two matrices at poses about a part, relative to the matrix's own size,
 /// sorted.
-fn apart(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64> {
+fn relative_errors(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64> {
     let mut draw = Rng::new(31);
     let centre = Point3::new(0.3, -0.2, 1.5);
     let mut probe = Probe::new(part, tool).with_law(law).with_centre(centre);
-    let mut apart = Vec::new();
+    let mut relative_errors = Vec::new();
     for k in 0..60 {
         let pose = poses::about(part, oracle, k, &mut draw);
         let found = probe.stiffness(&pose);
         assert_eq!(found.wrench, probe.wrench(&pose));
         if found.wrench.colliding > 0 {
             let expected = differences(&mut probe, &pose, centre);
-            apart.push((found.matrix - expected).norm() / expected.norm());
+            relative_errors.push((found.matrix - expected).norm() / expected.norm());
         } else {
             assert_eq!(found.matrix, Matrix6::zeros());
         }
     }
-    apart.sort_by(f64::total_cmp);
-    apart
+    relative_errors.sort_by(f64::total_cmp);
+    relative_errors
 }
 
 /// Where a point changes its region within a step, differences are of no use; therefore the worst tenth is not
 /// compared.
 #[test]
-fn it_is_what_differences_come_to() {
+fn stiffness_agrees_with_finite_differences() {
     let part = parts::soup(6.0, 1_500, 5);
     for (tool, oracle) in tools() {
         for law in [Law::Gradient, Law::Thesis, Law::Facing] {
-            let apart = apart(&part, tool, &*oracle, law);
-            assert!(apart.len() >= 20, "{}: {}", oracle.name(), apart.len());
-            let most = apart[apart.len() * 9 / 10];
-            assert!(most < 1e-6, "{}, {law}: {most:e} of {apart:?}", oracle.name());
+            let relative_errors = relative_errors(&part, tool, &*oracle, law);
+            assert!(relative_errors.len() >= 20, "{}: {}", oracle.name(), relative_errors.len());
+            let ninth_decile = relative_errors[relative_errors.len() * 9 / 10];
+            assert!(
+                ninth_decile < 1e-6,
+                "{}, {law}: {ninth_decile:e} of {relative_errors:?}",
+                oracle.name()
+            );
         }
     }
 }
 
 #[test]
-fn an_interpreted_tool_has_the_same() {
+fn an_interpreted_tool_has_the_same_stiffness() {
     let part = parts::soup(6.0, 1_500, 6);
     for (tool, oracle) in tools() {
         let (interpreted, _) = read(oracle.name());
@@ -89,8 +93,8 @@ fn an_interpreted_tool_has_the_same() {
         for k in 0..30 {
             let pose = poses::about(&part, &*oracle, k, &mut draw);
             let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
-            let off = (one.matrix - other.matrix).norm();
-            assert!(off <= 1e-12 * one.matrix.norm(), "{}: {off:e}", oracle.name());
+            let difference = (one.matrix - other.matrix).norm();
+            assert!(difference <= 1e-12 * one.matrix.norm(), "{}: {difference:e}", oracle.name());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The rounding that a wrench states, against sums of the same contacts with 256 bits.
 
-use super::compare::{WAYS, tools};
+use super::compare::{LAWS_AND_WEIGHTS, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Law, Pose, Probe};
@@ -9,7 +9,7 @@ use touchoff_tests::oracle::draw::Rng;
 
 type Triple = [Big; 3];
 
-fn big(v: Vector3<f64>) -> Triple {
+fn to_big(v: Vector3<f64>) -> Triple {
     [v.x, v.y, v.z].map(Big::exactly)
 }
 
@@ -24,7 +24,7 @@ fn add(sum: &mut Triple, more: &Triple) {
     }
 }
 
-fn off(sum: &Triple, found: Vector3<f64>) -> f64 {
+fn error_of(sum: &Triple, found: Vector3<f64>) -> f64 {
     let parts = [0, 1, 2].map(|axis| (&sum[axis] - &Big::exactly(found[axis])).to_f64());
     Vector3::from(parts).norm()
 }
@@ -34,18 +34,18 @@ fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64;
     let mut sums = [(); 2].map(|()| [(); 3].map(|()| Big::zero()));
     let mut sizes = [0.0; 2];
     for contact in contacts {
-        let way = match law {
-            Law::Gradient => big(contact.gradient),
+        let direction = match law {
+            Law::Gradient => to_big(contact.gradient),
             Law::Facing if contact.normal.dot(&contact.direction) > 0.0 => continue,
             _ => {
-                let (n, u) = (big(contact.normal), big(contact.direction));
+                let (n, u) = (to_big(contact.normal), to_big(contact.direction));
                 [0, 1, 2].map(|axis| &n[axis] - &u[axis])
             }
         };
         let push = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-        let force = way.map(|part| &push * &part);
+        let force = direction.map(|part| &push * &part);
         let arm = contact.point - tip;
-        add(&mut sums[1], &cross(&big(arm), &force));
+        add(&mut sums[1], &cross(&to_big(arm), &force));
         add(&mut sums[0], &force);
         let size = push.to_f64() * contact.gradient.norm().max(1.0);
         sizes[0] += size;
@@ -55,17 +55,17 @@ fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64;
 }
 
 #[test]
-fn sums_keep_the_rounding_that_is_stated() {
+fn sums_keep_the_stated_rounding_bound() {
     // Rounding in the list of contacts itself: directions turned to the world and rounded, weights multiplied and
     // rounded, points rounded at the world's coordinates.
-    const LISTED: f64 = 16.0 * f64::EPSILON;
+    const LISTED_BOUND: f64 = 16.0 * f64::EPSILON;
     let (mut touching, mut tightest) = (0, f64::INFINITY);
     for part in [parts::soup(6.0, 2_000, 1), parts::tube(6_000)] {
         for (tool, oracle) in tools() {
             let mut draw = Rng::new(17);
             for k in 0..60 {
                 let pose: Pose = poses::about(&part, &*oracle, k, &mut draw);
-                let (law, weights) = WAYS[k % 6];
+                let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let mut probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
                 let wrench = probe.wrench(&pose);
                 let ([force, torque], sizes) = sums(probe.contacts(&pose), law, pose.tip());
@@ -75,9 +75,15 @@ fn sums_keep_the_rounding_that_is_stated() {
                 touching += 1;
                 let stated = wrench.rounding;
                 let [by_force, by_torque] =
-                    [off(&force, wrench.force), off(&torque, wrench.torque)];
-                assert!(by_force <= stated.force + LISTED * sizes[0], "{by_force:e} {stated:?}");
-                assert!(by_torque <= stated.torque + LISTED * sizes[1], "{by_torque:e} {stated:?}");
+                    [error_of(&force, wrench.force), error_of(&torque, wrench.torque)];
+                assert!(
+                    by_force <= stated.force + LISTED_BOUND * sizes[0],
+                    "{by_force:e} {stated:?}"
+                );
+                assert!(
+                    by_torque <= stated.torque + LISTED_BOUND * sizes[1],
+                    "{by_torque:e} {stated:?}"
+                );
                 // Some hundred units of roundoff, not more.
                 let all = sizes[0] + wrench.integral;
                 assert!(stated.force <= 1e-13 * all * (1.0 + wrench.colliding as f64 / 100.0));
@@ -91,7 +97,7 @@ fn sums_keep_the_rounding_that_is_stated() {
 
 /// The stated rounding holds about another point than the tip too.
 #[test]
-fn a_centre_far_away_is_in_it() {
+fn the_rounding_bound_covers_a_distant_compliance_centre() {
     let part = parts::tube(6_000);
     let (tool, oracle) = tools().swap_remove(0);
     let centre = Point3::new(300.0, -200.0, 1000.0);
@@ -102,7 +108,7 @@ fn a_centre_far_away_is_in_it() {
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;
         let ([_, torque], [size, _]) = sums(probe.contacts(&pose), Law::Thesis, about);
-        let lost = off(&torque, wrench.torque);
+        let lost = error_of(&torque, wrench.torque);
         assert!(lost <= wrench.rounding.torque + 64.0 * f64::EPSILON * 1100.0 * size, "{lost:e}");
     }
 }
