@@ -6,7 +6,7 @@ use std::fmt;
 /// true value.
 ///
 /// ```
-/// use touchoff::{Interval, Interval};
+/// use touchoff::Interval;
 ///
 /// let depth = Interval::new(0.25, 0.75);
 /// assert!(depth.contains(0.5) && depth.width() == 0.5);
