@@ -24,8 +24,8 @@ impl Certifier<'_> {
     /// in the part's unit, plus the rounding error bound. It is 0 in contact. For a tool inside the material it is
     /// the distance to the part's surface.
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
-        let Certifier { setting, whole, work, budget, .. } = self;
-        distance(setting, [whole, whole], work, pose, (tolerance, *budget))
+        let Certifier { setting, whole_query, state, budget, .. } = self;
+        distance(setting, [whole_query, whole_query], state, pose, (tolerance, *budget))
     }
 
     /// Computes the distance of the part's triangles from some surfaces of the tool. The interval is that of [`Certifier::clearance`]. It is 0 if a point inside the tool is the
@@ -49,22 +49,28 @@ impl Certifier<'_> {
             let distance = Interval::new(f64::INFINITY, f64::INFINITY);
             return Ok(Clearance { distance, witness: None });
         }
-        let ToolModel::Profile(section) = &self.setting.body else {
+        let ToolModel::Profile(section) = &self.setting.tool_model else {
             let Interval { low, .. } = self.clearance(pose, tolerance).distance;
             return Ok(Clearance { distance: Interval::new(low, f64::INFINITY), witness: None });
         };
-        if self.apart.as_ref().is_none_or(|apart| apart.surfaces != surfaces) {
+        if self
+            .clearance_query
+            .as_ref()
+            .is_none_or(|clearance_query| clearance_query.surfaces != surfaces)
+        {
             let margin = self.setting.setup.margin;
-            let of = |limit| {
+            let new_query = |limit| {
                 DepthQuery::new(section, margin, limit, |k| surfaces.contains(&SurfaceId(k)))
             };
             // Any limit below 0 makes a query for the distance from the surfaces themselves.
-            let (inside, outside) = (of(0.0), of(-1.0));
-            self.apart = Some(ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside });
+            let (inside, outside) = (new_query(0.0), new_query(-1.0));
+            self.clearance_query =
+                Some(ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside });
         }
-        let Certifier { setting, apart, work, budget, .. } = self;
-        let ClearanceQuery { inside, outside, .. } = apart.as_ref().expect("it was just made");
-        Ok(distance(setting, [inside, outside], work, pose, (tolerance, *budget)))
+        let Certifier { setting, clearance_query, state, budget, .. } = self;
+        let ClearanceQuery { inside, outside, .. } =
+            clearance_query.as_ref().expect("it was just made");
+        Ok(distance(setting, [inside, outside], state, pose, (tolerance, *budget)))
     }
 }
 
@@ -72,33 +78,33 @@ impl Certifier<'_> {
 fn distance(
     setting: &QuerySetting<'_>,
     [inside, outside]: [&DepthQuery; 2],
-    work: &mut SearchState,
+    state: &mut SearchState,
     pose: &Pose,
     (tolerance, budget): (f64, u32),
 ) -> Clearance {
     let touch = 2.0 * setting.error;
-    let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget };
-    work.inside(setting, inside, pose, goal);
-    if let Some(best) = &work.best {
+    let goal = Goal { min_depth: -touch, tolerance: touch, stop_depth: touch, budget };
+    state.inside(setting, inside, pose, goal);
+    if let Some(best) = &state.best {
         let witness = setting.witness(best, pose);
-        let high = if work.search.best > touch { 0.0 } else { 2.0 * touch + work.skew };
+        let high = if state.search.best > touch { 0.0 } else { 2.0 * touch + state.skew };
         let distance = Interval::new(0.0, high * setting.length);
         return Clearance { distance, witness: Some(witness) };
     }
-    let unsure = work.search.open();
+    let unsure = state.search.has_open();
     // The rounding error grows with the distance.
-    let error = setting.error + rounding::distance_error_bound(work.far());
+    let error = setting.error + rounding::distance_error_bound(state.max_distance());
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * error).max(tolerance / setting.length);
-    let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
-    work.outside(setting, outside, pose, Goal { least, tolerance, enough, budget });
-    let more = error + work.skew;
-    let low = -work.search.wanted().max(work.search.most) - more;
+    let [min_depth, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
+    state.outside(setting, outside, pose, Goal { min_depth, tolerance, stop_depth, budget });
+    let more = error + state.skew;
+    let low = -state.search.threshold().max(state.search.open_bound) - more;
     let low = if unsure { 0.0 } else { low.max(0.0) };
     // For a point outside, a depth field gives only a lower bound of the distance.
-    let high = if setting.exact { -work.search.best + more } else { f64::INFINITY };
+    let high = if setting.exact { -state.search.best + more } else { f64::INFINITY };
     Clearance {
         distance: Interval::new(low, high).scaled_by(setting.length),
-        witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
+        witness: state.best.as_ref().map(|best| setting.witness(best, pose)),
     }
 }

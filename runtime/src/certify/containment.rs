@@ -31,7 +31,7 @@ pub(crate) struct CorePoints {
     /// The allowed depth of each surface, in the tool's unit; infinity for any depth.
     limits: Vec<f64>,
     /// The last tolerance and its points. The inner `None` means that the budget was spent before a point was found.
-    known: Option<(f64, Option<Vec<Core>>)>,
+    cached: Option<(f64, Option<Vec<Core>>)>,
 }
 
 #[derive(Clone, Copy)]
@@ -44,7 +44,10 @@ impl CorePoints {
     /// The points for a tool whose surfaces have these limits, in the tool's unit and the order of its info. Margins,
     /// below 0, count as 0: a surface that keeps away from the part is outside it.
     pub(crate) fn new(limits: impl IntoIterator<Item = f64>) -> CorePoints {
-        CorePoints { limits: limits.into_iter().map(|limit| limit.max(0.0)).collect(), known: None }
+        CorePoints {
+            limits: limits.into_iter().map(|limit| limit.max(0.0)).collect(),
+            cached: None,
+        }
     }
 
     /// The points for a tool that may not be in the part at all.
@@ -55,33 +58,38 @@ impl CorePoints {
     /// Returns the points of pieces that are deeper than their limits by more than a tolerance.
     fn deeper_than(
         &mut self,
-        body: &ToolModel<'_>,
+        tool_model: &ToolModel<'_>,
         info: &ToolInfo,
         tolerance: f64,
     ) -> Option<&[Core]> {
-        if self.known.as_ref().is_none_or(|(known, _)| *known != tolerance) {
-            self.known = Some((tolerance, self.find(body, info, tolerance)));
+        if self.cached.as_ref().is_none_or(|(cached, _)| *cached != tolerance) {
+            self.cached = Some((tolerance, self.find(tool_model, info, tolerance)));
         }
-        self.known.as_ref()?.1.as_deref()
+        self.cached.as_ref()?.1.as_deref()
     }
 
-    fn find(&self, body: &ToolModel<'_>, info: &ToolInfo, tolerance: f64) -> Option<Vec<Core>> {
-        match body {
+    fn find(
+        &self,
+        tool_model: &ToolModel<'_>,
+        info: &ToolInfo,
+        tolerance: f64,
+    ) -> Option<Vec<Core>> {
+        match tool_model {
             ToolModel::Profile(section) => {
-                let limit = |feature: usize| self.limits[body.surface(feature).0];
+                let limit = |feature: usize| self.limits[tool_model.surface(feature).0];
                 let limits: Vec<f64> = (0..section.features.len()).map(limit).collect();
                 let witnesses = interior::witnesses(section, &limits, tolerance).into_iter();
-                let core = |witness: interior::CorePoint| {
-                    let [d, z] = witness.place;
-                    Core { point: [d, 0.0, z], surface: body.surface(witness.feature) }
+                let to_core = |witness: interior::CorePoint| {
+                    let [d, z] = witness.point;
+                    Core { point: [d, 0.0, z], surface: tool_model.surface(witness.feature) }
                 };
-                Some(witnesses.map(core).collect())
+                Some(witnesses.map(to_core).collect())
             }
             ToolModel::Field(field) => {
                 // The tool is assumed to be connected. If not all limits are 0, the points of each region beyond its
                 // limit are.
                 let one = self.limits.iter().all(|limit| *limit == 0.0);
-                let mut cores = Vec::new();
+                let mut core_points = Vec::new();
                 for (index, region) in info.regions.iter().enumerate() {
                     let limit = self.limits[region.surface.0];
                     if limit.is_infinite() || (one && index > 0) {
@@ -89,12 +97,12 @@ impl CorePoints {
                     }
                     let owners = Owners::of_regions(info, |other, _| one || other == index);
                     let deepest = field.deepest(&owners, limit + tolerance, 2.0)?;
-                    cores.extend(deepest.map(|(point, depth, _)| Core {
+                    core_points.extend(deepest.map(|(point, depth, _)| Core {
                         point,
-                        surface: body.surface(depth.feature),
+                        surface: tool_model.surface(depth.feature),
                     }));
                 }
-                Some(cores)
+                Some(core_points)
             }
         }
     }
@@ -105,15 +113,15 @@ impl QuerySetting<'_> {
     /// surface's limit by more than `tolerance`, in the tool's unit.
     pub(crate) fn containment(
         &self,
-        (info, cores): (&ToolInfo, &mut CorePoints),
+        (info, core_points): (&ToolInfo, &mut CorePoints),
         pose: &Pose,
         tolerance: f64,
     ) -> Containment {
-        let Some(cores) = cores.deeper_than(&self.body, info, tolerance) else {
+        let Some(core_points) = core_points.deeper_than(&self.tool_model, info, tolerance) else {
             return Containment::Undecided;
         };
         let mut found = Containment::Outside;
-        for Core { point, surface } in cores {
+        for Core { point, surface } in core_points {
             let point = pose.tip() + pose.rotation() * Vector3::from(*point) * self.length;
             match self.bvh.locate(point) {
                 Location::Inside => return Containment::Inside(*surface),
@@ -129,9 +137,11 @@ impl QuerySetting<'_> {
     #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(
         &self,
-        (info, cores): (&ToolInfo, &mut CorePoints),
+        (info, core_points): (&ToolInfo, &mut CorePoints),
         tolerance: f64,
     ) -> bool {
-        cores.deeper_than(&self.body, info, tolerance).is_some_and(|cores| cores.len() == 1)
+        core_points
+            .deeper_than(&self.tool_model, info, tolerance)
+            .is_some_and(|core_points| core_points.len() == 1)
     }
 }

@@ -2,8 +2,8 @@
 //! bounds.
 //!
 //! ```text
-//! pose ──look──▶ nodes ──hull──▶ triangles ──batch──▶ eight at a time ──facet, course──▶ deepest
-//!                 f32              f32                  f64                 f64
+//! pose ──traverse──▶ nodes ──hull──▶ triangles ──batch──▶ eight at a time ──triangle, line search──▶ deepest
+//!           f32               f32                 f64                             f64
 //! ```
 //!
 //! A point cloud says nothing about the surface between its points, so a [`Certifier`] searches the triangles
@@ -99,22 +99,22 @@ pub struct Certifier<'a> {
     setting: QuerySetting<'a>,
     info: &'a ToolInfo,
     /// The query for the depth of the whole tool.
-    whole: DepthQuery,
+    whole_query: DepthQuery,
     /// The query for the depth of each surface, made on first use.
-    each: Vec<Option<DepthQuery>>,
+    surface_queries: Vec<Option<DepthQuery>>,
     /// The allowance of each surface in the part's unit, and the queries that check them; `None` if no allowance was
     /// set.
     allowed: Vec<f64>,
-    rules: Option<Vec<DepthQuery>>,
+    allowance_queries: Option<Vec<DepthQuery>>,
     /// Points of the restricted interior of the tool, the region that may not be inside the part: by the allowances,
     /// of the whole tool, and of each surface with its allowed depth in the tool's unit.
-    cores: CorePoints,
-    whole_cores: CorePoints,
-    each_cores: Vec<Option<(f64, CorePoints)>>,
+    core_points: CorePoints,
+    whole_core_points: CorePoints,
+    surface_core_points: Vec<Option<(f64, CorePoints)>>,
     /// The clearance query for the surfaces of the last call.
-    apart: Option<ClearanceQuery>,
+    clearance_query: Option<ClearanceQuery>,
     budget: u32,
-    work: SearchState,
+    state: SearchState,
     sweeper: Sweeper,
 }
 
@@ -133,7 +133,7 @@ impl<'a> Certifier<'a> {
         let setup = QuerySetup::new(&bvh.frame, info, length);
         let part = f64::from(bvh.frame.size) * bvh.frame.scale / length;
         let error = rounding::point_error_bound(info, part);
-        let (body, error) = match Section::new(info, error) {
+        let (tool_model, error) = match Section::new(info, error) {
             Some(section) => (ToolModel::Profile(section), error),
             None => match Field::new(tool, level) {
                 Some(field) => {
@@ -145,19 +145,19 @@ impl<'a> Certifier<'a> {
         };
         let surfaces = info.surfaces.len();
         let (size, exact) = (info.size(), info.is_exact());
-        let setting = QuerySetting { bvh, body, size, exact, setup, level, length, error };
-        let whole = setting.depth_query(0.0, |_| true);
+        let setting = QuerySetting { bvh, tool_model, size, exact, setup, level, length, error };
+        let whole_query = setting.depth_query(0.0, |_| true);
         Ok(Certifier {
-            whole,
-            each: (0..surfaces).map(|_| None).collect(),
+            whole_query,
+            surface_queries: (0..surfaces).map(|_| None).collect(),
             allowed: vec![0.0; surfaces],
-            rules: None,
-            cores: CorePoints::whole(info),
-            whole_cores: CorePoints::whole(info),
-            each_cores: (0..surfaces).map(|_| None).collect(),
-            apart: None,
+            allowance_queries: None,
+            core_points: CorePoints::whole(info),
+            whole_core_points: CorePoints::whole(info),
+            surface_core_points: (0..surfaces).map(|_| None).collect(),
+            clearance_query: None,
             budget: 1 << 20,
-            work: SearchState::default(),
+            state: SearchState::default(),
             sweeper: Sweeper::default(),
             info,
             setting,
@@ -176,7 +176,7 @@ impl<'a> Certifier<'a> {
     #[must_use]
     pub fn with_level(mut self, level: Level) -> Certifier<'a> {
         self.setting.level = level;
-        if let ToolModel::Field(field) = &mut self.setting.body {
+        if let ToolModel::Field(field) = &mut self.setting.tool_model {
             field.level = level;
         }
         self
@@ -208,15 +208,15 @@ impl<'a> Certifier<'a> {
                 known: known.join(", "),
             });
         };
-        if let (ToolModel::Field(_), true) = (&self.setting.body, allowed < 0.0) {
+        if let (ToolModel::Field(_), true) = (&self.setting.tool_model, allowed < 0.0) {
             let (tool, surface) = (self.info.name.to_string(), surface.to_owned());
             return Err(AllowanceError::NoMargin { tool, surface });
         }
         self.allowed[index] = allowed;
         let length = self.setting.length;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
-        self.rules = Some(DepthQuery::all(&self.setting, &allowed));
-        self.cores = CorePoints::new(allowed);
+        self.allowance_queries = Some(DepthQuery::all(&self.setting, &allowed));
+        self.core_points = CorePoints::new(allowed);
         Ok(self)
     }
 
@@ -225,8 +225,8 @@ impl<'a> Certifier<'a> {
     /// replaced by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is
     /// spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
-        let Certifier { setting, whole, work, budget, .. } = self;
-        penetration(setting, whole, work, pose, (tolerance, *budget))
+        let Certifier { setting, whole_query, state, budget, .. } = self;
+        penetration(setting, whole_query, state, pose, (tolerance, *budget))
     }
 
     /// Computes the deepest penetration where one surface is the nearest.
@@ -242,10 +242,10 @@ impl<'a> Certifier<'a> {
         tolerance: f64,
     ) -> Result<Penetration, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let Certifier { setting, each, work, budget, .. } = self;
-        let question =
-            each[surface].get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        Ok(penetration(setting, question, work, pose, (tolerance, *budget)))
+        let Certifier { setting, surface_queries, state, budget, .. } = self;
+        let query = surface_queries[surface]
+            .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
+        Ok(penetration(setting, query, state, pose, (tolerance, *budget)))
     }
 
     /// Checks whether the tool is clear of the part, or at most as deep in it as is
@@ -266,19 +266,19 @@ impl<'a> Certifier<'a> {
     /// Locates the restricted interior of the tool relative to the part. Call only if no triangle is in contact with
     /// it.
     pub(crate) fn containment(&mut self, pose: &Pose) -> Containment {
-        let cores = (self.info, &mut self.cores);
-        self.setting.containment(cores, pose, 4.0 * self.setting.error)
+        let core_points = (self.info, &mut self.core_points);
+        self.setting.containment(core_points, pose, 4.0 * self.setting.error)
     }
 
     /// Returns whether the whole tool is inside the material and touches no triangle, whatever the allowances.
     /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the budget is spent.
     pub fn is_buried(&mut self, pose: &Pose) -> Option<bool> {
-        let Certifier { setting, info, whole, whole_cores, work, budget, .. } = self;
-        match touches(setting, slice::from_ref(whole), work, pose, *budget) {
+        let Certifier { setting, info, whole_query, whole_core_points, state, budget, .. } = self;
+        match touches(setting, slice::from_ref(whole_query), state, pose, *budget) {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
-                match setting.containment((info, whole_cores), pose, 4.0 * setting.error) {
+                match setting.containment((info, whole_core_points), pose, 4.0 * setting.error) {
                     Containment::Inside(_) => Some(true),
                     Containment::Outside => Some(false),
                     Containment::Unknown | Containment::Undecided => None,
@@ -296,7 +296,7 @@ impl<'a> Certifier<'a> {
     /// If there is no such surface.
     pub fn max_possible_depth(&self, surface: SurfaceId) -> Result<Option<f64>, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let depth = match &self.setting.body {
+        let depth = match &self.setting.tool_model {
             ToolModel::Profile(section) => {
                 Owners::of(section, |other| other == surface).greatest_depth(section)
             }
@@ -324,20 +324,21 @@ impl<'a> Certifier<'a> {
     /// than twice the rounding error, as in [`Certifier::is_too_deep`].
     #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(&mut self) -> bool {
-        self.setting.is_one_piece((self.info, &mut self.cores), self.setting.error)
+        self.setting.is_one_piece((self.info, &mut self.core_points), self.setting.error)
     }
 
     /// Resets the starting triangle, as if no query had been made.
     #[cfg(feature = "postures")]
-    pub(crate) fn forget(&mut self) {
-        self.work.forget();
+    pub(crate) fn clear_caches(&mut self) {
+        self.state.clear_cache();
     }
 
     /// Checks whether a triangle of the part is deeper in the tool than is allowed.
     pub(crate) fn touches(&mut self, pose: &Pose) -> ContactVerdict {
-        let Certifier { setting, whole, rules, work, budget, .. } = self;
-        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
-        touches(setting, rules, work, pose, *budget)
+        let Certifier { setting, whole_query, allowance_queries, state, budget, .. } = self;
+        let allowance_queries =
+            allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
+        touches(setting, allowance_queries, state, pose, *budget)
     }
 
     /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance).
@@ -345,17 +346,18 @@ impl<'a> Certifier<'a> {
     pub(crate) fn is_too_deep(
         &mut self,
         pose: (&Point3<f64>, &Vector3<f64>),
-        place: &Point3<f64>,
+        point: &Point3<f64>,
     ) -> bool {
-        let Certifier { setting, whole, rules, work, .. } = self;
-        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
+        let Certifier { setting, whole_query, allowance_queries, state, .. } = self;
+        let allowance_queries =
+            allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
         let (tip, axis) = pose;
-        let way = (place - tip) / setting.length;
-        let z = way.dot(axis);
-        let d = (way.norm_squared() - z * z).max(0.0).sqrt();
-        rules.iter().any(|rule| {
-            rule.limit >= 0.0
-                && work.depth(setting, rule, [d, 0.0, z]) > rule.limit + 2.0 * setting.error
+        let offset = (point - tip) / setting.length;
+        let z = offset.dot(axis);
+        let d = (offset.norm_squared() - z * z).max(0.0).sqrt();
+        allowance_queries.iter().any(|query| {
+            query.limit >= 0.0
+                && state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
         })
     }
 }
@@ -371,57 +373,57 @@ pub(crate) enum ContactVerdict {
 /// Checks whether a triangle is deeper than the rules allow.
 fn touches(
     setting: &QuerySetting<'_>,
-    rules: &[DepthQuery],
-    work: &mut SearchState,
+    allowance_queries: &[DepthQuery],
+    state: &mut SearchState,
     pose: &Pose,
     budget: u32,
 ) -> ContactVerdict {
     let touch = 2.0 * setting.error;
-    let mut open: Option<f64> = None;
-    for rule in rules {
-        let least = rule.limit - touch;
-        let enough = rule.limit + touch;
-        let goal = Goal { least, tolerance: touch, enough, budget };
-        if rule.limit < 0.0 {
-            setting.set_pose(work, pose);
-            work.outside(setting, rule, pose, goal);
+    let mut undecided: Option<f64> = None;
+    for query in allowance_queries {
+        let min_depth = query.limit - touch;
+        let stop_depth = query.limit + touch;
+        let goal = Goal { min_depth, tolerance: touch, stop_depth, budget };
+        if query.limit < 0.0 {
+            setting.set_pose(state, pose);
+            state.outside(setting, query, pose, goal);
         } else {
-            work.inside(setting, rule, pose, goal);
+            state.inside(setting, query, pose, goal);
         }
-        if let Some(best) = &work.best
-            && work.search.best > goal.enough + work.skew
+        if let Some(best) = &state.best
+            && state.search.best > goal.stop_depth + state.skew
         {
             return ContactVerdict::Yes(setting.witness(best, pose));
         }
-        if work.best.is_some() || work.search.open() {
-            let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
-            open = Some(open.unwrap_or(0.0).max(high - rule.limit));
+        if state.best.is_some() || state.search.has_open() {
+            let high = state.search.open_bound.max(state.search.threshold()) + touch + state.skew;
+            undecided = Some(undecided.unwrap_or(0.0).max(high - query.limit));
         }
     }
-    open.map_or(ContactVerdict::No, |high| ContactVerdict::Undecided(high * setting.length))
+    undecided.map_or(ContactVerdict::No, |high| ContactVerdict::Undecided(high * setting.length))
 }
 
 /// Computes the deepest penetration of a query.
 fn penetration(
     setting: &QuerySetting<'_>,
-    question: &DepthQuery,
-    work: &mut SearchState,
+    query: &DepthQuery,
+    state: &mut SearchState,
     pose: &Pose,
     (tolerance, budget): (f64, u32),
 ) -> Penetration {
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget };
-    work.inside(setting, question, pose, goal);
-    let more = setting.error + work.skew;
-    let (low, high) = match work.best {
+    let goal = Goal { min_depth: setting.error, tolerance, stop_depth: f64::INFINITY, budget };
+    state.inside(setting, query, pose, goal);
+    let more = setting.error + state.skew;
+    let (low, high) = match state.best {
         // Slabs are widened by the error, so a point outside may be measured as that deep.
-        Some(_) => (work.search.best - more - setting.error, work.search.best + tolerance),
+        Some(_) => (state.search.best - more - setting.error, state.search.best + tolerance),
         None => (0.0, setting.error),
     };
-    let high = if work.descent.looked() { high.max(work.search.most) + more } else { 0.0 };
+    let high = if state.descent.started() { high.max(state.search.open_bound) + more } else { 0.0 };
     Penetration {
         depth: Interval::new(low.max(0.0), high).scaled_by(setting.length),
-        witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
+        witness: state.best.as_ref().map(|best| setting.witness(best, pose)),
     }
 }

@@ -37,20 +37,20 @@ pub(super) fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
 }
 
 /// The maximum number of sweeps for something deeper than the deepest point known.
-const ROUNDS: u32 = 16;
+const MAX_ROUNDS: u32 = 16;
 
 /// A motion is probed at its beginning and at this number of later times before it is swept.
-pub(super) const TIMES: u32 = 8;
+pub(super) const INITIAL_TIMES: u32 = 8;
 
 /// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
-const CLOSE: f64 = 0.125;
+const GAP_FRACTION: f64 = 0.125;
 
 /// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion
 /// clear.
-const PART: u32 = 16;
+const BUDGET_DIVISOR: u32 = 16;
 
 /// Time steps shorter than this fraction of a motion are not resolved.
-const SHORTEST: f64 = 1e-12;
+const MIN_TIME_STEP: f64 = 1e-12;
 
 impl Certifier<'_> {
     /// Checks whether the tool stays clear of the part along a whole motion, or exceeds the depth that is
@@ -95,18 +95,27 @@ impl Certifier<'_> {
         if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
-        let Certifier { setting, info, whole, rules, cores, budget, sweeper, .. } = self;
-        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
+        let Certifier {
+            setting,
+            info,
+            whole_query,
+            allowance_queries,
+            core_points,
+            budget,
+            sweeper,
+            ..
+        } = self;
+        let queries = allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
         let error = self::error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = (16.0 * error).max(tolerance / setting.length);
         let mut first: Option<SweepEnd> = None;
         // A margin no larger than the tolerance requires no check.
-        for question in
-            rules.iter().filter(|rule| rule.limit >= 0.0 || rule.limit + tolerance < 0.0)
+        for query in
+            queries.iter().filter(|query| query.limit >= 0.0 || query.limit + tolerance < 0.0)
         {
-            let limit = question.limit;
-            let task = SweepTask { setting, question, motion, limit, error, tolerance };
+            let limit = query.limit;
+            let task = SweepTask { setting, query, motion, limit, error, tolerance };
             let stop = sweeper.run(&task, *budget);
             first = match (first, stop) {
                 (Some(first), Some(stop)) if stop.before(&first) => Some(stop),
@@ -118,7 +127,7 @@ impl Certifier<'_> {
                 MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
-            None => match setting.containment((info, cores), &motion.pose(0.0), tolerance) {
+            None => match setting.containment((info, core_points), &motion.pose(0.0), tolerance) {
                 Containment::Inside(surface) => MotionVerdict::Inside(surface),
                 Containment::Outside => MotionVerdict::Clear,
                 Containment::Unknown => MotionVerdict::SurfaceOnly,
@@ -130,8 +139,8 @@ impl Certifier<'_> {
     /// Probes a motion for contact at some times after the one at which the budget was spent. A sweep takes longest
     /// just before contact, whereas deep contact is found at once.
     fn touches_from(&mut self, motion: &Motion, from: f64) -> MotionVerdict {
-        for step in 1..=TIMES {
-            let at = from + (1.0 - from) * f64::from(step) / f64::from(TIMES);
+        for step in 1..=INITIAL_TIMES {
+            let at = from + (1.0 - from) * f64::from(step) / f64::from(INITIAL_TIMES);
             if let ContactVerdict::Yes(witness) = self.touches(&motion.pose(at)) {
                 return MotionVerdict::Touching(at, witness);
             }
@@ -181,22 +190,31 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Result<MotionDepth, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let Certifier { setting, info, each, each_cores, work, budget, sweeper, .. } = self;
+        let Certifier {
+            setting,
+            info,
+            surface_queries,
+            surface_core_points,
+            state,
+            budget,
+            sweeper,
+            ..
+        } = self;
         if !determines_pose(info, motion) {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let question = |limit| setting.depth_query(limit, |other| other == surface);
+        let new_query = |limit| setting.depth_query(limit, |other| other == surface);
         let error = error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = (32.0 * error).max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
-        let whole = each[surface].get_or_insert_with(|| question(0.0));
+        let inside_query = surface_queries[surface].get_or_insert_with(|| new_query(0.0));
         let depth = allowed.max(0.0);
-        let cores = match &mut each_cores[surface] {
-            Some((known, cores)) if *known == depth => cores,
+        let core_points = match &mut surface_core_points[surface] {
+            Some((known, core_points)) if *known == depth => core_points,
             other => {
-                let all = 0..info.surfaces.len();
-                let limits = all.map(|k| if k == surface { depth } else { f64::INFINITY });
+                let surfaces = 0..info.surfaces.len();
+                let limits = surfaces.map(|k| if k == surface { depth } else { f64::INFINITY });
                 &mut other.insert((depth, CorePoints::new(limits))).1
             }
         };
@@ -204,11 +222,11 @@ impl Certifier<'_> {
         let mut search = MotionSearch {
             setting,
             info,
-            cores,
-            work,
+            core_points,
+            state,
             sweeper,
             motion,
-            question: whole,
+            query: inside_query,
             tolerance,
             budget,
         };
@@ -216,11 +234,11 @@ impl Certifier<'_> {
         if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
             return Ok(found);
         }
-        if let ToolModel::Field(_) = &setting.body {
+        if let ToolModel::Field(_) = &setting.tool_model {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let near = question(allowed);
-        search.question = &near;
+        let margin_query = new_query(allowed);
+        search.query = &margin_query;
         Ok(match search.deepest(allowed) {
             MotionDepth::Within => found,
             nearer => nearer,
@@ -233,11 +251,11 @@ struct MotionSearch<'a, 's> {
     setting: &'a QuerySetting<'s>,
     info: &'a ToolInfo,
     /// Points of the region that the surface owns and that may not be inside the part.
-    cores: &'a mut CorePoints,
-    work: &'a mut SearchState,
+    core_points: &'a mut CorePoints,
+    state: &'a mut SearchState,
     sweeper: &'a mut Sweeper,
     motion: &'a Motion,
-    question: &'a DepthQuery,
+    query: &'a DepthQuery,
     tolerance: f64,
     budget: u32,
 }
@@ -252,10 +270,11 @@ struct DepthPeak {
 
 impl MotionSearch<'_, '_> {
     fn deepest(&mut self, allowed: f64) -> MotionDepth {
-        let times = (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES));
-        let seen = times.filter_map(|at| self.at(at)).collect::<Vec<DepthPeak>>();
-        let seen = seen.into_iter().filter(|peak| peak.depth.low > allowed).reduce(deeper);
-        let first = match seen {
+        let times = (0..=INITIAL_TIMES).map(|k| f64::from(k) / f64::from(INITIAL_TIMES));
+        let first_peak = times.filter_map(|at| self.peak_at(at)).collect::<Vec<DepthPeak>>();
+        let first_peak =
+            first_peak.into_iter().filter(|peak| peak.depth.low > allowed).reduce(deeper);
+        let first = match first_peak {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
                 None => return self.within(),
@@ -263,8 +282,8 @@ impl MotionSearch<'_, '_> {
                 Some(SweepEnd::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
                     let depth = Interval::new(allowed, allowed + self.tolerance);
-                    let seen = DepthPeak { depth, at, witness };
-                    self.at(at).map_or(seen, |here| deeper(seen, here))
+                    let first_peak = DepthPeak { depth, at, witness };
+                    self.peak_at(at).map_or(first_peak, |peak| deeper(first_peak, peak))
                 }
             },
         };
@@ -278,19 +297,19 @@ impl MotionSearch<'_, '_> {
     /// Returns the deepest point found and an upper bound on the depth over the motion.
     fn bounded(&mut self, mut best: DepthPeak, allowed: f64) -> (DepthPeak, f64) {
         // No point is farther from the surface than the largest radius.
-        let any = if self.question.limit < 0.0 { 0.0 } else { self.info.radius() };
-        let mut close = CLOSE;
-        for _ in 0..ROUNDS {
+        let any = if self.query.limit < 0.0 { 0.0 } else { self.info.radius() };
+        let mut gap_fraction = GAP_FRACTION;
+        for _ in 0..MAX_ROUNDS {
             let Interval { low, high } = best.depth;
-            let gap = self.tolerance.max(close * (high - allowed));
+            let gap = self.tolerance.max(gap_fraction * (high - allowed));
             // One half is for the tolerance of the sweep, the other for the gain of each round.
             let limit = (low + 0.5 * gap).max(allowed);
-            match self.sweep(limit, 0.5 * gap, self.budget / PART) {
+            match self.sweep(limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
                 None => return (best, high.max(any.min(limit + 0.5 * gap))),
-                Some(SweepEnd::Spent { .. }) => close *= 4.0,
-                Some(SweepEnd::Deeper { at, .. }) => match self.at(at) {
-                    Some(here) if here.depth.low > low => best = self.climb(here),
-                    _ => close *= 4.0,
+                Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
+                Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at) {
+                    Some(peak) if peak.depth.low > low => best = self.climb(peak),
+                    _ => gap_fraction *= 4.0,
                 },
             }
         }
@@ -299,19 +318,19 @@ impl MotionSearch<'_, '_> {
 
     /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.
     fn sweep(&mut self, limit: f64, tolerance: f64, budget: u32) -> Option<SweepEnd> {
-        let MotionSearch { setting, question, motion, .. } = *self;
-        if self.question.limit < 0.0 && limit + tolerance >= 0.0 {
+        let MotionSearch { setting, query, motion, .. } = *self;
+        if self.query.limit < 0.0 && limit + tolerance >= 0.0 {
             return None;
         }
         let error = error(setting, motion);
-        let task = SweepTask { setting, question, motion, limit, error, tolerance };
+        let task = SweepTask { setting, query, motion, limit, error, tolerance };
         self.sweeper.run(&task, budget)
     }
 
     /// Returns the result if no triangle is too deep.
     fn within(&mut self) -> MotionDepth {
         let MotionSearch { setting, info, motion, tolerance, .. } = *self;
-        match setting.containment((info, self.cores), &motion.pose(0.0), tolerance) {
+        match setting.containment((info, self.core_points), &motion.pose(0.0), tolerance) {
             Containment::Inside(_) => MotionDepth::Inside,
             Containment::Outside | Containment::Unknown => MotionDepth::Within,
             Containment::Undecided => MotionDepth::Undecided(0.0),
@@ -324,10 +343,10 @@ impl MotionSearch<'_, '_> {
         let QuerySetting { size, length, .. } = *self.setting;
         let pace = self.motion.displacement().norm() / length + self.motion.angle() * size;
         let mut best = from;
-        let mut step = 0.5 / f64::from(TIMES);
-        while step * pace > self.fine() && step > SHORTEST {
+        let mut step = 0.5 / f64::from(INITIAL_TIMES);
+        while step * pace > self.climb_tolerance() && step > MIN_TIME_STEP {
             let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
-            let found = sides.map(|at| self.at(at)).into_iter().flatten();
+            let found = sides.map(|at| self.peak_at(at)).into_iter().flatten();
             let found = found.fold(best, deeper);
             if found.depth.low > best.depth.low {
                 best = found;
@@ -339,28 +358,28 @@ impl MotionSearch<'_, '_> {
     }
 
     /// Returns the tolerance of depths at single times.
-    fn fine(&self) -> f64 {
+    fn climb_tolerance(&self) -> f64 {
         self.tolerance / 32.0
     }
 
     /// Returns the depth at a fraction of the motion, if there is any.
-    fn at(&mut self, at: f64) -> Option<DepthPeak> {
-        let tolerance = self.fine();
-        let MotionSearch { setting, question, ref mut work, budget, .. } = *self;
+    fn peak_at(&mut self, at: f64) -> Option<DepthPeak> {
+        let tolerance = self.climb_tolerance();
+        let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
-        if question.limit >= 0.0 {
-            let asked = (tolerance * setting.length, budget);
-            let found = penetration(setting, question, work, &pose, asked);
+        if query.limit >= 0.0 {
+            let goal = (tolerance * setting.length, budget);
+            let found = penetration(setting, query, state, &pose, goal);
             let Interval { low, high } = found.depth;
             let depth = Interval::new(low / setting.length, high / setting.length);
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
         }
-        setting.set_pose(work, &pose);
-        let goal = Goal { least: question.limit, tolerance, enough: f64::INFINITY, budget };
-        work.outside(setting, question, &pose, goal);
-        let best = work.best?;
-        let (found, more) = (work.search.best, error(setting, self.motion) + work.skew);
-        let high = (found + tolerance).max(work.search.most) + more;
+        setting.set_pose(state, &pose);
+        let goal = Goal { min_depth: query.limit, tolerance, stop_depth: f64::INFINITY, budget };
+        state.outside(setting, query, &pose, goal);
+        let best = state.best?;
+        let (found, more) = (state.search.best, error(setting, self.motion) + state.skew);
+        let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),
             at,

@@ -74,12 +74,12 @@ impl DepthQuery {
         let mut limits: Vec<f64> = depths.chain(gaps).collect();
         limits.sort_by(f64::total_cmp);
         limits.dedup();
-        let question = |limit: f64| {
+        let query = |limit: f64| {
             setting.depth_query(limit, |surface| {
                 let allowed = allowed[surface];
                 if limit < 0.0 { allowed == limit } else { allowed.max(0.0) == limit }
             })
         };
-        limits.into_iter().rev().map(question).collect()
+        limits.into_iter().rev().map(query).collect()
     }
 }

@@ -18,14 +18,14 @@ const VIRIDIS: [[u8; 3]; 11] = [
 
 /// Returns the sRGB colour of a value from 0 (dark violet) to 1 (yellow). Values beyond are clamped, and NaN
 /// counts as 0.
-pub fn colormap(part: f64) -> [u8; 3] {
-    let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
-    let at = part * (VIRIDIS.len() - 1) as f64;
-    let below = (at as usize).min(VIRIDIS.len() - 2);
-    let over = at - below as f64;
+pub fn colormap(value: f64) -> [u8; 3] {
+    let value = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
+    let position = value * (VIRIDIS.len() - 1) as f64;
+    let index = (position as usize).min(VIRIDIS.len() - 2);
+    let fraction = position - index as f64;
     [0, 1, 2].map(|k| {
-        let [from, to] = [below, below + 1].map(|stop| f64::from(VIRIDIS[stop][k]));
-        (from + (to - from) * over).round() as u8
+        let [from, to] = [index, index + 1].map(|stop| f64::from(VIRIDIS[stop][k]));
+        (from + (to - from) * fraction).round() as u8
     })
 }
 
@@ -35,11 +35,11 @@ mod tests {
 
     #[test]
     fn it_grows_brighter_from_end_to_end() {
-        let bright = |part: f64| {
-            let [r, g, b] = colormap(part).map(f64::from);
+        let luminance = |value: f64| {
+            let [r, g, b] = colormap(value).map(f64::from);
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
-        let steps: Vec<f64> = (0..=100).map(|k| bright(f64::from(k) / 100.0)).collect();
+        let steps: Vec<f64> = (0..=100).map(|k| luminance(f64::from(k) / 100.0)).collect();
         assert!(steps.is_sorted(), "{steps:?}");
         assert_eq!(colormap(-1.0), colormap(0.0));
         assert_eq!(colormap(f64::NAN), colormap(0.0));

@@ -36,7 +36,7 @@ struct ContactSite {
 
 /// Tolerance of angles in radians, and of lengths relative to the circle or the tool; far above rounding
 /// errors.
-const SAME: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 
 impl ContactSites {
     /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
@@ -44,19 +44,20 @@ impl ContactSites {
         let cuts = |surface| info.surface(surface).cutting;
         let mut sites = Vec::new();
         // The profile continues beyond the axis as its mirror image.
-        let mut before = info.outline.first().map(|first| {
-            let [d, z] = heading(first.from, first.to, first.circle, 0);
+        let mut previous = info.outline.first().map(|first| {
+            let [d, z] = unit_tangent(first.from, first.to, first.circle, 0);
             ([d, -z], cuts(first.surface))
         });
         for piece in info.outline.iter() {
-            let [start, end] = [0, 1].map(|end| heading(piece.from, piece.to, piece.circle, end));
+            let [start, end] =
+                [0, 1].map(|end| unit_tangent(piece.from, piece.to, piece.circle, end));
             let cutting = cuts(piece.surface);
-            if let Some((last, cut)) = before
+            if let Some((last, cut)) = previous
                 && cut
                 && cutting
             {
                 let turn = cross(last, start).atan2(dot(last, start));
-                if turn > SAME {
+                if turn > TOLERANCE {
                     let from = normal(last);
                     // The corner's material spans an angle of π less `turn` about the opposite of the mean
                     // normal.
@@ -66,7 +67,7 @@ impl ContactSites {
                         [-cosine, -sine]
                     };
                     sites.push(ContactSite {
-                        centre: piece.from.map(|part| part * length),
+                        centre: piece.from.map(|component| component * length),
                         radius: 0.0,
                         angles: [from, from + turn],
                         inward: Some([into(1.0), into(-1.0)]),
@@ -79,28 +80,28 @@ impl ContactSites {
                 let from = normal(start);
                 let turn = (normal(end) - from).rem_euclid(2.0 * PI);
                 sites.push(ContactSite {
-                    centre: centre.map(|part| part * length),
+                    centre: centre.map(|component| component * length),
                     radius: radius * length,
                     angles: [from, from + turn],
                     inward: None,
                 });
             }
-            before = Some((end, cutting));
+            previous = Some((end, cutting));
         }
         ContactSites { sites, size: info.size() * length }
     }
 
     /// Returns the largest distance between the tip and a site, in the part's unit.
     pub(crate) fn reach(&self) -> f64 {
-        let far = |site: &ContactSite| site.centre[0].hypot(site.centre[1]) + site.radius;
-        self.sites.iter().map(far).fold(0.0, f64::max)
+        let max_distance = |site: &ContactSite| site.centre[0].hypot(site.centre[1]) + site.radius;
+        self.sites.iter().map(max_distance).fold(0.0, f64::max)
     }
 
-    /// Returns the contacts between a tool with the given axis and a face. The face has a point `place` and an
+    /// Returns the contacts between a tool with the given axis and a face. The face has a point `point` and an
     /// outward normal; the tool's outward normal at the contact is the opposite.
     pub(crate) fn contacts(
         &self,
-        place: Point3<f64>,
+        point: Point3<f64>,
         normal: Vector3<f64>,
         axis: Vector3<f64>,
     ) -> impl Iterator<Item = Contact> {
@@ -111,27 +112,28 @@ impl ContactSites {
         self.sites.iter().filter_map(move |site| {
             let [from, to] = site.angles;
             // Both are angles of the half plane, or slightly beyond its ends.
-            let off = (angle - from + SAME).rem_euclid(2.0 * PI) - SAME;
-            if off > to - from + SAME {
+            let offset = (angle - from + TOLERANCE).rem_euclid(2.0 * PI) - TOLERANCE;
+            if offset > to - from + TOLERANCE {
                 return None;
             }
             let touched = [site.centre[0] + site.radius * out, site.centre[1] + site.radius * up];
             // A face perpendicular to the axis leaves the radial direction undefined.
-            if out < SAME && touched[0] > SAME * self.size {
+            if out < TOLERANCE && touched[0] > TOLERANCE * self.size {
                 return None;
             }
             let way = if out > 0.0 { across / out } else { across };
             let inward = site.inward.unwrap_or([[-out, -up]; 2]);
             Some(Contact {
-                tip: place - way * touched[0] - axis * touched[1],
-                within: inward.map(|way| [0, 1].map(|k| touched[k] + SAME * self.size * way[k])),
+                tip: point - way * touched[0] - axis * touched[1],
+                within: inward
+                    .map(|way| [0, 1].map(|k| touched[k] + TOLERANCE * self.size * way[k])),
             })
         })
     }
 }
 
 /// Returns the unit tangent at the beginning (`end` 0) or the end of a profile segment.
-fn heading(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> [f64; 2] {
+fn unit_tangent(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> [f64; 2] {
     let Some(Circle { centre, convex, .. }) = circle else {
         return unit([to[0] - from[0], to[1] - from[1]]);
     };
@@ -145,9 +147,9 @@ fn normal([d, z]: [f64; 2]) -> f64 {
     (-d).atan2(z)
 }
 
-fn unit(way: [f64; 2]) -> [f64; 2] {
-    let far = way[0].hypot(way[1]);
-    way.map(|part| part / far)
+fn unit(vector: [f64; 2]) -> [f64; 2] {
+    let length = vector[0].hypot(vector[1]);
+    vector.map(|component| component / length)
 }
 
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {

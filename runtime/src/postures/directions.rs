@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 pub struct Directions {
     list: Vec<[f64; 3]>,
     /// Per direction, the indices of all directions by ascending angle from it.
-    beside: Vec<Vec<u16>>,
+    by_angle: Vec<Vec<u16>>,
 }
 
 impl Directions {
@@ -25,8 +25,8 @@ impl Directions {
             let up = 1.0 - (2 * k + 1) as f64 / count as f64;
             let out = (1.0 - up * up).sqrt();
             let (sine, cosine) = (golden * k as f64).sin_cos();
-            let way = Vector3::new(out * cosine, out * sine, up).normalize();
-            [way.x, way.y, way.z]
+            let vector = Vector3::new(out * cosine, out * sine, up).normalize();
+            [vector.x, vector.y, vector.z]
         });
         Directions::from(list.collect::<Vec<_>>())
     }
@@ -42,16 +42,16 @@ impl Directions {
     }
 
     /// Returns the indices of all directions by ascending angle from one of them, which is the first.
-    pub(crate) fn beside(&self, direction: usize) -> impl Iterator<Item = usize> {
-        self.beside[direction].iter().map(|other| usize::from(*other))
+    pub(crate) fn by_angle(&self, direction: usize) -> impl Iterator<Item = usize> {
+        self.by_angle[direction].iter().map(|other| usize::from(*other))
     }
 
     /// Returns the cosine of the angle between a direction of a set and the nearest direction outside the set;
     /// -1 if the set has all directions.
     pub(crate) fn margin(&self, set: &[u64], direction: usize) -> f64 {
-        let way = Vector3::from(self.list[direction]);
-        let out = self.beside(direction).find(|other| !has(set, *other));
-        out.map_or(-1.0, |other| way.dot(&Vector3::from(self.list[other])))
+        let vector = Vector3::from(self.list[direction]);
+        let out = self.by_angle(direction).find(|other| !contains(set, *other));
+        out.map_or(-1.0, |other| vector.dot(&Vector3::from(self.list[other])))
     }
 
     /// Returns the solid angle of a set, in steradians. Each direction stands for an equal area of the sphere.
@@ -63,7 +63,7 @@ impl Directions {
     /// Returns the cone of a set: its direction with the largest angle to the nearest direction outside the
     /// set, and that angle in radians, which is half the cone's angle. Returns `None` for the empty set.
     pub fn cone(&self, set: &[u64]) -> Option<([f64; 3], f64)> {
-        let members = (0..self.list.len()).filter(|direction| has(set, *direction));
+        let members = (0..self.list.len()).filter(|direction| contains(set, *direction));
         let margins = members.map(|direction| (self.margin(set, direction), direction));
         let (cosine, best) = margins.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some((self.list[best], cosine.clamp(-1.0, 1.0).acos()))
@@ -73,19 +73,20 @@ impl Directions {
 impl From<Vec<[f64; 3]>> for Directions {
     /// Takes unit vectors, at most twice [`Directions::MOST`].
     fn from(list: Vec<[f64; 3]>) -> Directions {
-        let ways: Vec<Vector3<f64>> = list.iter().map(|way| Vector3::from(*way)).collect();
-        let beside = ways.iter().map(|way| {
+        let vectors: Vec<Vector3<f64>> =
+            list.iter().map(|direction| Vector3::from(*direction)).collect();
+        let by_angle = vectors.iter().map(|direction| {
             let mut others: Vec<(f64, u16)> =
-                ways.iter().zip(0..).map(|(other, k)| (-way.dot(other), k)).collect();
+                vectors.iter().zip(0..).map(|(other, k)| (-direction.dot(other), k)).collect();
             others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             others.into_iter().map(|(_, other)| other).collect()
         });
-        let beside = beside.collect();
-        Directions { list, beside }
+        let by_angle = by_angle.collect();
+        Directions { list, by_angle }
     }
 }
 
 /// Returns whether a set of directions contains a direction.
-pub(crate) fn has(set: &[u64], direction: usize) -> bool {
+pub(crate) fn contains(set: &[u64], direction: usize) -> bool {
     set[direction / 64] >> (direction % 64) & 1 == 1
 }

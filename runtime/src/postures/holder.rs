@@ -18,37 +18,37 @@ pub(crate) struct Holder {
     /// The least stick-out: the height of the highest cutting point.
     cutting: f64,
     /// Stick-out of the tool as it is: the height of the nose.
-    pub(crate) own: f64,
+    pub(crate) stickout: f64,
     /// Size down to which triangles are subdivided. A smaller one counts as high as its highest point.
-    fine: f64,
+    min_size: f64,
 }
 
 /// Steps per straight segment of the profile.
-const STEPS: usize = 16;
+const STEPS_PER_SEGMENT: usize = 16;
 
 /// Size down to which triangles are subdivided, as a fraction of the holder's radius.
-const FINE: f64 = 1.0 / 64.0;
+const MIN_SIZE_FRACTION: f64 = 1.0 / 64.0;
 
 impl Holder {
     /// Creates the holder of a tool, or returns `None` if it has none. `length` is the factor from the tool's
     /// unit of length to the part's.
     pub(crate) fn new(info: &ToolInfo, length: f64) -> Option<Holder> {
-        let mount = |piece: &ProfileSegment| {
-            info.surface(piece.surface).name.split_once('.').map(|(mount, _)| mount)
+        let mount = |segment: &ProfileSegment| {
+            info.surface(segment.surface).name.split_once('.').map(|(mount, _)| mount)
         };
         let first = mount(info.outline.first()?)?;
-        let pieces = info.outline.iter().filter(|piece| mount(piece) != Some(first));
+        let pieces = info.outline.iter().filter(|segment| mount(segment) != Some(first));
         let mut corners: Vec<[f64; 2]> = Vec::new();
-        for piece in pieces {
+        for segment in pieces {
             // An arc is a single step with its largest radius and its lowest height.
-            let [from, to] = [piece.from, piece.to];
-            let count = if piece.circle.is_some() { 1 } else { STEPS };
+            let [from, to] = [segment.from, segment.to];
+            let count = if segment.circle.is_some() { 1 } else { STEPS_PER_SEGMENT };
             for k in 0..count {
                 let at = |k: usize, part: usize| {
                     from[part] + (to[part] - from[part]) * k as f64 / count as f64
                 };
                 let (low, high) = (at(k, 1).min(at(k + 1, 1)), at(k, 0).max(at(k + 1, 0)));
-                let bulge = piece.circle.filter(|arc| arc.convex);
+                let bulge = segment.circle.filter(|arc| arc.convex);
                 let radius = bulge.map_or(high, |arc| high.max(arc.centre[0] + arc.radius));
                 // With the material on its left, an arc runs outward below its centre.
                 let below = bulge.filter(|arc| from[0] <= arc.centre[0] && arc.centre[0] <= to[0]);
@@ -67,10 +67,18 @@ impl Holder {
             }
         }
         steps.reverse();
-        let cuts = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
-        let cutting = cuts.flat_map(|piece| [piece.from[1], piece.to[1]]).fold(0.0, f64::max);
+        let cutting_segments =
+            info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
+        let cutting = cutting_segments
+            .flat_map(|segment| [segment.from[1], segment.to[1]])
+            .fold(0.0, f64::max);
         let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
-        Some(Holder { steps, cutting: cutting * length, own: nose, fine: FINE * widest })
+        Some(Holder {
+            steps,
+            cutting: cutting * length,
+            stickout: nose,
+            min_size: MIN_SIZE_FRACTION * widest,
+        })
     }
 
     /// Returns the least height of the holder above its nose at a distance `d` from the axis; `None` beyond its
@@ -80,64 +88,67 @@ impl Holder {
     }
 
     /// Returns the stick-out at which the holder touches nothing for a tip and an axis; `None` if that is not
-    /// less than `enough`. The holder is taken to continue upward at the largest radius so far. The result is
+    /// less than `limit`. The holder is taken to continue upward at the largest radius so far. The result is
     /// therefore no less than what is needed, and exceeds it by at most the height of a step and the size of a
     /// subdivided triangle.
-    pub(crate) fn least(
+    pub(crate) fn required_stickout(
         &self,
         bvh: &TriangleBvh,
         (tip, axis): (&Point3<f64>, &Vector3<f64>),
-        enough: Option<f64>,
+        limit: Option<f64>,
     ) -> Option<f64> {
-        let stop = enough.unwrap_or(f64::INFINITY);
-        let mut least = self.cutting;
+        let limit = limit.unwrap_or(f64::INFINITY);
+        let mut required = self.cutting;
         let frame = &bvh.frame;
-        let middle = Point3::from(frame.origin) - tip;
+        let origin = Point3::from(frame.origin) - tip;
         let mut stack = vec![(0, 0)];
-        while least < stop
+        while required < limit
             && let Some((level, index)) = stack.pop()
         {
             for lane in 0..bvh.children(level, index) {
                 let child = index * WIDTH + lane;
                 let Some(boxes) = bvh.levels.get(level).map(|boxes| &boxes[index]) else {
                     let corners = bvh.corners[child].map(|p| Point3::from(p) - tip);
-                    least = least.max(self.triangle(corners, axis, least));
+                    required = required.max(self.triangle(corners, axis, required));
                     continue;
                 };
-                let part =
+                let coordinate =
                     |list: &[[f32; WIDTH]; 3], k: usize| f64::from(list[k][lane]) * frame.scale;
-                let centre = middle + Vector3::from_fn(|k, _| part(&boxes.centre, k));
-                let half = Vector3::from_fn(|k, _| part(&boxes.half, k)) * WIDER;
-                let along = centre.dot(axis);
-                let high = along + half.dot(&axis.abs());
-                let reach = half.norm();
-                let near = ((centre - axis * along).norm() - reach).max(0.0);
-                if self.height(near).is_some_and(|height| high - height > least) {
+                let centre = origin + Vector3::from_fn(|k, _| coordinate(&boxes.centre, k));
+                let half =
+                    Vector3::from_fn(|k, _| coordinate(&boxes.half, k)) * BOX_ROUNDING_FACTOR;
+                let height_of_centre = centre.dot(axis);
+                let high = height_of_centre + half.dot(&axis.abs());
+                let radius = half.norm();
+                let min_distance = ((centre - axis * height_of_centre).norm() - radius).max(0.0);
+                if self.height(min_distance).is_some_and(|height| high - height > required) {
                     stack.push((level + 1, child));
                 }
             }
         }
-        (least < stop).then_some(least)
+        (required < limit).then_some(required)
     }
 
-    /// Returns the stick-out that a triangle needs, or `least` if that is more. Its corners are relative to the
+    /// Returns the stick-out that a triangle needs, or `required` if that is more. Its corners are relative to the
     /// tip.
-    fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, least: f64) -> f64 {
-        let mut most = least;
-        let mut pieces = vec![corners];
-        while let Some([a, b, c]) = pieces.pop() {
+    fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, required: f64) -> f64 {
+        let mut highest = required;
+        let mut stack = vec![corners];
+        while let Some([a, b, c]) = stack.pop() {
             let heights = [a, b, c].map(|corner| corner.dot(axis));
             let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let middle = (a + b + c) / 3.0;
-            let reach =
-                [a, b, c].map(|corner| (corner - middle).norm()).into_iter().fold(0.0, f64::max);
-            let near = ((middle - axis * middle.dot(axis)).norm() - reach).max(0.0);
-            let Some(needed) = self.height(near).map(|height| high - height) else { continue };
-            if needed <= most {
+            let centroid = (a + b + c) / 3.0;
+            let radius =
+                [a, b, c].map(|corner| (corner - centroid).norm()).into_iter().fold(0.0, f64::max);
+            let min_distance = ((centroid - axis * centroid.dot(axis)).norm() - radius).max(0.0);
+            let Some(needed) = self.height(min_distance).map(|height| high - height) else {
+                continue;
+            };
+            if needed <= highest {
                 continue;
             }
-            if reach <= self.fine {
-                most = needed;
+            if radius <= self.min_size {
+                highest = needed;
                 continue;
             }
             // Halve the longest side.
@@ -148,14 +159,14 @@ impl Holder {
                 () => [c, a, b],
             };
             let half = (a + b) / 2.0;
-            pieces.extend([[a, half, c], [half, b, c]]);
+            stack.extend([[a, half, c], [half, b, c]]);
         }
-        most
+        highest
     }
 }
 
 /// Factor that covers the rounding of boxes, which are stored in `f32`.
-const WIDER: f64 = 1.0 + 1e-6;
+const BOX_ROUNDING_FACTOR: f64 = 1.0 + 1e-6;
 
 #[cfg(test)]
 mod tests;

@@ -57,25 +57,25 @@ impl<'a> ToolPlacement<'a> {
     /// axis are in descending order of niceness.
     pub(super) fn list(
         &mut self,
-        spot: SurfacePoint,
+        target: SurfacePoint,
         axes: impl IntoIterator<Item = Vector3<f64>>,
         postures: &mut Vec<CandidatePosture>,
     ) {
         self.points.clear();
         postures.clear();
         for (direction, axis) in axes.into_iter().enumerate() {
-            for contact in self.sites.contacts(spot.point, spot.normal, axis) {
+            for contact in self.sites.contacts(target.point, target.normal, axis) {
                 for [d, z] in contact.within {
                     self.points.push([d / self.length, 0.0, z / self.length]);
                 }
                 postures.push(CandidatePosture { direction, tip: contact.tip, niceness: f64::NAN });
             }
         }
-        let ask = Outputs { niceness: true, ..Outputs::INSIDE };
-        self.tool.evaluate(Level::new(), ask, &self.points, self.length, &mut self.evaluations);
-        for place in self.evaluations.inside_indices() {
-            let niceness = &mut postures[place / 2].niceness;
-            *niceness = niceness.min(self.evaluations.niceness[place]);
+        let outputs = Outputs { niceness: true, ..Outputs::INSIDE };
+        self.tool.evaluate(Level::new(), outputs, &self.points, self.length, &mut self.evaluations);
+        for index in self.evaluations.inside_indices() {
+            let niceness = &mut postures[index / 2].niceness;
+            *niceness = niceness.min(self.evaluations.niceness[index]);
         }
         postures
             .sort_by(|a, b| a.direction.cmp(&b.direction).then(b.niceness.total_cmp(&a.niceness)));
@@ -102,14 +102,14 @@ mod tests {
 
     #[test]
     fn a_corner_is_as_nice_as_the_less_nice_of_what_meets_there() {
-        let mut touching = ToolPlacement::new(&Flat, Unit::Metre);
-        let spot = SurfacePoint { point: Point3::new(0.1, 0.0, 0.2), normal: Vector3::z() };
+        let mut placement = ToolPlacement::new(&Flat, Unit::Metre);
+        let target = SurfacePoint { point: Point3::new(0.1, 0.0, 0.2), normal: Vector3::z() };
         let axes = (1..90).map(|degrees| {
             let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
             Vector3::new(sine, 0.0, cosine)
         });
         let mut postures = Vec::new();
-        touching.list(spot, axes, &mut postures);
+        placement.list(target, axes, &mut postures);
         assert_eq!(postures.len(), 89);
         for posture in &postures {
             assert!((posture.niceness - 0.25).abs() < 1e-6, "{posture:?}");

@@ -22,20 +22,20 @@ pub struct Recorder<'a> {
     map: &'a PostureMap,
     tool: u16,
     probe: Probe<'a>,
-    judge: Validator<'a>,
+    validator: Validator<'a>,
     /// Niceness per triangle that a posture needs to be offered to the map.
-    wanted: Vec<f64>,
+    required_niceness: Vec<f64>,
     batch: Vec<(u32, PostureRecord)>,
     /// Arrival time of the first posture of the batch.
-    since: Instant,
+    batch_start: Instant,
     /// The pose of the last state.
-    before: Option<Pose>,
+    last_pose: Option<Pose>,
     /// The cycle that is expected next.
-    next: Option<u64>,
-    seen: RecorderStats,
+    next_cycle: Option<u64>,
+    stats: RecorderStats,
 }
 
-debug!([] Recorder<'_>, "Recorder", |this| { tool: this.tool, stats: this.seen });
+debug!([] Recorder<'_>, "Recorder", |this| { tool: this.tool, stats: this.stats });
 
 /// Counters of a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,11 +83,11 @@ pub enum RecorderError {
 }
 
 /// Number of records at which a batch is written to disk.
-const MANY: usize = 4096;
+const MAX_BATCH_RECORDS: usize = 4096;
 /// Age at which a batch is written to disk.
-const OLD: Duration = Duration::from_millis(500);
+const MAX_BATCH_AGE: Duration = Duration::from_millis(500);
 /// Time between two looks at the ring.
-const PAUSE: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 impl<'a> Recorder<'a> {
     /// Creates a recorder into a map, for a tool at the map's part, given both as points and as triangles.
@@ -102,7 +102,7 @@ impl<'a> Recorder<'a> {
         tool: &'a dyn Tool,
     ) -> Result<Recorder<'a>, RecorderError> {
         let (info, identity) = (tool.info(), map.identity());
-        let place = identity.tool(info).ok_or_else(|| {
+        let index = identity.tool(info).ok_or_else(|| {
             let name = |tool: &ToolFingerprint| format!("`{}`", Escaped(&tool.name));
             let known: Vec<String> = identity.tools.iter().map(name).collect();
             RecorderError::Tool { tool: info.name.to_string(), known: known.join(", ") }
@@ -114,19 +114,19 @@ impl<'a> Recorder<'a> {
         }
         let mut recorder = Recorder {
             map,
-            tool: place,
+            tool: index,
             probe: Probe::new(part, tool),
-            judge: Validator::new(bvh, tool, &identity.rules)?,
-            wanted: vec![f64::NEG_INFINITY; identity.part.triangles as usize],
+            validator: Validator::new(bvh, tool, &identity.rules)?,
+            required_niceness: vec![f64::NEG_INFINITY; identity.part.triangles as usize],
             batch: Vec::new(),
-            since: Instant::now(),
-            before: None,
-            next: None,
-            seen: RecorderStats::default(),
+            batch_start: Instant::now(),
+            last_pose: None,
+            next_cycle: None,
+            stats: RecorderStats::default(),
         };
         for entry in map.rows()? {
             let (triangle, row) = entry?;
-            recorder.note(triangle, &row.best);
+            recorder.update_required(triangle, &row.best);
         }
         Ok(recorder)
     }
@@ -139,18 +139,18 @@ impl<'a> Recorder<'a> {
     pub fn follow(&mut self, samples: &mut StateStream) -> Result<RecorderStats, MapError> {
         loop {
             // Query before reading, so that states published before the end are still taken.
-            let over = samples.is_closed();
+            let closed = samples.is_closed();
             for state in samples.by_ref() {
                 self.process(&state)?;
             }
-            if over {
+            if closed {
                 self.write()?;
-                return Ok(self.seen);
+                return Ok(self.stats);
             }
-            if !self.batch.is_empty() && self.since.elapsed() > OLD {
+            if !self.batch.is_empty() && self.batch_start.elapsed() > MAX_BATCH_AGE {
                 self.write()?;
             }
-            std::thread::sleep(PAUSE);
+            std::thread::sleep(POLL_INTERVAL);
         }
     }
 
@@ -159,11 +159,12 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// If the map cannot be written or read.
     pub fn process(&mut self, state: &SessionState) -> Result<(), MapError> {
-        self.seen.states += 1;
-        self.seen.skipped += self.next.map_or(0, |next| state.cycle.saturating_sub(next));
-        self.next = Some(state.cycle + 1);
-        let same = self.before.replace(state.tool) == Some(state.tool);
-        if same || state.wrench.colliding == 0 {
+        self.stats.states += 1;
+        self.stats.skipped +=
+            self.next_cycle.map_or(0, |next_cycle| state.cycle.saturating_sub(next_cycle));
+        self.next_cycle = Some(state.cycle + 1);
+        let unmoved = self.last_pose.replace(state.tool) == Some(state.tool);
+        if unmoved || state.wrench.colliding == 0 {
             return Ok(());
         }
         // Use the pose as it would be recorded: by tip and axis, without spin.
@@ -174,29 +175,33 @@ impl<'a> Recorder<'a> {
         let mut touched: Vec<u32> = contacts.iter().map(|contact| contact.triangle.0).collect();
         touched.sort_unstable();
         touched.dedup();
-        let wanted = &self.wanted;
-        let better = |triangle: &u32| {
-            wanted.get(*triangle as usize).is_none_or(|wanted| niceness >= *wanted)
+        let required_niceness = &self.required_niceness;
+        let may_improve = |triangle: &u32| {
+            required_niceness.get(*triangle as usize).is_none_or(|required| niceness >= *required)
         };
-        touched.retain(better);
+        touched.retain(may_improve);
         if touched.is_empty() || niceness < self.map.identity().rules.niceness {
             return Ok(());
         }
-        self.seen.judged += 1;
-        let Some(record) = self.judge.record(self.tool, &state.tool, niceness) else {
+        self.stats.judged += 1;
+        let Some(record) = self.validator.record(self.tool, &state.tool, niceness) else {
             return Ok(());
         };
-        self.seen.accepted += 1;
+        self.stats.accepted += 1;
         if self.batch.is_empty() {
-            self.since = Instant::now();
+            self.batch_start = Instant::now();
         }
         self.batch.extend(touched.into_iter().map(|triangle| (triangle, record)));
-        if self.batch.len() >= MANY || self.since.elapsed() > OLD { self.write() } else { Ok(()) }
+        if self.batch.len() >= MAX_BATCH_RECORDS || self.batch_start.elapsed() > MAX_BATCH_AGE {
+            self.write()
+        } else {
+            Ok(())
+        }
     }
 
     /// Returns the counters so far.
     pub fn stats(&self) -> RecorderStats {
-        self.seen
+        self.stats
     }
 
     /// Writes the batch to disk.
@@ -208,13 +213,13 @@ impl<'a> Recorder<'a> {
             return Ok(());
         }
         self.map.merge(&self.batch)?;
-        self.seen.batches += 1;
+        self.stats.batches += 1;
         let mut triangles: Vec<u32> = self.batch.drain(..).map(|(triangle, _)| triangle).collect();
         triangles.sort_unstable();
         triangles.dedup();
         for triangle in triangles {
             if let Some(row) = self.map.row(triangle)? {
-                self.note(triangle, &row.best);
+                self.update_required(triangle, &row.best);
             }
         }
         Ok(())
@@ -222,8 +227,9 @@ impl<'a> Recorder<'a> {
 
     /// Updates the niceness that a triangle requires: that of its last posture, once it has as many as are
     /// kept.
-    fn note(&mut self, triangle: u32, best: &[PostureRecord]) {
+    fn update_required(&mut self, triangle: u32, best: &[PostureRecord]) {
         let last = best.get(usize::from(self.map.identity().keep.get()) - 1);
-        self.wanted[triangle as usize] = last.map_or(f64::NEG_INFINITY, |record| record.niceness);
+        self.required_niceness[triangle as usize] =
+            last.map_or(f64::NEG_INFINITY, |record| record.niceness);
     }
 }

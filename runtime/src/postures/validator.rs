@@ -121,17 +121,17 @@ pub enum ValidatorError {
 pub struct Validator<'a> {
     pub(super) certifier: Certifier<'a>,
     /// Indices of the surfaces that do not cut, in the tool's list.
-    body: Vec<SurfaceId>,
+    non_cutting: Vec<SurfaceId>,
     /// Bound on niceness: a posture is accepted only above it.
-    least: f64,
+    min_niceness: f64,
     /// Tolerance of recorded depths and clearances, in the part's unit.
-    fine: f64,
+    bound_tolerance: f64,
 }
 
 debug!([] Validator<'_>, "Validator", |this| { certifier: this.certifier });
 
 /// Tolerance of recorded depths and clearances, as a fraction of the rules' tolerance.
-const FINE: f64 = 1.0 / 64.0;
+const BOUND_TOLERANCE_FRACTION: f64 = 1.0 / 64.0;
 
 impl<'a> Validator<'a> {
     /// Creates a validator of a tool at a part. Allowances for surfaces that this tool does not have are
@@ -161,9 +161,10 @@ impl<'a> Validator<'a> {
             certifier = certifier.with_allowance(surface, *depth)?;
         }
         let ids = (0..surfaces.len()).filter(|index| !surfaces[*index].cutting);
-        let body = ids.map(SurfaceId).collect();
-        let (least, fine) = (rules.niceness, rules.tolerance * FINE);
-        Ok(Validator { certifier, body, least, fine })
+        let non_cutting = ids.map(SurfaceId).collect();
+        let (min_niceness, bound_tolerance) =
+            (rules.niceness, rules.tolerance * BOUND_TOLERANCE_FRACTION);
+        Ok(Validator { certifier, non_cutting, min_niceness, bound_tolerance })
     }
 
     /// Returns whether it is proved that no surface of the tool is deeper in the part than allowed. A pose that
@@ -178,25 +179,25 @@ impl<'a> Validator<'a> {
     /// as it is recorded, by tip and axis without spin. `tool` is the tool's index in the map's list, and
     /// `niceness` the least of the contact points.
     pub fn record(&mut self, tool: u16, pose: &Pose, niceness: f64) -> Option<PostureRecord> {
-        if niceness.is_nan() || niceness <= self.least {
+        if niceness.is_nan() || niceness <= self.min_niceness {
             return None;
         }
         let (tip, axis) = (pose.tip().into(), pose.axis().into());
         let mut record =
             PostureRecord { tool, tip, axis, niceness, depth: 0.0, clearance: f64::INFINITY };
-        let told = record.pose().ok()?;
-        if !self.accepts(&told) {
+        let recorded_pose = record.pose().ok()?;
+        if !self.accepts(&recorded_pose) {
             return None;
         }
-        self.measure(&mut record, &told);
+        self.measure(&mut record, &recorded_pose);
         Some(record)
     }
 
     /// Sets the proved bounds of a record: the depth from above, and the clearance of the surfaces that do not
     /// cut from below.
     pub(super) fn measure(&mut self, record: &mut PostureRecord, pose: &Pose) {
-        record.depth = self.certifier.deepest(pose, self.fine).depth.high;
-        let clearance = self.certifier.clearance_of(&self.body, pose, self.fine);
+        record.depth = self.certifier.deepest(pose, self.bound_tolerance).depth.high;
+        let clearance = self.certifier.clearance_of(&self.non_cutting, pose, self.bound_tolerance);
         record.clearance = clearance.expect("surfaces of the tool").distance.low;
     }
 }

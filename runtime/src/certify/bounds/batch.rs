@@ -17,7 +17,7 @@ pub(crate) struct Batch {
     /// First relative to the tip in the part's frame and unit, then in the tool's frame and unit.
     pub(crate) corners: [[Lanes; 3]; 3],
     pub(crate) bounds: Lanes,
-    places: [Lanes; 3],
+    points: [Lanes; 3],
 }
 
 impl Batch {
@@ -61,8 +61,8 @@ impl Batch {
         self.indices[lane]
     }
 
-    pub(crate) fn place(&self, lane: usize) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.places[axis][lane])
+    pub(crate) fn point(&self, lane: usize) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.points[axis][lane])
     }
 
     pub(crate) fn corners(&self, lane: usize) -> [[f64; 3]; 3] {
@@ -86,32 +86,33 @@ impl Batch {
         }
     }
 
-    /// Bounds the depths. A bound of at most `wanted` need not be tight.
-    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
-        on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
+    /// Bounds the depths. A bound of at most `threshold` need not be tight.
+    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, threshold: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, threshold));
         // Without vector instructions nothing is known until the edges are searched.
         self.bounds = [f64::INFINITY; LANES];
-        self.places = self.corners[0];
+        self.points = self.corners[0];
     }
 
     #[inline(always)]
-    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, wanted: f64) {
-        let (bound, place) = hull.triangles(simd, &self.load_corners(simd), wanted, None);
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
+        let (bound, point) = hull.triangles(simd, &self.load_corners(simd), threshold, None);
         bound.store_slice(&mut self.bounds);
-        store(&mut self.places, place);
+        store(&mut self.points, point);
     }
 
     /// Tightens the bounds, with directions from the points where the depth may be reached.
-    pub(crate) fn closer(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
-        on_vectors!(level, simd => self.closer_on(simd, hull, wanted));
+    pub(crate) fn refine(&mut self, level: Level, hull: &Hull<f64>, threshold: f64) {
+        on_vectors!(level, simd => self.refine_on(simd, hull, threshold));
     }
 
     #[inline(always)]
-    fn closer_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, wanted: f64) {
-        let places = load(simd, &self.places);
-        let (bound, place) = hull.triangles(simd, &self.load_corners(simd), wanted, Some(&places));
+    fn refine_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
+        let points = load(simd, &self.points);
+        let (bound, point) =
+            hull.triangles(simd, &self.load_corners(simd), threshold, Some(&points));
         f64x8::from_slice(simd, &self.bounds).min(bound).store_slice(&mut self.bounds);
-        store(&mut self.places, place);
+        store(&mut self.points, point);
     }
 
     #[inline(always)]

@@ -24,7 +24,7 @@ impl Node {
 
     /// Returns the flat faces that contain all of its triangles, if these are few.
     pub(crate) fn faces<'a>(&self, bvh: &'a TriangleBvh) -> Option<&'a [u32]> {
-        bvh.flats.of_node(self.level as usize, self.index as usize)
+        bvh.coplanar_faces.of_node(self.level as usize, self.index as usize)
     }
 
     /// Returns half the diagonal of its box, in the tree's unit; infinity for the root.
@@ -82,31 +82,31 @@ impl Node {
 #[derive(Default)]
 pub(crate) struct Descent {
     stack: Vec<Node>,
-    some: Vec<u32>,
+    indices: Vec<u32>,
     /// True once the traversal has begun.
-    looked: bool,
+    started: bool,
 }
 
 /// An upper bound of depth, or of a negative distance, in boxes.
 pub(crate) trait BoxBounds {
-    /// Returns the bounds of 16 boxes; absent boxes have NaN centres. A bound of at most `wanted` need not be tight.
+    /// Returns the bounds of 16 boxes; absent boxes have NaN centres. A bound of at most `threshold` need not be tight.
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
         boxes: &Boxes,
         view: &PoseTransform,
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S>;
 }
 
 /// Such a bound in boxes and in triangles.
 pub(crate) trait Bounds: BoxBounds {
-    /// Returns the bounds of 16 triangles in the tool's frame. A bound of at most `wanted` need not be tight.
+    /// Returns the bounds of 16 triangles in the tool's frame. A bound of at most `threshold` need not be tight.
     fn of_triangles<S: Simd>(
         &self,
         simd: S,
         corners: &[LaneVector<f32x16<S>>; 3],
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S>;
 }
 
@@ -185,18 +185,18 @@ pub(crate) type DescentInput<'a, B> = (&'a TriangleBvh, &'a B, &'a PoseTransform
 impl Descent {
     pub(crate) fn clear(&mut self) {
         self.stack.clear();
-        self.looked = false;
+        self.started = false;
     }
 
     /// Pushes the root.
     pub(crate) fn begin(&mut self) {
         self.stack.push(Node { level: 0, index: 0, bound: f32::INFINITY });
-        self.looked = true;
+        self.started = true;
     }
 
     /// Returns whether the traversal has begun.
-    pub(crate) fn looked(&self) -> bool {
-        self.looked
+    pub(crate) fn started(&self) -> bool {
+        self.started
     }
 
     pub(crate) fn pop(&mut self) -> Option<Node> {
@@ -204,39 +204,39 @@ impl Descent {
     }
 
     /// Returns a triangle and those next to it on the stack: up to eight in all. The others have bounds that exceed
-    /// `wanted`.
+    /// `threshold`.
     pub(crate) fn triangles(
         &mut self,
         bvh: &TriangleBvh,
         first: Node,
-        wanted: f32,
+        threshold: f32,
     ) -> &mut Vec<u32> {
-        self.some.clear();
-        self.some.push(first.index);
-        while self.some.len() < LANES
+        self.indices.clear();
+        self.indices.push(first.index);
+        while self.indices.len() < LANES
             && let Some(next) = self.stack.pop_if(|node| node.is_triangle(bvh))
         {
-            if next.bound > wanted || next.bound.is_nan() {
-                self.some.push(next.index);
+            if next.bound > threshold || next.bound.is_nan() {
+                self.indices.push(next.index);
             }
         }
-        &mut self.some
+        &mut self.indices
     }
 
-    /// Pushes the children of a node whose bounds exceed `wanted`.
+    /// Pushes the children of a node whose bounds exceed `threshold`.
     pub(crate) fn open<B: Bounds>(
         &mut self,
         level: Level,
         seen: DescentInput<'_, B>,
         node: Node,
-        wanted: f32,
+        threshold: f32,
     ) {
         let bvh = seen.0;
         let mut bounds = [node.bound; WIDTH];
         let hits = if node.is_leaf(bvh) {
-            of_leaf(level, seen, node, wanted, &mut bounds)
+            of_leaf(level, seen, node, threshold, &mut bounds)
         } else {
-            of_children(level, seen, node, wanted, &mut bounds)
+            of_children(level, seen, node, threshold, &mut bounds)
         };
         self.take(bvh, node, hits, &bounds);
     }
@@ -267,21 +267,21 @@ impl Descent {
     }
 }
 
-/// Returns a bit mask of the bounds that are above `wanted` or NaN.
+/// Returns a bit mask of the bounds that are above `threshold` or NaN.
 #[inline(always)]
-pub(crate) fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
-    !bound.simd_le(wanted).to_bitmask() as u32
+pub(crate) fn above<S: Simd>(bound: f32x16<S>, threshold: f32) -> u32 {
+    !bound.simd_le(threshold).to_bitmask() as u32
 }
 
-/// Returns a bit mask of the children of an inner node whose bounds may exceed `wanted`.
+/// Returns a bit mask of the children of an inner node whose bounds may exceed `threshold`.
 pub(crate) fn of_children<B: BoxBounds>(
     level: Level,
     seen: DescentInput<'_, B>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    dispatch!(level, simd => of_boxes(simd, seen, node, wanted, bounds))
+    dispatch!(level, simd => of_boxes(simd, seen, node, threshold, bounds))
 }
 
 #[inline(always)]
@@ -289,13 +289,13 @@ fn of_boxes<S: Simd, B: BoxBounds>(
     simd: S,
     (bvh, bounded, view): DescentInput<'_, B>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
     let boxes = &bvh.levels[node.level as usize][node.index as usize];
-    let bound = bounded.of_boxes(simd, boxes, view, wanted);
+    let bound = bounded.of_boxes(simd, boxes, view, threshold);
     bound.store_slice(bounds);
-    above(bound, wanted)
+    above(bound, threshold)
 }
 
 /// The same for a leaf. Without vector instructions its triangles keep the leaf's bound.
@@ -303,10 +303,10 @@ fn of_leaf<B: Bounds>(
     level: Level,
     seen: DescentInput<'_, B>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted, bounds));
+    on_vectors!(level, simd => of_leaf_on(simd, seen, node, threshold, bounds));
     u32::MAX
 }
 
@@ -315,11 +315,11 @@ fn of_leaf_on<S: Simd, B: Bounds>(
     simd: S,
     (bvh, bounded, view): DescentInput<'_, B>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
     let corners = node.corners(simd, bvh, view);
-    let bound = bounded.of_triangles(simd, &corners, wanted);
+    let bound = bounded.of_triangles(simd, &corners, threshold);
     bound.store_slice(bounds);
-    above(bound, wanted)
+    above(bound, threshold)
 }

@@ -3,8 +3,8 @@
 use crate::bvh::{Boxes, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{
-    Clip, LaneVector, NearestToAxis, Real, across, beyond, choose, direction, distances, from_ring,
-    least, most, under_both,
+    Clip, LaneVector, NearestToAxis, Real, across, beyond, choose, direction_from_axis, distances,
+    from_ring, max3, min3, under_both,
 };
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
@@ -70,7 +70,7 @@ impl<R: Real> Hull<R> {
                 // For an arc that does not reach the axis, the feet next to it are not on the surface.
                 let to_axis = d0.min(d1) == 0.0;
                 let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
-                let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
+                let rings = section.reflex(slab).map(|(point, level)| (point.map(R::of), level));
                 let [low, high] = [from - error, to + error].map(R::of);
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
                 Some(HullSlab { low, high, planes, hole, ball, rings: rings.collect() })
@@ -101,14 +101,15 @@ impl<R: Real> Hull<R> {
     /// Creates a hull of the regions that some features bound, for points no farther from these features than the
     /// hull is grown.
     pub(crate) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
-        let side =
-            |slab: &section::SectionSlab| owners.own(slab.side).then_some([slab.low, slab.high]);
+        let side = |slab: &section::SectionSlab| {
+            owners.is_owned(slab.side).then_some([slab.low, slab.high])
+        };
         let zones: Vec<_> = section.slabs.iter().map(side).collect();
         let mut hull = Hull::new(section, &zones, error);
         // A level feature is the side of no slab.
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
         for (index, feature) in section.features.iter().enumerate() {
-            if owners.own(index) && !sides.contains(&index) {
+            if owners.is_owned(index) && !sides.contains(&index) {
                 let [[d0, z0], [d1, z1]] = feature.ends;
                 hull.slabs.push(HullSlab {
                     low: R::of(z0.min(z1) - error),
@@ -124,51 +125,51 @@ impl<R: Real> Hull<R> {
     }
 
     /// Returns at least the depth of every point of each triangle, up to rounding, and the point where depth may be
-    /// greatest. Absent triangles have NaN coordinates. A bound of at most `wanted` need not be tight. Given such
-    /// points of an earlier call in `again`, the bounds are taken in their directions.
+    /// greatest. Absent triangles have NaN coordinates. A bound of at most `threshold` need not be tight. Given such
+    /// points of an earlier call in `refine_at`, the bounds are taken in their directions.
     #[inline(always)]
     pub(crate) fn triangles<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         corners: &[LaneVector<V>; 3],
-        wanted: R,
-        again: Option<&LaneVector<V>>,
+        threshold: R,
+        refine_at: Option<&LaneVector<V>>,
     ) -> (V, LaneVector<V>) {
         let [a, b, c] = corners;
-        let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
+        let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
         let near = NearestToAxis::to_axis(simd, corners);
         // In that direction no corner reaches farther out than its distance from the axis.
-        let out = across(corners, &near.way);
-        let wanted = V::splat(simd, wanted);
+        let out = across(corners, &near.direction);
+        let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
-        let mut place = near.place;
+        let mut point = near.point;
         for slab in &self.slabs {
             let (from, to) = (V::splat(simd, slab.low), V::splat(simd, slab.high));
-            let here = low.simd_le(to) & high.simd_ge(from);
+            let in_slab = low.simd_le(to) & high.simd_ge(from);
             // The upright plane rules out most slabs.
             let [p, q, r] = under_plane(simd, corners, &out, slab.planes[0]);
-            let outside = most(p, q, r);
-            if !(here & !outside.simd_le(wanted)).any_true() {
-                bound = here.select(bound.max(outside), bound);
+            let outside = max3(p, q, r);
+            if !(in_slab & !outside.simd_le(threshold)).any_true() {
+                bound = in_slab.select(bound.max(outside), bound);
                 continue;
             }
             let depth = slab.under_planes(simd, corners, &out, &None);
-            let open = here & depth.simd_gt(wanted);
+            let open = in_slab & depth.simd_gt(threshold);
             let (depth, deepest) = if open.any_true() {
-                slab.triangles(simd, corners, &near, open, again)
+                slab.triangles(simd, corners, &near, open, refine_at)
             } else {
-                (depth, near.place)
+                (depth, near.point)
             };
-            let better = here & depth.simd_gt(bound);
+            let better = in_slab & depth.simd_gt(bound);
             bound = better.select(depth, bound);
-            place = choose(better, &deepest, &place);
+            point = choose(better, &deepest, &point);
         }
-        (bound, place)
+        (bound, point)
     }
 }
 
 /// The maximum number of linear bounds of a slab for a triangle.
-const BOUNDS: usize = 8;
+const MAX_BOUNDS: usize = 8;
 
 /// The cut of triangles by a slab, if there is any.
 type Part<V, M> = Option<Clip<V, M>>;
@@ -185,7 +186,7 @@ impl<R: Real> HullSlab<R> {
     ) -> V {
         let mut depth = V::splat(simd, R::of(f64::INFINITY));
         for plane in &self.planes {
-            depth = depth.min(most_of(simd, part, under_plane(simd, corners, out, *plane)));
+            depth = depth.min(max_over(simd, part, under_plane(simd, corners, out, *plane)));
         }
         depth
     }
@@ -198,34 +199,34 @@ impl<R: Real> HullSlab<R> {
         corners: &[LaneVector<V>; 3],
         near: &NearestToAxis<V>,
         open: V::Mask,
-        again: Option<&LaneVector<V>>,
+        refine_at: Option<&LaneVector<V>>,
     ) -> (V, LaneVector<V>) {
         let zero = V::splat(simd, R::of(0.0));
         let (from, to) = (V::splat(simd, self.low), V::splat(simd, self.high));
         // If the point nearest to the axis is beyond the slab, the piece in the slab is nearest at that end.
-        let (mut deepest, mut way, mut part) = (near.place, near.way, None);
+        let (mut deepest, mut direction, mut part) = (near.point, near.direction, None);
         let beyond_it = open & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
         if beyond_it.any_true() {
             let clip = Clip::new(simd, corners, [self.low, self.high]);
             let end = clip.at_end(simd, corners, deepest[2].simd_gt(to));
             deepest = choose(beyond_it, &end, &deepest);
-            way = direction(simd, &[deepest[0], deepest[1], zero], zero);
+            direction = direction_from_axis(simd, &[deepest[0], deepest[1], zero], zero);
             part = Some(clip);
         }
-        if let Some(place) = again {
-            let within = place[2].simd_ge(from) & place[2].simd_le(to);
-            let other = direction(simd, &[place[0], place[1], zero], zero);
-            way = choose(within, &other, &way);
+        if let Some(point) = refine_at {
+            let within = point[2].simd_ge(from) & point[2].simd_le(to);
+            let other = direction_from_axis(simd, &[point[0], point[1], zero], zero);
+            direction = choose(within, &other, &direction);
         }
-        let out = across(corners, &way);
+        let out = across(corners, &direction);
         let mut depth = self.under_planes(simd, corners, &out, &part);
         // Bounds at the corners. Between the corners each is at most linear.
-        let mut bounds = [[zero; 3]; BOUNDS];
+        let mut bounds = [[zero; 3]; MAX_BOUNDS];
         let mut count = 0;
         if let Some([z, radius]) = self.ball {
             let (centre, radius) = (V::splat(simd, z), V::splat(simd, radius));
-            let ball = NearestToAxis::to_place(simd, corners, z);
-            let (mut foot, mut way) = (ball.place, ball.way);
+            let ball = NearestToAxis::to_point(simd, corners, z);
+            let (mut foot, mut direction) = (ball.point, ball.direction);
             let beyond_it = open & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
             if beyond_it.any_true() {
                 if part.is_none() {
@@ -234,55 +235,55 @@ impl<R: Real> HullSlab<R> {
                 if let Some(clip) = &part {
                     let end = clip.at_end(simd, corners, foot[2].simd_gt(to));
                     foot = choose(beyond_it, &end, &foot);
-                    way = direction(simd, &foot, centre);
+                    direction = direction_from_axis(simd, &foot, centre);
                 }
             }
-            if let Some(place) = again {
-                let within = place[2].simd_ge(from) & place[2].simd_le(to);
-                way = choose(within, &direction(simd, place, centre), &way);
+            if let Some(point) = refine_at {
+                let within = point[2].simd_ge(from) & point[2].simd_le(to);
+                direction = choose(within, &direction_from_axis(simd, point, centre), &direction);
             }
-            let beyond = beyond(simd, corners, &way, z);
-            let here = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
-            let beneath = most_of(simd, &part, here);
+            let beyond = beyond(simd, corners, &direction, z);
+            let in_slab = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
+            let beneath = max_over(simd, &part, in_slab);
             let under = beneath.simd_lt(depth);
             depth = under.select(beneath, depth);
             deepest = choose(under, &foot, &deepest);
-            bounds[count] = here;
+            bounds[count] = in_slab;
             count += 1;
         }
         if self.hole.is_some() || !self.rings.is_empty() {
             let far = distances(corners);
             if let Some(hole) = self.hole {
                 let hole = V::splat(simd, hole);
-                let here = [far[0] - hole, far[1] - hole, far[2] - hole];
-                depth = depth.min(most_of(simd, &part, here));
-                if again.is_some() {
-                    bounds[count] = here;
+                let in_slab = [far[0] - hole, far[1] - hole, far[2] - hole];
+                depth = depth.min(max_over(simd, &part, in_slab));
+                if refine_at.is_some() {
+                    bounds[count] = in_slab;
                     count += 1;
                 }
             }
             for ring in &self.rings {
-                let here = from_ring(simd, corners, (&out, &far), *ring);
-                depth = depth.min(most_of(simd, &part, here));
-                if again.is_some() && count < BOUNDS {
-                    bounds[count] = here;
+                let in_slab = from_ring(simd, corners, (&out, &far), *ring);
+                depth = depth.min(max_over(simd, &part, in_slab));
+                if refine_at.is_some() && count < MAX_BOUNDS {
+                    bounds[count] = in_slab;
                     count += 1;
                 }
             }
         }
-        if again.is_some() {
+        if refine_at.is_some() {
             for plane in &self.planes {
-                if count < BOUNDS {
+                if count < MAX_BOUNDS {
                     bounds[count] = under_plane(simd, corners, &out, *plane);
                     count += 1;
                 }
             }
             for first in 0..count - 1 {
                 for second in first + 1..count {
-                    let (both, place) = under_both(zero, corners, &bounds[first], &bounds[second]);
+                    let (both, point) = under_both(zero, corners, &bounds[first], &bounds[second]);
                     let under = both.simd_lt(depth);
                     depth = under.select(both, depth);
-                    deepest = choose(under, &place, &deepest);
+                    deepest = choose(under, &point, &deepest);
                 }
             }
         }
@@ -296,24 +297,25 @@ fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[LaneVector<V>; 3],
     out: &[V; 3],
-    [nd, nz, most]: [R; 3],
+    [nd, nz, max3]: [R; 3],
 ) -> [V; 3] {
-    let (nd, nz, most) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, most));
+    let (nd, nz, max3) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, max3));
     [
-        most - (out[0] * nd + a[2] * nz),
-        most - (out[1] * nd + b[2] * nz),
-        most - (out[2] * nd + c[2] * nz),
+        max3 - (out[0] * nd + a[2] * nz),
+        max3 - (out[1] * nd + b[2] * nz),
+        max3 - (out[2] * nd + c[2] * nz),
     ]
 }
 
 impl Hull<f64> {
     /// Returns at least the depth of every point of a ring.
     pub(crate) fn of_ring(&self, ring: &NodeRing) -> f64 {
-        let here = self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
-        let depths = here.map(|slab| {
+        let in_slab =
+            self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
+        let depths = in_slab.map(|slab| {
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
-            let planes = slab.planes.iter().map(|[nd, nz, most]| {
-                most - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
+            let planes = slab.planes.iter().map(|[nd, nz, max3]| {
+                max3 - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
             });
             let ball = slab.ball.map(|[z, radius]| {
                 let along = z.max(low).min(high) - z;
@@ -326,31 +328,31 @@ impl Hull<f64> {
 }
 
 impl Hull<f32> {
-    /// Returns at least the depth of every point of the rings. A bound of at most `wanted` need not be tight.
+    /// Returns at least the depth of every point of the rings. A bound of at most `threshold` need not be tight.
     #[inline(always)]
     pub(crate) fn of_rings<S: Simd>(
         &self,
         simd: S,
         rings: &BoxRings<f32x16<S>>,
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S> {
         let BoxRings { near, far, low, high } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
         for slab in &self.slabs {
-            let here = low.simd_le(slab.high) & high.simd_ge(slab.low);
+            let in_slab = low.simd_le(slab.high) & high.simd_ge(slab.low);
             let low = low.max(f32x16::splat(simd, slab.low));
             let high = high.min(f32x16::splat(simd, slab.high));
             // The upright plane rules out most slabs for all rings.
-            let [nd, _, most] = slab.planes[0];
-            let mut depth = f32x16::splat(simd, most) - near * nd;
-            if !(here & !depth.simd_le(wanted)).any_true() {
-                bound = here.select(bound.max(depth), bound);
+            let [nd, _, max3] = slab.planes[0];
+            let mut depth = f32x16::splat(simd, max3) - near * nd;
+            if !(in_slab & !depth.simd_le(threshold)).any_true() {
+                bound = in_slab.select(bound.max(depth), bound);
                 continue;
             }
-            for &[nd, nz, most] in &slab.planes[1..] {
+            for &[nd, nz, max3] in &slab.planes[1..] {
                 let z = if nz > 0.0 { low } else { high };
-                depth = depth.min(f32x16::splat(simd, most) - near * nd - z * nz);
+                depth = depth.min(f32x16::splat(simd, max3) - near * nd - z * nz);
             }
             if let Some([z, radius]) = slab.ball {
                 let centre = f32x16::splat(simd, z);
@@ -368,7 +370,7 @@ impl Hull<f32> {
                 let along = (low - z).abs().max((high - z).abs());
                 depth = depth.min((across * across + along * along).sqrt());
             }
-            bound = here.select(bound.max(depth), bound);
+            bound = in_slab.select(bound.max(depth), bound);
         }
         bound
     }
@@ -382,9 +384,9 @@ impl BoxBounds for Hull<f32> {
         simd: S,
         boxes: &Boxes,
         view: &PoseTransform,
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S> {
-        self.of_rings(simd, &rings(simd, boxes, view, None), wanted)
+        self.of_rings(simd, &rings(simd, boxes, view, None), threshold)
     }
 }
 
@@ -394,28 +396,28 @@ impl Bounds for Hull<f32> {
         &self,
         simd: S,
         corners: &[LaneVector<f32x16<S>>; 3],
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S> {
-        let (mut bound, place) = self.triangles(simd, corners, wanted, None);
-        if bound.simd_gt(wanted).to_bitmask().count_ones() > SEVERAL {
-            bound = bound.min(self.triangles(simd, corners, wanted, Some(&place)).0);
+        let (mut bound, point) = self.triangles(simd, corners, threshold, None);
+        if bound.simd_gt(threshold).to_bitmask().count_ones() > MAX_OPEN_LANES {
+            bound = bound.min(self.triangles(simd, corners, threshold, Some(&point)).0);
         }
         bound
     }
 }
 
 /// Above this number of open triangles it pays to bound all of them again.
-const SEVERAL: u32 = 2;
+const MAX_OPEN_LANES: u32 = 2;
 
 /// Returns the maximum of a linear function on a triangle, or on its cut by a slab.
 #[inline(always)]
-fn most_of<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+fn max_over<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     part: &Part<V, V::Mask>,
     [a, b, c]: [V; 3],
 ) -> V {
     match part {
-        Some(clip) => clip.most(simd, [a, b, c]),
-        None => most(a, b, c),
+        Some(clip) => clip.max3(simd, [a, b, c]),
+        None => max3(a, b, c),
     }
 }

@@ -14,9 +14,9 @@ pub(crate) trait Real: Copy + PartialOrd {
     /// The length to which unit vectors are scaled, so that rounding makes none longer than 1. With unit roundoff u,
     /// the computed length errs by 3u below the root and u by the root. The quotient by it and the product with that
     /// add u each, 5u in total; this is 1 - 8u.
-    const SHORT: Self;
+    const SHRINK: Self;
     /// The smallest number to divide by.
-    const LEAST: Self;
+    const MIN_POSITIVE_VALUE: Self;
 
     fn of(value: f64) -> Self;
 
@@ -25,8 +25,8 @@ pub(crate) trait Real: Copy + PartialOrd {
 }
 
 impl Real for f32 {
-    const SHORT: f32 = 1.0 - 4.0 * f32::EPSILON;
-    const LEAST: f32 = f32::MIN_POSITIVE;
+    const SHRINK: f32 = 1.0 - 4.0 * f32::EPSILON;
+    const MIN_POSITIVE_VALUE: f32 = f32::MIN_POSITIVE;
 
     fn of(value: f64) -> f32 {
         value as f32
@@ -38,8 +38,8 @@ impl Real for f32 {
 }
 
 impl Real for f64 {
-    const SHORT: f64 = 1.0 - 4.0 * f64::EPSILON;
-    const LEAST: f64 = f64::MIN_POSITIVE;
+    const SHRINK: f64 = 1.0 - 4.0 * f64::EPSILON;
+    const MIN_POSITIVE_VALUE: f64 = f64::MIN_POSITIVE;
 
     fn of(value: f64) -> f64 {
         value
@@ -52,18 +52,18 @@ impl Real for f64 {
 
 /// The point of each triangle nearest to the axis or to a point on it.
 pub(crate) struct NearestToAxis<V> {
-    pub(crate) place: LaneVector<V>,
+    pub(crate) point: LaneVector<V>,
     /// A direction away from the axis or the point, no longer than 1; 0 where that is on the triangle.
-    pub(crate) way: LaneVector<V>,
+    pub(crate) direction: LaneVector<V>,
 }
 
 #[inline(always)]
-pub(crate) fn least<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+pub(crate) fn min3<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
     a.min(b).min(c)
 }
 
 #[inline(always)]
-pub(crate) fn most<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+pub(crate) fn max3<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
     a.max(b).max(c)
 }
 
@@ -101,11 +101,11 @@ fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     b: &LaneVector<V>,
     level: bool,
 ) -> (LaneVector<V>, V) {
-    let way = minus(b, a);
-    let length = product(&way, &way, level).max(V::splat(simd, R::LEAST));
-    let at = (-product(a, &way, level) / length).max(V::splat(simd, R::of(0.0)));
+    let direction = minus(b, a);
+    let length = product(&direction, &direction, level).max(V::splat(simd, R::MIN_POSITIVE_VALUE));
+    let at = (-product(a, &direction, level) / length).max(V::splat(simd, R::of(0.0)));
     let at = at.min(V::splat(simd, R::of(1.0)));
-    let p = [a[0] + at * way[0], a[1] + at * way[1], a[2] + at * way[2]];
+    let p = [a[0] + at * direction[0], a[1] + at * direction[1], a[2] + at * direction[2]];
     (p, product(&p, &p, level))
 }
 
@@ -142,21 +142,21 @@ impl<V: Copy> NearestToAxis<V> {
         V: SimdFloat<S, Element = R>,
     {
         let zero = V::splat(simd, R::of(0.0));
-        let (place, square) = on_edges(simd, [a, b, c], true);
+        let (point, square) = on_edges(simd, [a, b, c], true);
         // The axis passes through triangles that have it on the same side of all edges.
         let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
         let through = (u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero))
             | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
         let z = (u * a[2] + v * b[2] + w * c[2]) / (u + v + w);
         let far = square.sqrt();
-        let scale = (through | far.simd_le(zero)).select(zero, V::splat(simd, R::SHORT) / far);
-        let way = [place[0] * scale, place[1] * scale, zero];
-        NearestToAxis { place: choose(through, &[zero, zero, z], &place), way }
+        let scale = (through | far.simd_le(zero)).select(zero, V::splat(simd, R::SHRINK) / far);
+        let direction = [point[0] * scale, point[1] * scale, zero];
+        NearestToAxis { point: choose(through, &[zero, zero, z], &point), direction }
     }
 
     /// Computes the points of triangles nearest to a point on the axis.
     #[inline(always)]
-    pub(crate) fn to_place<S: Simd, R: Real>(
+    pub(crate) fn to_point<S: Simd, R: Real>(
         simd: S,
         [a, b, c]: &[LaneVector<V>; 3],
         z: R,
@@ -183,12 +183,12 @@ impl<V: Copy> NearestToAxis<V> {
             a[1] + v * ab[1] + w * ac[1],
             a[2] + v * ab[2] + w * ac[2],
         ];
-        let place = choose(within, &foot, &edge);
-        let far = dot(&place, &place).sqrt();
-        let scale = far.simd_gt(zero).select(V::splat(simd, R::SHORT) / far, zero);
+        let point = choose(within, &foot, &edge);
+        let far = dot(&point, &point).sqrt();
+        let scale = far.simd_gt(zero).select(V::splat(simd, R::SHRINK) / far, zero);
         NearestToAxis {
-            place: [place[0], place[1], place[2] + centre],
-            way: [place[0] * scale, place[1] * scale, place[2] * scale],
+            point: [point[0], point[1], point[2] + centre],
+            direction: [point[0] * scale, point[1] * scale, point[2] * scale],
         }
     }
 }
@@ -230,21 +230,21 @@ impl<V: Copy, M: Copy> Clip<V, M> {
 
     /// Returns the maximum of a function that is linear on each triangle.
     #[inline(always)]
-    pub(crate) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
+    pub(crate) fn max3<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
     where
         V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
         let none = V::splat(simd, R::of(f64::NEG_INFINITY));
-        let mut most = none;
+        let mut max3 = none;
         for k in 0..3 {
             let (from, to) = (values[k], values[(k + 1) % 3]);
-            most = most.max(self.kept[k].select(from, none));
+            max3 = max3.max(self.kept[k].select(from, none));
             for (at, cut) in self.cuts[k] {
-                most = most.max(cut.select(from + at * (to - from), none));
+                max3 = max3.max(cut.select(from + at * (to - from), none));
             }
         }
-        most
+        max3
     }
 
     /// Returns the point nearest to the axis at the lower height, or at the upper height where the mask is set.
@@ -279,9 +279,10 @@ fn cut_at<S: Simd, V: SimdBase<S>>(
     [(low, at_low), (high, at_high)]: &[(V, V::Mask); 2],
     upper: V::Mask,
 ) -> (LaneVector<V>, V::Mask) {
-    let (at, way) = (upper.select(*high, *low), minus(to, from));
-    let place = [from[0] + at * way[0], from[1] + at * way[1], from[2] + at * way[2]];
-    (place, (upper & *at_high) | (!upper & *at_low))
+    let (at, direction) = (upper.select(*high, *low), minus(to, from));
+    let point =
+        [from[0] + at * direction[0], from[1] + at * direction[1], from[2] + at * direction[2]];
+    (point, (upper & *at_high) | (!upper & *at_low))
 }
 
 /// Returns the parameter at which the side from one height to another is cut at a third, and a mask of its
@@ -294,25 +295,29 @@ fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask)
 
 /// Returns the direction of a point from the point of the axis at height `z`, no longer than 1.
 #[inline(always)]
-pub(crate) fn direction<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+pub(crate) fn direction_from_axis<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    place: &LaneVector<V>,
+    point: &LaneVector<V>,
     z: V,
 ) -> LaneVector<V> {
     let zero = V::splat(simd, R::of(0.0));
-    let way = [place[0], place[1], place[2] - z];
-    let far = dot(&way, &way).sqrt();
-    let scale = far.simd_gt(zero).select(V::splat(simd, R::SHORT) / far, zero);
-    [way[0] * scale, way[1] * scale, way[2] * scale]
+    let direction = [point[0], point[1], point[2] - z];
+    let far = dot(&direction, &direction).sqrt();
+    let scale = far.simd_gt(zero).select(V::splat(simd, R::SHRINK) / far, zero);
+    [direction[0] * scale, direction[1] * scale, direction[2] * scale]
 }
 
 /// Returns how far out corners are in a direction across the axis.
 #[inline(always)]
 pub(crate) fn across<S: Simd, V: SimdBase<S>>(
     [a, b, c]: &[LaneVector<V>; 3],
-    way: &LaneVector<V>,
+    direction: &LaneVector<V>,
 ) -> [V; 3] {
-    [a[0] * way[0] + a[1] * way[1], b[0] * way[0] + b[1] * way[1], c[0] * way[0] + c[1] * way[1]]
+    [
+        a[0] * direction[0] + a[1] * direction[1],
+        b[0] * direction[0] + b[1] * direction[1],
+        c[0] * direction[0] + c[1] * direction[1],
+    ]
 }
 
 /// Returns how far out corners are in a direction from a point of the axis.
@@ -320,16 +325,16 @@ pub(crate) fn across<S: Simd, V: SimdBase<S>>(
 pub(crate) fn beyond<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     corners: &[LaneVector<V>; 3],
-    way: &LaneVector<V>,
+    direction: &LaneVector<V>,
     z: R,
 ) -> [V; 3] {
     let [a, b, c] = corners;
-    let out = across(corners, way);
+    let out = across(corners, direction);
     let centre = V::splat(simd, z);
     [
-        out[0] + (a[2] - centre) * way[2],
-        out[1] + (b[2] - centre) * way[2],
-        out[2] + (c[2] - centre) * way[2],
+        out[0] + (a[2] - centre) * direction[2],
+        out[1] + (b[2] - centre) * direction[2],
+        out[2] + (c[2] - centre) * direction[2],
     ]
 }
 
@@ -370,27 +375,30 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     first: &[V; 3],
     second: &[V; 3],
 ) -> (V, LaneVector<V>) {
-    let mut most = first[0].min(second[0]);
-    let mut place = corners[0];
+    let mut max3 = first[0].min(second[0]);
+    let mut point = corners[0];
     for k in 1..3 {
         let here = first[k].min(second[k]);
-        let more = here.simd_gt(most);
-        most = more.select(here, most);
-        place = choose(more, &corners[k], &place);
+        let more = here.simd_gt(max3);
+        max3 = more.select(here, max3);
+        point = choose(more, &corners[k], &point);
     }
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (from, to) = (first[k] - second[k], first[next] - second[next]);
         let (at, is) = cut(zero, from, to, zero);
-        let here = is.select(first[k] + at * (first[next] - first[k]), most);
-        let more = here.simd_gt(most);
-        most = more.select(here, most);
-        let way = minus(&corners[next], &corners[k]);
-        let on =
-            [corners[k][0] + at * way[0], corners[k][1] + at * way[1], corners[k][2] + at * way[2]];
-        place = choose(more, &on, &place);
+        let here = is.select(first[k] + at * (first[next] - first[k]), max3);
+        let more = here.simd_gt(max3);
+        max3 = more.select(here, max3);
+        let direction = minus(&corners[next], &corners[k]);
+        let on_edge_point = [
+            corners[k][0] + at * direction[0],
+            corners[k][1] + at * direction[1],
+            corners[k][2] + at * direction[2],
+        ];
+        point = choose(more, &on_edge_point, &point);
     }
-    (most, place)
+    (max3, point)
 }
 
 #[inline(always)]

@@ -2,7 +2,7 @@
 
 use crate::bvh::{Boxes, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
-use crate::certify::bounds::nearest::{LaneVector, NearestToAxis, across, least, most};
+use crate::certify::bounds::nearest::{LaneVector, NearestToAxis, across, max3, min3};
 use crate::certify::tool_model::feature::Feature;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::Section;
@@ -40,7 +40,7 @@ impl Shell {
         let own = |(index, feature): (usize, &Feature)| {
             // A level feature has no slab of its own. It needs none if all features are owned.
             let level = !section.slabs.iter().any(|slab| slab.side == index);
-            (owners.own(index) && !(owners.all() && level)).then(|| {
+            (owners.is_owned(index) && !(owners.all() && level)).then(|| {
                 let [[d0, z0], [d1, z1]] = feature.ends;
                 let ball = if level { None } else { feature.ball(section.size) };
                 ShellSlab {
@@ -81,7 +81,7 @@ impl BoxBounds for Shell {
         simd: S,
         boxes: &Boxes,
         view: &PoseTransform,
-        _wanted: f32,
+        _threshold: f32,
     ) -> f32x16<S> {
         self.bound(simd, &rings(simd, boxes, view, None))
     }
@@ -93,13 +93,13 @@ impl Bounds for Shell {
         &self,
         simd: S,
         corners: &[LaneVector<f32x16<S>>; 3],
-        _wanted: f32,
+        _threshold: f32,
     ) -> f32x16<S> {
         let [a, b, c] = corners;
         let near = NearestToAxis::to_axis(simd, corners);
-        let [out_a, out_b, out_c] = across(corners, &near.way);
-        let near = least(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
-        let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
+        let [out_a, out_b, out_c] = across(corners, &near.direction);
+        let near = min3(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
+        let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
         self.bound(simd, &BoxRings { near, far: near, low, high })
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
-    Clip, LaneVector, NearestToAxis, Real, across, choose, direction, most, to_ring,
+    Clip, LaneVector, NearestToAxis, Real, across, choose, direction_from_axis, max3, to_ring,
 };
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
@@ -14,32 +14,34 @@ pub(crate) type Ends<V> = [LaneVector<V>; 6];
 
 impl<R: Real> Hull<R> {
     /// Returns at least the depth of every point no farther than `grow` from the convex hulls of triangles at both
-    /// ends of their motion. `middle` holds the triangles in between. A bound of at most `wanted` need not be tight.
+    /// ends of their motion. `middle` holds the triangles in between. A bound of at most `threshold` need not be tight.
     #[inline(always)]
     pub(crate) fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         (ends, middle): (&Ends<V>, &[LaneVector<V>; 3]),
         grow: V,
-        wanted: R,
+        threshold: R,
     ) -> V {
         let [a, b, c, d, e, f] = ends;
         let low = a[2].min(b[2]).min(c[2]).min(d[2].min(e[2]).min(f[2]));
-        let high = most(a[2], b[2], c[2]).max(most(d[2], e[2], f[2]));
+        let high = max3(a[2], b[2], c[2]).max(max3(d[2], e[2], f[2]));
         let zero = V::splat(simd, R::of(0.0));
-        let goes = half_way(simd, ends);
-        let near = slide(simd, &NearestToAxis::to_axis(simd, middle).place, &goes, None);
-        let out = outward(ends, &direction(simd, &[near[0], near[1], zero], zero));
-        let wanted = V::splat(simd, wanted);
+        let half_displacement = half_displacement_of(simd, ends);
+        let near =
+            slide(simd, &NearestToAxis::to_axis(simd, middle).point, &half_displacement, None);
+        let out = outward(ends, &direction_from_axis(simd, &[near[0], near[1], zero], zero));
+        let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         for slab in &self.slabs {
             let from = V::splat(simd, slab.low) - grow;
             let to = V::splat(simd, slab.high) + grow;
             let here = low.simd_le(to) & high.simd_ge(from);
             let mut depth = slab.under_planes_of(simd, &out, &heights(ends), grow);
-            let open = here & depth.simd_gt(wanted);
+            let open = here & depth.simd_gt(threshold);
             if open.any_true() {
-                let closer = slab.swept(simd, (ends, middle, &goes), &near, (from, to), grow);
+                let closer =
+                    slab.swept(simd, (ends, middle, &half_displacement), &near, (from, to), grow);
                 depth = depth.min(closer);
             }
             bound = here.select(bound.max(depth), bound);
@@ -63,11 +65,11 @@ impl<R: Real> HullSlab<R> {
         for &[nd, nz, c] in &self.planes {
             let steep = V::splat(simd, R::norm(nd, nz));
             let (nd, nz) = (V::splat(simd, nd), V::splat(simd, nz));
-            let mut least = out[0] * nd + heights[0] * nz;
+            let mut min_extent = out[0] * nd + heights[0] * nz;
             for k in 1..6 {
-                least = least.min(out[k] * nd + heights[k] * nz);
+                min_extent = min_extent.min(out[k] * nd + heights[k] * nz);
             }
-            depth = depth.min(V::splat(simd, c) + grow * steep - least);
+            depth = depth.min(V::splat(simd, c) + grow * steep - min_extent);
         }
         depth
     }
@@ -77,53 +79,59 @@ impl<R: Real> HullSlab<R> {
     fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        (ends, middle, goes): (&Ends<V>, &[LaneVector<V>; 3], &LaneVector<V>),
+        (ends, middle, half_displacement): (&Ends<V>, &[LaneVector<V>; 3], &LaneVector<V>),
         near: &LaneVector<V>,
         (from, to): (V, V),
         grow: V,
     ) -> V {
         let zero = V::splat(simd, R::of(0.0));
         let clip = Clip::new(simd, middle, [self.low, self.high]);
-        let place = within(simd, &clip, middle, (from, to), near);
-        let way = direction(simd, &[place[0], place[1], zero], zero);
-        let out = outward(ends, &way);
+        let point = within(simd, &clip, middle, (from, to), near);
+        let direction = direction_from_axis(simd, &[point[0], point[1], zero], zero);
+        let out = outward(ends, &direction);
         let heights = heights(ends);
         // Projected along the direction, the hull is plane. Its portion between the heights has its vertices at
         // corners between the heights and where it is cut.
         let [at_low, at_high] =
-            [least_at(simd, &out, &heights, from), least_at(simd, &out, &heights, to)];
-        let far = V::splat(simd, R::of(FAR));
+            [min_at(simd, &out, &heights, from), min_at(simd, &out, &heights, to)];
+        let far = V::splat(simd, R::of(SENTINEL));
         let (cut_low, cut_high) = (at_low.simd_lt(far), at_high.simd_lt(far));
         let mut depth = far;
         for &[nd, nz, c] in &self.planes {
             let steep = V::splat(simd, R::norm(nd, nz));
             let (nd, nz) = (V::splat(simd, nd), V::splat(simd, nz));
-            let mut least = cut_low.select(at_low * nd + from * nz, far);
-            least = cut_high.select(least.min(at_high * nd + to * nz), least);
+            let mut min_extent = cut_low.select(at_low * nd + from * nz, far);
+            min_extent = cut_high.select(min_extent.min(at_high * nd + to * nz), min_extent);
             for k in 0..6 {
                 let inside = heights[k].simd_ge(from) & heights[k].simd_le(to);
-                least = inside.select(least.min(out[k] * nd + heights[k] * nz), least);
+                min_extent =
+                    inside.select(min_extent.min(out[k] * nd + heights[k] * nz), min_extent);
             }
-            depth = depth.min(V::splat(simd, c) + grow * steep - least);
+            depth = depth.min(V::splat(simd, c) + grow * steep - min_extent);
         }
         if let Some([z, radius]) = self.ball {
             let centre = V::splat(simd, z);
-            let near =
-                slide(simd, &NearestToAxis::to_place(simd, middle, z).place, goes, Some(centre));
+            let near = slide(
+                simd,
+                &NearestToAxis::to_point(simd, middle, z).point,
+                half_displacement,
+                Some(centre),
+            );
             let foot = within(simd, &clip, middle, (from, to), &near);
-            let way = direction(simd, &foot, centre);
+            let direction = direction_from_axis(simd, &foot, centre);
             let mut beyond = [zero; 6];
             for k in 0..6 {
                 let [x, y, height] = &ends[k];
-                beyond[k] = *x * way[0] + *y * way[1] + (*height - centre) * way[2];
+                beyond[k] =
+                    *x * direction[0] + *y * direction[1] + (*height - centre) * direction[2];
             }
-            let mut least =
-                least_at(simd, &beyond, &heights, from).min(least_at(simd, &beyond, &heights, to));
+            let mut min_extent =
+                min_at(simd, &beyond, &heights, from).min(min_at(simd, &beyond, &heights, to));
             for k in 0..6 {
                 let inside = heights[k].simd_ge(from) & heights[k].simd_le(to);
-                least = inside.select(least.min(beyond[k]), least);
+                min_extent = inside.select(min_extent.min(beyond[k]), min_extent);
             }
-            depth = depth.min(V::splat(simd, radius) + grow - least);
+            depth = depth.min(V::splat(simd, radius) + grow - min_extent);
         }
         if let Some(hole) = self.hole {
             let mut farthest = zero;
@@ -148,7 +156,7 @@ impl<R: Real> HullSlab<R> {
 
 /// Returns the displacement of triangles from the middle to the end of their motion.
 #[inline(always)]
-fn half_way<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+fn half_displacement_of<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c, d, e, f]: &Ends<V>,
 ) -> LaneVector<V> {
@@ -161,24 +169,30 @@ fn half_way<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 }
 
 /// Returns the point nearest to the axis, or to the point of it at `centre`, on the path of a point moved by up
-/// to `goes` either way.
+/// to `half_displacement` either way.
 #[inline(always)]
 fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    place: &LaneVector<V>,
-    goes: &LaneVector<V>,
+    point: &LaneVector<V>,
+    half_displacement: &LaneVector<V>,
     centre: Option<V>,
 ) -> LaneVector<V> {
-    let (mut toward, mut square) =
-        (place[0] * goes[0] + place[1] * goes[1], goes[0] * goes[0] + goes[1] * goes[1]);
+    let (mut toward, mut square) = (
+        point[0] * half_displacement[0] + point[1] * half_displacement[1],
+        half_displacement[0] * half_displacement[0] + half_displacement[1] * half_displacement[1],
+    );
     if let Some(centre) = centre {
-        toward += (place[2] - centre) * goes[2];
-        square += goes[2] * goes[2];
+        toward += (point[2] - centre) * half_displacement[2];
+        square += half_displacement[2] * half_displacement[2];
     }
     let one = V::splat(simd, R::of(1.0));
-    let at = -toward / square.max(V::splat(simd, R::LEAST));
+    let at = -toward / square.max(V::splat(simd, R::MIN_POSITIVE_VALUE));
     let at = at.max(-one).min(one);
-    [place[0] + at * goes[0], place[1] + at * goes[1], place[2] + at * goes[2]]
+    [
+        point[0] + at * half_displacement[0],
+        point[1] + at * half_displacement[1],
+        point[2] + at * half_displacement[2],
+    ]
 }
 
 /// Returns a point, or, if it is beyond two heights, the point at that end which is nearest to the axis.
@@ -188,11 +202,11 @@ fn within<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     clip: &Clip<V, V::Mask>,
     middle: &[LaneVector<V>; 3],
     (from, to): (V, V),
-    place: &LaneVector<V>,
+    point: &LaneVector<V>,
 ) -> LaneVector<V> {
-    let above = place[2].simd_gt(to);
+    let above = point[2].simd_gt(to);
     let end = clip.at_end(simd, middle, above);
-    choose(above | place[2].simd_lt(from), &end, place)
+    choose(above | point[2].simd_lt(from), &end, point)
 }
 
 #[inline(always)]
@@ -202,24 +216,24 @@ fn heights<S: Simd, V: SimdBase<S>>([a, b, c, d, e, f]: &Ends<V>) -> [V; 6] {
 
 /// Returns how far out corners are in a direction across the axis.
 #[inline(always)]
-fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, way: &LaneVector<V>) -> [V; 6] {
+fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, direction: &LaneVector<V>) -> [V; 6] {
     let [a, b, c, d, e, f] = *ends;
-    let [first, last] = [across(&[a, b, c], way), across(&[d, e, f], way)];
+    let [first, last] = [across(&[a, b, c], direction), across(&[d, e, f], direction)];
     [first[0], first[1], first[2], last[0], last[1], last[2]]
 }
 
 /// A number larger than the distance of any point examined.
-const FAR: f64 = 1e30;
+const SENTINEL: f64 = 1e30;
 
-/// Returns the minimum of a linear function on a hull at one height, or `FAR` if the hull does not reach it.
+/// Returns the minimum of a linear function on a hull at one height, or `SENTINEL` if the hull does not reach it.
 #[inline(always)]
-fn least_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     values: &[V; 6],
     heights: &[V; 6],
     at: V,
 ) -> V {
-    let mut least = V::splat(simd, R::of(FAR));
+    let mut min_extent = V::splat(simd, R::of(SENTINEL));
     let zero = V::splat(simd, R::of(0.0));
     for i in 0..6 {
         for j in i + 1..6 {
@@ -227,8 +241,8 @@ fn least_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
             let across =
                 (low.simd_lt(zero) & high.simd_gt(zero)) | (low.simd_gt(zero) & high.simd_lt(zero));
             let value = values[i] - low * ((values[j] - values[i]) / (high - low));
-            least = across.select(least.min(value), least);
+            min_extent = across.select(min_extent.min(value), min_extent);
         }
     }
-    least
+    min_extent
 }

@@ -9,10 +9,10 @@ use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::mesh::Mesh;
 
 /// The smallest number of triangles of a face.
-const FEW: usize = 8;
+const MIN_FACE_TRIANGLES: usize = 8;
 
 /// The largest number of faces over a node's triangles for which the faces are used to rule it out.
-const FACES: usize = 16;
+const MAX_NODE_FACES: usize = 16;
 
 /// The index that stands for no face.
 const NONE: u32 = u32::MAX;
@@ -24,7 +24,7 @@ pub(crate) struct CoplanarFaces {
     /// The face of each triangle.
     of: Vec<u32>,
     /// Per node the faces that contain all of its triangles, if these are few. The last list is for the leaves.
-    nodes: Vec<Vec<[u32; FACES]>>,
+    nodes: Vec<Vec<[u32; MAX_NODE_FACES]>>,
 }
 
 /// The rectangle around a flat face, in the part's frame and unit.
@@ -51,47 +51,48 @@ impl CoplanarFaces {
         corners: &[[Point; 3]],
         flat: f64,
     ) -> CoplanarFaces {
-        let beside = beside(mesh, ids);
+        let neighbours = neighbours(mesh, ids);
         let (mut of, mut faces) = (vec![NONE; ids.len()], Vec::new());
-        let mut taken = vec![false; ids.len()];
+        let mut used = vec![false; ids.len()];
         let mut face = Vec::new();
         for seed in 0..ids.len() {
             let [a, b, c] = corners[seed];
-            let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !taken[seed])
-            else {
+            let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !used[seed]) else {
                 continue;
             };
-            let lies = |k: u32| {
+            let is_coplanar = |k: u32| {
                 corners[k as usize].iter().all(|p| dot(normal, minus(*p, a)).abs() <= flat)
             };
-            if !lies(seed as u32) {
+            if !is_coplanar(seed as u32) {
                 continue;
             }
             face.clear();
             face.push(seed as u32);
-            taken[seed] = true;
+            used[seed] = true;
             let mut next = 0;
             while next < face.len() {
-                for other in beside[face[next] as usize] {
-                    if other != NONE && !taken[other as usize] && lies(other) {
-                        taken[other as usize] = true;
+                for other in neighbours[face[next] as usize] {
+                    if other != NONE && !used[other as usize] && is_coplanar(other) {
+                        used[other as usize] = true;
                         face.push(other);
                     }
                 }
                 next += 1;
             }
-            if face.len() < FEW {
+            if face.len() < MIN_FACE_TRIANGLES {
                 // They may belong to a face that is found from another triangle.
-                face[1..].iter().for_each(|k| taken[*k as usize] = false);
+                face[1..].iter().for_each(|k| used[*k as usize] = false);
                 continue;
             }
             face.iter().for_each(|k| of[*k as usize] = faces.len() as u32);
             faces.push(Face::around(&face, corners, normal));
         }
-        let mut nodes = vec![of.chunks(WIDTH).map(|some| few(some.iter().copied())).collect()];
+        let mut nodes =
+            vec![of.chunks(WIDTH).map(|some| node_faces(some.iter().copied())).collect()];
         while let Some(last) = nodes.last().filter(|last: &&Vec<_>| last.len() > 1) {
-            nodes
-                .push(last.chunks(WIDTH).map(|some| few(some.iter().flatten().copied())).collect());
+            nodes.push(
+                last.chunks(WIDTH).map(|some| node_faces(some.iter().flatten().copied())).collect(),
+            );
         }
         nodes.reverse();
         CoplanarFaces { faces, of, nodes }
@@ -113,14 +114,14 @@ impl CoplanarFaces {
 
 /// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too
 /// many.
-fn few(some: impl Iterator<Item = u32>) -> [u32; FACES] {
-    let (mut faces, mut count) = ([NONE; FACES], 0);
+fn node_faces(some: impl Iterator<Item = u32>) -> [u32; MAX_NODE_FACES] {
+    let (mut faces, mut count) = ([NONE; MAX_NODE_FACES], 0);
     for face in some {
         if faces[..count].contains(&face) {
             continue;
         }
-        if face == NONE || count == FACES {
-            return [NONE; FACES];
+        if face == NONE || count == MAX_NODE_FACES {
+            return [NONE; MAX_NODE_FACES];
         }
         faces[count] = face;
         count += 1;
@@ -129,7 +130,7 @@ fn few(some: impl Iterator<Item = u32>) -> [u32; FACES] {
 }
 
 /// Returns the neighbours of each triangle across edges that exactly two triangles share.
-fn beside(mesh: &Mesh, ids: &[u32]) -> Vec<[u32; 3]> {
+fn neighbours(mesh: &Mesh, ids: &[u32]) -> Vec<[u32; 3]> {
     let mut edges: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(3 * ids.len());
     for (index, id) in (0u32..).zip(ids) {
         let [a, b, c] = mesh.triangles()[*id as usize];
@@ -138,28 +139,28 @@ fn beside(mesh: &Mesh, ids: &[u32]) -> Vec<[u32; 3]> {
         }
     }
     edges.sort_unstable();
-    let mut beside = vec![[NONE; 3]; ids.len()];
+    let mut neighbours = vec![[NONE; 3]; ids.len()];
     for group in edges.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, first, side), (_, second, other)] = group {
-            beside[*first as usize][*side] = *second;
-            beside[*second as usize][*other] = *first;
+            neighbours[*first as usize][*side] = *second;
+            neighbours[*second as usize][*other] = *first;
         }
     }
-    beside
+    neighbours
 }
 
 impl Face {
     /// Returns the rectangle of least area among those with a side along an edge of the face's first triangle.
     fn around(face: &[u32], corners: &[[Point; 3]], normal: Point) -> Face {
         let [a, b, c] = corners[face[0] as usize];
-        let places = || face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
+        let points = || face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
         let along = |side: Point| {
             let out = dot(side, normal);
             let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
             let v = unit(cross(normal, u))?;
-            let ends = |way: Point| {
-                places()
-                    .map(|p| dot(way, p))
+            let ends = |direction: Point| {
+                points()
+                    .map(|p| dot(direction, p))
                     .fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
             };
             let ([u0, u1], [v0, v1]) = (ends(u), ends(v));

@@ -21,7 +21,7 @@ pub struct TriangleBvh {
     pub(crate) levels: Vec<Vec<Boxes>>,
     /// A plane per node of each level; the last list is for the leaves.
     pub(crate) planes: Vec<Vec<Plane>>,
-    pub(crate) flats: CoplanarFaces,
+    pub(crate) coplanar_faces: CoplanarFaces,
     /// The corners of the 16 triangles of each leaf.
     pub(crate) leaves: Vec<Corners>,
     /// The corners of each triangle, in the tree's order, in the part's frame and unit.
@@ -53,7 +53,7 @@ impl TriangleBvh {
         let corners: Vec<[[f64; 3]; 3]> =
             mesh.corners().map(|corners| corners.map(|p| [p.x, p.y, p.z])).collect();
         let frame = Frame::around(corners.iter().flatten().copied());
-        let bounds = |corners: &[[f64; 3]; 3]| Bounds::of(corners.map(|place| frame.inside(place)));
+        let bounds = |corners: &[[f64; 3]; 3]| Bounds::of(corners.map(|point| frame.inside(point)));
         let mut items: Vec<BuildItem> = corners
             .iter()
             .zip(0u32..)
@@ -75,10 +75,10 @@ impl TriangleBvh {
             let boxes = &above[leaf / WIDTH];
             for (lane, triangle) in triangles.iter().enumerate() {
                 for (list, corner) in corners.0.iter_mut().zip(triangle) {
-                    let place = frame.inside(*corner);
+                    let point = frame.inside(*corner);
                     for axis in 0..3 {
                         let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
-                        list[axis][lane] = (place[axis] - middle) as f32;
+                        list[axis][lane] = (point[axis] - middle) as f32;
                     }
                 }
             }
@@ -94,7 +94,7 @@ impl TriangleBvh {
         let ids: Vec<u32> = items.iter().map(|item| item.index).collect();
         let survey = mesh.diagnostics();
         let mut bvh = TriangleBvh {
-            flats: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
+            coplanar_faces: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
             planes: planes.collect(),
             leaves: leaves.collect(),
             levels,
@@ -114,7 +114,7 @@ impl TriangleBvh {
         let inverted = inverted(mesh);
         let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
         if !inverted.is_empty() {
-            self.ids.iter().enumerate().for_each(|(place, id)| places[*id as usize] = place);
+            self.ids.iter().enumerate().for_each(|(point, id)| places[*id as usize] = point);
         }
         let is_void = |id: u32| !self.is_negative_beside(places[id as usize]);
         inverted.into_iter().all(|id| mesh.normal(TriangleId(id)).is_none() || is_void(id))

@@ -22,7 +22,7 @@ pub(crate) enum Location {
 const RAYS: u32 = 32;
 
 /// The length of a ray in sizes of the part, so that it ends outside.
-const FAR: f64 = 8.0;
+const RAY_LENGTH_FACTOR: f64 = 8.0;
 
 /// Returns the direction of a ray. The directions lie on a spiral, so that all differ and none is along an axis.
 fn direction(ray: u32) -> Vector3<f64> {
@@ -82,10 +82,11 @@ impl TriangleBvh {
             (a + b + c) / 3.0
         }));
         let mut windings = (0..RAYS).filter_map(|ray| {
-            let way = direction(ray);
-            let others = self.winding(middle, way, Some(own)).ok()?;
+            let ray_direction = direction(ray);
+            let others = self.winding(middle, ray_direction, Some(own)).ok()?;
             let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
-            let ([a, b, c], end) = (corners.map(coord), coord(self.end(middle, way).into()));
+            let ([a, b, c], end) =
+                (corners.map(coord), coord(self.end(middle, ray_direction).into()));
             match orient3d(a, b, c, end) {
                 inner if inner > 0.0 => Some(others - 1),
                 outer if outer < 0.0 => Some(others),
@@ -96,8 +97,8 @@ impl TriangleBvh {
     }
 
     /// Returns the end point of a ray.
-    fn end(&self, point: Point3<f64>, way: Vector3<f64>) -> Point3<f64> {
-        point + way * (FAR * f64::from(self.frame.size) * self.frame.scale)
+    fn end(&self, point: Point3<f64>, ray_direction: Vector3<f64>) -> Point3<f64> {
+        point + ray_direction * (RAY_LENGTH_FACTOR * f64::from(self.frame.size) * self.frame.scale)
     }
 
     /// Returns the margin by which boxes are widened for a ray from a point, in the tree's unit.
@@ -118,11 +119,11 @@ impl TriangleBvh {
     fn winding(
         &self,
         point: Point3<f64>,
-        way: Vector3<f64>,
+        ray_direction: Vector3<f64>,
         without: Option<usize>,
     ) -> Result<i32, Crossing> {
         let p = self.frame.inside([point.x, point.y, point.z]);
-        let (end, margin) = (self.end(point, way), self.margin(point));
+        let (end, margin) = (self.end(point, ray_direction), self.margin(point));
         let mut winding = 0;
         let mut stack = vec![(0, 0)];
         while let Some((level, index)) = stack.pop() {
@@ -130,13 +131,16 @@ impl TriangleBvh {
                 let child = index * WIDTH + lane;
                 if let Some(level_boxes) = self.levels.get(level) {
                     let boxes = &level_boxes[index];
-                    let near = |axis: usize| {
+                    let slab_range = |axis: usize| {
                         let from = f64::from(boxes.centre[axis][lane]) - p[axis];
                         let half = f64::from(boxes.half[axis][lane]) + margin;
-                        let [a, b] = [(from - half) / way[axis], (from + half) / way[axis]];
+                        let [a, b] = [
+                            (from - half) / ray_direction[axis],
+                            (from + half) / ray_direction[axis],
+                        ];
                         [a.min(b), a.max(b)]
                     };
-                    let ([a, b], [c, d], [e, f]) = (near(0), near(1), near(2));
+                    let ([a, b], [c, d], [e, f]) = (slab_range(0), slab_range(1), slab_range(2));
                     if a.max(c).max(e).max(0.0) <= b.min(d).min(f) {
                         stack.push((level + 1, child));
                     }

@@ -5,8 +5,8 @@
 //! bounds rule out are dropped; the others pass to both halves of the interval. A node is opened if it is larger
 //! than a fraction of the displacement.
 
+pub(crate) mod interval;
 mod moving;
-pub(crate) mod stretch;
 mod task;
 
 use crate::bvh::{PoseTransform, WIDTH};
@@ -14,7 +14,7 @@ use crate::certify::bounds::descent::{Node, of_children};
 use crate::certify::bounds::swept_batch::SweptBatch;
 use crate::certify::search::MARGIN;
 use crate::certify::space::Point;
-use crate::certify::sweep::stretch::MotionInterval;
+use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::field::Scratch;
 use crate::certify::tool_model::owners::Owners;
@@ -60,11 +60,11 @@ pub(crate) struct Sweeper {
     view: PoseTransform,
     ends: [PoseTransform; 2],
     /// The candidates of all intervals that are being examined, as a stack.
-    left: Vec<Undecided>,
+    pending: Vec<Undecided>,
     stack: Vec<Node>,
     /// Triangles waiting for the next batch of eight.
     some: Vec<TrianglePiece>,
-    swath: SweptBatch,
+    swept_batch: SweptBatch,
     search: DepthSearch,
     scratch: Scratch,
     pieces: Vec<SubTriangle>,
@@ -74,76 +74,79 @@ pub(crate) struct Sweeper {
 impl Sweeper {
     /// Examines a whole motion. Returns `None` if the limit is proved to hold.
     pub(crate) fn run(&mut self, task: &SweepTask<'_>, budget: u32) -> Option<SweepEnd> {
-        self.left.clear();
-        self.left.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
+        self.pending.clear();
+        self.pending.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
-        self.stretch(task, [0.0, 1.0], 0)
+        self.check_interval(task, [0.0, 1.0], 0)
     }
 
     /// Examines an interval, whose candidates start at index `first` of the list.
-    fn stretch(
+    fn check_interval(
         &mut self,
         task: &SweepTask<'_>,
         [from, to]: [f64; 2],
         first: usize,
     ) -> Option<SweepEnd> {
-        let stretch = MotionInterval::new(task.setting, task.motion, [from, to], task.keep());
-        let last = self.left.len();
-        if let Some(stop) = self.look(task, &stretch, first..last) {
+        let interval =
+            MotionInterval::new(task.setting, task.motion, [from, to], task.required_clearance());
+        let last = self.pending.len();
+        if let Some(stop) = self.examine(task, &interval, first..last) {
             return Some(stop);
         }
-        if self.left.len() == last {
+        if self.pending.len() == last {
             return None;
         }
-        let middle = stretch.middle();
-        if middle <= from || middle >= to || to - from < FINEST {
+        let middle = interval.middle();
+        if middle <= from || middle >= to || to - from < MIN_DURATION {
             return Some(SweepEnd::Spent { at: from });
         }
         for half in [[from, middle], [middle, to]] {
-            if let Some(stop) = self.stretch(task, half, last) {
+            if let Some(stop) = self.check_interval(task, half, last) {
                 return Some(stop);
             }
         }
-        self.left.truncate(last);
+        self.pending.truncate(last);
         None
     }
 
     /// Appends the candidates that remain of a range of the list.
-    fn look(
+    fn examine(
         &mut self,
         task: &SweepTask<'_>,
-        stretch: &MotionInterval,
+        interval: &MotionInterval,
         list: std::ops::Range<usize>,
     ) -> Option<SweepEnd> {
-        let SweepTask { setting, question, .. } = *task;
+        let SweepTask { setting, query, .. } = *task;
         let bvh = setting.bvh;
         let frame = &bvh.frame;
-        let [first, middle, last] = &stretch.poses;
+        let [first, middle, last] = &interval.poses;
         setting.setup.set_pose(frame, first, &mut self.ends[0]);
         setting.setup.set_pose(frame, middle, &mut self.view);
         setting.setup.set_pose(frame, last, &mut self.ends[1]);
         // The tips of poses are rounded relative to their world coordinates.
         let tip = task.motion.start().coords.norm() + task.motion.displacement().norm();
         let margin = setting.margin()
-            + (stretch.displacement_bound(f64::INFINITY) + task.keep()) / f64::from(1 << 18)
+            + (interval.displacement_bound(f64::INFINITY) + task.required_clearance())
+                / f64::from(1 << 18)
             + 2.0 * f64::EPSILON * tip / setting.length;
-        let wanted = (task.above() - margin) as f32;
-        let (keep, shift) = (task.keep() as f32, stretch.shift(task.keep()));
-        let small = PART * stretch.displacement_bound(f64::INFINITY);
+        let threshold = (task.above() - margin) as f32;
+        let (required_clearance, shift) =
+            (task.required_clearance() as f32, interval.shift(task.required_clearance()));
+        let small = MAX_NODE_FRACTION * interval.displacement_bound(f64::INFINITY);
         self.stack.clear();
         self.some.clear();
         for at in list {
-            match self.left[at] {
+            match self.pending[at] {
                 Undecided::Node(node) => self.stack.push(node),
                 Undecided::Part(part) => {
-                    if let Some(stop) = self.add(task, stretch, part) {
+                    if let Some(stop) = self.add(task, interval, part) {
                         return Some(stop);
                     }
                 }
             }
             while let Some(node) = self.stack.pop() {
                 if self.budget == 0 {
-                    return Some(SweepEnd::Spent { at: stretch.from });
+                    return Some(SweepEnd::Spent { at: interval.from });
                 }
                 self.budget -= 1;
                 if node.is_triangle(bvh) {
@@ -152,27 +155,28 @@ impl Sweeper {
                     let piece =
                         SubTriangle::new(corners.map(|p| [0, 1, 2].map(|k| p[k] - origin[k])));
                     let part = TrianglePiece { index: node.index, piece };
-                    if let Some(stop) = self.add(task, stretch, part) {
+                    if let Some(stop) = self.add(task, interval, part) {
                         return Some(stop);
                     }
                 } else if node.size(bvh) * setting.setup.unit < small {
-                    self.left.push(Undecided::Node(node));
+                    self.pending.push(Undecided::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
-                    let moving = Moving { hull: &question.hull, shift, keep, ends: &self.ends };
-                    let seen = (bvh, &moving, &self.view);
+                    let moving =
+                        Moving { hull: &query.hull, shift, required_clearance, ends: &self.ends };
+                    let input = (bvh, &moving, &self.view);
                     let hits = if margin > MARGIN {
                         u32::MAX
                     } else if node.is_leaf(bvh) {
-                        of_leaf(setting.level, seen, node, wanted)
+                        of_leaf(setting.level, input, node, threshold)
                     } else {
-                        of_children(setting.level, seen, node, wanted, &mut bounds)
+                        of_children(setting.level, input, node, threshold, &mut bounds)
                     };
                     self.stack.extend(node.children(bvh, hits));
                 }
             }
         }
-        self.triangles(task, stretch)
+        self.triangles(task, interval)
     }
 
     /// Adds a triangle or a piece of one to the batch. If the motion turns and the piece is large compared with the
@@ -180,18 +184,20 @@ impl Sweeper {
     fn add(
         &mut self,
         task: &SweepTask<'_>,
-        stretch: &MotionInterval,
+        interval: &MotionInterval,
         part: TrianglePiece,
     ) -> Option<SweepEnd> {
         if self.budget == 0 {
-            return Some(SweepEnd::Spent { at: stretch.from });
+            return Some(SweepEnd::Spent { at: interval.from });
         }
         self.budget -= 1;
-        if stretch.turns() && part.piece.longest() > 4.0 * task.setting.size * task.setting.length {
+        if interval.rotates()
+            && part.piece.longest() > 4.0 * task.setting.size * task.setting.length
+        {
             let mut halves = part.piece.halves().peekable();
             if halves.peek().is_some() {
-                for piece in halves.filter(|piece| stretch.reaches(piece, task.setting.length)) {
-                    if let Some(stop) = self.add(task, stretch, TrianglePiece { piece, ..part }) {
+                for piece in halves.filter(|piece| interval.reaches(piece, task.setting.length)) {
+                    if let Some(stop) = self.add(task, interval, TrianglePiece { piece, ..part }) {
                         return Some(stop);
                     }
                 }
@@ -199,45 +205,45 @@ impl Sweeper {
             }
         }
         self.some.push(part);
-        if self.some.len() == LANES { self.triangles(task, stretch) } else { None }
+        if self.some.len() == LANES { self.triangles(task, interval) } else { None }
     }
 
     /// Appends the triangles of the batch that remain.
-    fn triangles(&mut self, task: &SweepTask<'_>, stretch: &MotionInterval) -> Option<SweepEnd> {
-        let SweepTask { setting, question, .. } = *task;
+    fn triangles(&mut self, task: &SweepTask<'_>, interval: &MotionInterval) -> Option<SweepEnd> {
+        let SweepTask { setting, query, .. } = *task;
         let level = task.setting.level;
         let count = self.some.len();
-        self.swath.begin(stretch, task.keep(), &self.some);
+        self.swept_batch.begin(interval, task.required_clearance(), &self.some);
         let above = task.above();
-        self.swath.bound(level, &question.exact, above);
-        if !self.swath.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
+        self.swept_batch.bound(level, &query.exact, above);
+        if !self.swept_batch.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
             self.some.clear();
             return None;
         }
-        self.swath.middle.bound(level, &question.exact, f64::NEG_INFINITY);
+        self.swept_batch.middle.bound(level, &query.exact, f64::NEG_INFINITY);
         for lane in 0..count {
-            let index = self.swath.middle.index(lane);
-            if self.swath.bounds[lane] <= above {
+            let index = self.swept_batch.middle.index(lane);
+            if self.swept_batch.bounds[lane] <= above {
                 continue;
             }
-            let corners = self.swath.middle.corners(lane);
-            let point = self.swath.middle.place(lane);
-            let at = stretch.middle();
+            let corners = self.swept_batch.middle.corners(lane);
+            let point = self.swept_batch.middle.point(lane);
+            let at = interval.middle();
             let stop = |found: DeepPoint| SweepEnd::Deeper { at, best: found.best(index) };
-            let here = task.depth(&mut self.scratch, point);
-            if task.too_deep(&here) {
-                return Some(stop(here));
+            let sample = task.depth(&mut self.scratch, point);
+            if task.too_deep(&sample) {
+                return Some(stop(sample));
             }
-            let goes = stretch.displacement_bound(stretch.about(&corners));
-            let steep = setting.body.lipschitz();
-            let left = here.depth + steep * goes > task.wanted()
-                || match self.passes(task, corners, goes) {
-                    TriangleVerdict::Too(deep) => return Some(stop(deep)),
-                    TriangleVerdict::Yes => false,
-                    TriangleVerdict::Open | TriangleVerdict::Others => true,
+            let displacement = interval.displacement_bound(interval.rotation_radius(&corners));
+            let steep = setting.tool_model.lipschitz();
+            let undecided = sample.depth + steep * displacement > task.threshold()
+                || match self.check_triangle(task, corners, displacement) {
+                    TriangleVerdict::TooDeep(deep) => return Some(stop(deep)),
+                    TriangleVerdict::Clear => false,
+                    TriangleVerdict::Undecided | TriangleVerdict::OtherOwner => true,
                 };
-            if left {
-                self.left.push(Undecided::Part(self.some[lane]));
+            if undecided {
+                self.pending.push(Undecided::Part(self.some[lane]));
             }
         }
         self.some.clear();
@@ -245,110 +251,124 @@ impl Sweeper {
     }
 
     /// Examines a triangle: no point of it may be so deep, or so near, that this displacement could make it too deep.
-    fn passes(&mut self, task: &SweepTask<'_>, corners: [Point; 3], goes: f64) -> TriangleVerdict {
-        let SweepTask { setting, question, .. } = *task;
-        let ToolModel::Profile(section) = &setting.body else {
-            return self.halved(task, corners, goes);
+    fn check_triangle(
+        &mut self,
+        task: &SweepTask<'_>,
+        corners: [Point; 3],
+        displacement: f64,
+    ) -> TriangleVerdict {
+        let SweepTask { setting, query, .. } = *task;
+        let ToolModel::Profile(section) = &setting.tool_model else {
+            return self.check_subdivided(task, corners, displacement);
         };
-        let facet = LocalTriangle::new(corners);
-        if question.owners.all() || task.limit < 0.0 {
-            return self.along(task, (section, &question.owners), &facet, goes);
+        let triangle = LocalTriangle::new(corners);
+        if query.owners.all() || task.limit < 0.0 {
+            return self.check_lines(task, (section, &query.owners), &triangle, displacement);
         }
         // If no surface at all is too deep, the owners need not be told apart.
-        match self.along(task, (section, &Owners::default()), &facet, goes) {
-            TriangleVerdict::Others => self.halved(task, corners, goes),
+        match self.check_lines(task, (section, &Owners::default()), &triangle, displacement) {
+            TriangleVerdict::OtherOwner => self.check_subdivided(task, corners, displacement),
             decided => decided,
         }
     }
 
     /// The same, by searching the lines of a triangle on which the depth is greatest or the distance least.
-    fn along(
+    fn check_lines(
         &mut self,
         task: &SweepTask<'_>,
-        asked: (&Section, &Owners),
-        facet: &LocalTriangle,
-        goes: f64,
+        model: (&Section, &Owners),
+        triangle: &LocalTriangle,
+        displacement: f64,
     ) -> TriangleVerdict {
-        let goes = goes + facet.skew + task.error;
-        let least = task.wanted() - goes;
-        let (tolerance, enough, budget) = (0.25 * goes, f64::INFINITY, self.budget);
-        self.search.begin(Goal { least, tolerance, enough, budget });
+        let displacement = displacement + triangle.skew + task.error;
+        let min_depth = task.threshold() - displacement;
+        let (tolerance, stop_depth, budget) = (0.25 * displacement, f64::INFINITY, self.budget);
+        self.search.begin(Goal { min_depth, tolerance, stop_depth, budget });
         let mut found = None;
-        let heights = asked.0.circles.iter().chain(&asked.1.peaks);
-        let peaks = heights.filter_map(|height| facet.level(*height));
-        for course in facet.search_lines().chain(peaks) {
-            let deepest = if least < 0.0 {
-                self.search.outside(asked, &course)
+        let heights = model.0.circles.iter().chain(&model.1.peaks);
+        let peaks = heights.filter_map(|height| triangle.level(*height));
+        for line in triangle.search_lines().chain(peaks) {
+            let maximum = if min_depth < 0.0 {
+                self.search.outside(model, &line)
             } else {
-                self.search.inside((asked.0, asked.1, facet.skew), &course)
+                self.search.inside((model.0, model.1, triangle.skew), &line)
             };
-            found = deepest.map(|deepest| course.point(deepest.t)).or(found);
+            found = maximum.map(|maximum| line.point(maximum.t)).or(found);
         }
-        self.budget = self.search.left();
+        self.budget = self.search.remaining_budget();
         let Some(point) = found else {
-            return if self.search.open() { TriangleVerdict::Open } else { TriangleVerdict::Yes };
+            return if self.search.has_open() {
+                TriangleVerdict::Undecided
+            } else {
+                TriangleVerdict::Clear
+            };
         };
-        let here = task.depth(&mut self.scratch, point);
-        if task.too_deep(&here) {
-            TriangleVerdict::Too(here)
-        } else if here.depth > least {
-            TriangleVerdict::Open
+        let sample = task.depth(&mut self.scratch, point);
+        if task.too_deep(&sample) {
+            TriangleVerdict::TooDeep(sample)
+        } else if sample.depth > min_depth {
+            TriangleVerdict::Undecided
         } else {
-            TriangleVerdict::Others
+            TriangleVerdict::OtherOwner
         }
     }
 
     /// The same, by subdivision: the triangle is halved until all pieces pass, or a piece that does not is small
     /// compared with the displacement.
-    fn halved(&mut self, task: &SweepTask<'_>, corners: [Point; 3], goes: f64) -> TriangleVerdict {
-        let (body, owners) = (&task.setting.body, &task.question.owners);
+    fn check_subdivided(
+        &mut self,
+        task: &SweepTask<'_>,
+        corners: [Point; 3],
+        displacement: f64,
+    ) -> TriangleVerdict {
+        let (tool_model, owners) = (&task.setting.tool_model, &task.query.owners);
         self.pieces.clear();
         self.pieces.push(SubTriangle::new(corners));
-        let mut looks = 0;
+        let mut count = 0;
         while let Some(piece) = self.pieces.pop() {
-            looks += 1;
-            if self.budget == 0 || looks > LOOKS {
-                return TriangleVerdict::Open;
+            count += 1;
+            if self.budget == 0 || count > MAX_PIECES {
+                return TriangleVerdict::Undecided;
             }
             self.budget -= 1;
             let (centre, reach) = piece.ball();
-            let far = goes + reach + task.error;
-            let rectangle = piece.rectangle(goes + task.error);
+            let far = displacement + reach + task.error;
+            let rectangle = piece.rectangle(displacement + task.error);
             let place = (centre, &rectangle);
-            if body.clears(&mut self.scratch, owners, place, (far, task.wanted())) {
+            if tool_model.clears(&mut self.scratch, owners, place, (far, task.threshold())) {
                 continue;
             }
-            let here = task.depth(&mut self.scratch, centre);
-            if task.too_deep(&here) {
-                return TriangleVerdict::Too(here);
+            let sample = task.depth(&mut self.scratch, centre);
+            if task.too_deep(&sample) {
+                return TriangleVerdict::TooDeep(sample);
             }
-            if reach < SMALL * goes {
-                return TriangleVerdict::Open;
+            if reach < MIN_PIECE_FRACTION * displacement {
+                return TriangleVerdict::Undecided;
             }
             self.pieces.extend(piece.halves());
         }
-        TriangleVerdict::Yes
+        TriangleVerdict::Clear
     }
 }
 
 /// The verdict on a triangle.
 enum TriangleVerdict {
-    Yes,
+    Clear,
     /// The triangle is too deep at this point.
-    Too(DeepPoint),
-    Open,
+    TooDeep(DeepPoint),
+    Undecided,
     /// Points that may be too deep are nearer to other features than to the owners.
-    Others,
+    OtherOwner,
 }
 
 /// The number of pieces of a triangle that are examined before the interval is halved instead.
-const LOOKS: u32 = 1 << 12;
+const MAX_PIECES: u32 = 1 << 12;
 
 /// Pieces smaller than this fraction of the displacement are not halved.
-const SMALL: f64 = 0.125;
+const MIN_PIECE_FRACTION: f64 = 0.125;
 
 /// Intervals shorter than this fraction of the motion are not halved.
-const FINEST: f64 = f64::EPSILON;
+const MIN_DURATION: f64 = f64::EPSILON;
 
 /// Nodes larger than this fraction of the displacement are opened.
-const PART: f64 = 0.3;
+const MAX_NODE_FRACTION: f64 = 0.3;

@@ -11,7 +11,7 @@ use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
 pub(super) struct Moving<'a> {
     pub(super) hull: &'a Hull<f32>,
     pub(super) shift: Displacement,
-    pub(super) keep: f32,
+    pub(super) required_clearance: f32,
     /// The transforms at the beginning and at the end of the interval.
     pub(super) ends: &'a [PoseTransform; 2],
 }
@@ -23,20 +23,20 @@ impl BoxBounds for Moving<'_> {
         simd: S,
         boxes: &Boxes,
         view: &PoseTransform,
-        wanted: f32,
+        threshold: f32,
     ) -> f32x16<S> {
-        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), wanted)
+        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), threshold)
     }
 }
 
-/// Returns a bit mask of the triangles of a leaf whose bound may exceed `wanted`.
+/// Returns a bit mask of the triangles of a leaf whose bound may exceed `threshold`.
 pub(super) fn of_leaf(
     level: Level,
-    seen: DescentInput<'_, Moving<'_>>,
+    input: DescentInput<'_, Moving<'_>>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
 ) -> u32 {
-    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted));
+    on_vectors!(level, simd => of_leaf_on(simd, input, node, threshold));
     u32::MAX
 }
 
@@ -45,7 +45,7 @@ fn of_leaf_on<S: Simd>(
     simd: S,
     (bvh, moving, view): DescentInput<'_, Moving<'_>>,
     node: Node,
-    wanted: f32,
+    threshold: f32,
 ) -> u32 {
     let [a, b, c] = node.corners(simd, bvh, &moving.ends[0]);
     let [d, e, f] = node.corners(simd, bvh, &moving.ends[1]);
@@ -57,7 +57,7 @@ fn of_leaf_on<S: Simd>(
     };
     let [p, q, r] = middle.each_ref().map(square);
     let far = p.max(q).max(r).sqrt();
-    let grow = moving.shift.curve(simd, far) + moving.keep;
+    let grow = moving.shift.curve(simd, far) + moving.required_clearance;
     let ends = [a, b, c, d, e, f];
-    above(moving.hull.swept(simd, (&ends, &middle), grow, wanted), wanted)
+    above(moving.hull.swept(simd, (&ends, &middle), grow, threshold), threshold)
 }

@@ -11,7 +11,7 @@ use crate::motion::Motion;
 /// The query, motion and limits of a sweep. Lengths are in the tool's unit.
 pub(crate) struct SweepTask<'a> {
     pub(crate) setting: &'a QuerySetting<'a>,
-    pub(crate) question: &'a DepthQuery,
+    pub(crate) query: &'a DepthQuery,
     pub(crate) motion: &'a Motion,
     /// The allowed depth of the query's owners. If negative, its magnitude is the distance that they have to keep. It
     /// is the query's own limit or, if that is at least 0, any larger value.
@@ -24,30 +24,31 @@ pub(crate) struct SweepTask<'a> {
 
 impl SweepTask<'_> {
     /// Returns the depth up to which nothing needs to be examined.
-    pub(super) fn wanted(&self) -> f64 {
+    pub(super) fn threshold(&self) -> f64 {
         self.limit + self.tolerance
     }
 
     /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error
     /// bound.
     pub(super) fn above(&self) -> f64 {
-        self.wanted() + self.keep() - self.error
+        self.threshold() + self.required_clearance() - self.error
     }
 
     /// Returns the smallest distance that the owners have to keep.
-    pub(super) fn keep(&self) -> f64 {
-        (-self.wanted()).max(0.0)
+    pub(super) fn required_clearance(&self) -> f64 {
+        (-self.threshold()).max(0.0)
     }
 
     /// Returns the depth of a point; negative values are distances.
     pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> DeepPoint {
-        let (body, owners) = (&self.setting.body, &self.question.owners);
+        let (tool_model, owners) = (&self.setting.tool_model, &self.query.owners);
         let inside = if self.limit < 0.0 {
-            Some(body.distance(scratch, owners, point))
+            Some(tool_model.distance(scratch, owners, point))
         } else {
-            body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
+            tool_model.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
         };
-        let depth = inside.unwrap_or_else(|| body.distance(scratch, &Owners::default(), point));
+        let depth =
+            inside.unwrap_or_else(|| tool_model.distance(scratch, &Owners::default(), point));
         DeepPoint { point, depth: depth.value, feature: depth.feature }
     }
 

@@ -23,7 +23,7 @@ pub(super) fn heights(section: &Section) -> Option<Vec<f64>> {
     let mut add = |[a, b]: [MeridianPoint; 2]| {
         let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
         let half = 0.5 * norm(minus(a, b));
-        let nearest = (section.away(middle) - half).abs() <= section.error;
+        let nearest = (section.unsigned_distance(middle) - half).abs() <= section.error;
         if middle[0] > 0.0 && half > section.error && nearest && section.contains(middle) {
             heights.push(middle[1]);
         }
@@ -32,7 +32,7 @@ pub(super) fn heights(section: &Section) -> Option<Vec<f64>> {
     let ends: Vec<MeridianPoint> = features.iter().flat_map(|feature| feature.ends).collect();
     for (index, feature) in features.iter().enumerate() {
         for end in &ends {
-            normals(feature, *end).for_each(|place| add([*end, place]));
+            normals(feature, *end).for_each(|point| add([*end, point]));
         }
         for other in &features[..index] {
             match (&feature.circle, &other.circle) {
@@ -40,8 +40,8 @@ pub(super) fn heights(section: &Section) -> Option<Vec<f64>> {
                 (Some(circle), None) => common(other, circle).into_iter().for_each(&mut add),
                 (None, Some(circle)) => common(feature, circle).into_iter().for_each(&mut add),
                 (Some(one), Some(_)) => {
-                    for place in normals(other, one.centre) {
-                        normals(feature, place).for_each(|own| add([own, place]));
+                    for point in normals(other, one.centre) {
+                        normals(feature, point).for_each(|own| add([own, point]));
                     }
                 }
             }
@@ -57,22 +57,22 @@ pub(super) fn heights(section: &Section) -> Option<Vec<f64>> {
 
 /// Returns the points of a feature's line or circle whose normal passes through a point.
 fn normals(feature: &Feature, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
-    let places = match &feature.circle {
+    let points = match &feature.circle {
         None => {
             let at = dot(feature.along, minus(p, feature.ends[0]));
             let foot = [0, 1].map(|k| feature.ends[0][k] + at * feature.along[k]);
             [Some(foot), None]
         }
         Some(Circle { centre, radius, .. }) => {
-            let way = minus(p, *centre);
-            let far = norm(way);
+            let offset = minus(p, *centre);
+            let distance = norm(offset);
             [1.0, -1.0].map(|side| {
-                let at = |k: usize| centre[k] + side * radius * (way[k] / far);
-                (far > 0.0).then(|| [at(0), at(1)])
+                let at = |k: usize| centre[k] + side * radius * (offset[k] / distance);
+                (distance > 0.0).then(|| [at(0), at(1)])
             })
         }
     };
-    places.into_iter().flatten()
+    points.into_iter().flatten()
 }
 
 /// Returns the pairs of points of a line and a circle on their common normal.

@@ -40,14 +40,14 @@ impl Eq for Cell {}
 const BUDGET: u32 = 1 << 18;
 
 impl Field<'_> {
-    /// Returns a point of the owners that is deeper than `least`, its depth, and an upper bound on the depth of all
+    /// Returns a point of the owners that is deeper than `min_depth`, its depth, and an upper bound on the depth of all
     /// their points: at most `factor`, which is more than 1, times that depth unless the budget is spent first. The
-    /// inner option is `None` if it is proved that no point is deeper than `least`, the outer one if the budget was
+    /// inner option is `None` if it is proved that no point is deeper than `min_depth`, the outer one if the budget was
     /// spent before a point was found.
     pub(crate) fn deepest(
         &self,
         owners: &Owners,
-        least: f64,
+        min_depth: f64,
         factor: f64,
     ) -> Option<Option<(Point, Depth, f64)>> {
         let info = self.info();
@@ -64,35 +64,35 @@ impl Field<'_> {
         for _ in 0..BUDGET {
             let deepest = best.map_or(0.0, |(_, depth)| depth.value);
             let Some(Cell { low, high, bound }) = cells.pop() else { break };
-            if bound <= least || (deepest > least && bound <= factor * deepest) {
+            if bound <= min_depth || (deepest > min_depth && bound <= factor * deepest) {
                 return Some(
-                    best.filter(|_| deepest > least).map(|(at, depth)| (at, depth, bound)),
+                    best.filter(|_| deepest > min_depth).map(|(at, depth)| (at, depth, bound)),
                 );
             }
             let middle = [0, 1, 2].map(|k| f64::midpoint(low[k], high[k]));
-            let wide = [0, 1, 2].map(|k| high[k] - low[k]);
-            let reach = 0.5 * wide.iter().map(|side| side * side).sum::<f64>().sqrt();
+            let size = [0, 1, 2].map(|k| high[k] - low[k]);
+            let reach = 0.5 * size.iter().map(|side| side * side).sum::<f64>().sqrt();
             let depth = self.depth(&mut scratch, middle);
             if depth.value > deepest
                 && let Some(depth) = self.owned(&mut scratch, owners, middle, depth)
             {
                 best = Some((middle, depth));
             }
-            if self.passes(&mut scratch, owners, middle, (reach, least)) {
+            if self.passes(&mut scratch, owners, middle, (reach, min_depth)) {
                 continue;
             }
             // The depth of a point outside is minus a lower bound of its distance, and depth grows from the surface
             // inward.
             let bound = bound.min(depth.value + self.steep * reach);
-            let longest = (0..3).fold(0, |most, k| if wide[k] > wide[most] { k } else { most });
+            let longest = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
             let (mut first, mut second) = ((low, high), (low, high));
             first.1[longest] = middle[longest];
             second.0[longest] = middle[longest];
             cells.extend([first, second].map(|(low, high)| Cell { low, high, bound }));
         }
-        // No owner's point outside the cells that are left is deeper than the best one, or than `least`.
-        let (point, depth) = best.filter(|(_, depth)| depth.value > least)?;
-        let left = cells.peek().map_or(0.0, |cell| cell.bound);
-        Some(Some((point, depth, depth.value.max(left))))
+        // No owner's point outside the cells that are left is deeper than the best one, or than `min_depth`.
+        let (point, depth) = best.filter(|(_, depth)| depth.value > min_depth)?;
+        let max_remaining = cells.peek().map_or(0.0, |cell| cell.bound);
+        Some(Some((point, depth, depth.value.max(max_remaining))))
     }
 }

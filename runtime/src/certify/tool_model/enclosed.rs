@@ -18,9 +18,9 @@ impl Field<'_> {
         &self,
         scratch: &mut Scratch,
         [x, y, z]: Point,
-        goes: f64,
+        displacement: f64,
     ) -> Option<EvaluationEnclosure> {
-        let around = |at: f64| [at - goes, at + goes];
+        let around = |at: f64| [at - displacement, at + displacement];
         if self.is_revolved() {
             let d = x.hypot(y);
             let [low, high] = around(d);
@@ -38,7 +38,7 @@ impl Field<'_> {
         point: Point,
         depth: Depth,
     ) -> Option<Depth> {
-        if depth.value < 0.0 || owners.own(depth.feature) {
+        if depth.value < 0.0 || owners.is_owned(depth.feature) {
             return Some(depth);
         }
         if !owners.own_some(self.about(scratch, point, self.error)?.regions) {
@@ -48,14 +48,14 @@ impl Field<'_> {
         scratch.points.clear();
         for axis in 0..3 {
             for side in [-self.error, self.error] {
-                let mut beside = point;
-                beside[axis] += side;
-                scratch.points.push(beside);
+                let mut neighbour = point;
+                neighbour[axis] += side;
+                scratch.points.push(neighbour);
             }
         }
-        let beside = self.depths(scratch, 6);
-        let own = |other: &&Depth| other.value >= 0.0 && owners.own(other.feature);
-        let feature = beside[..6].iter().find(own)?.feature;
+        let neighbours = self.depths(scratch, 6);
+        let own = |other: &&Depth| other.value >= 0.0 && owners.is_owned(other.feature);
+        let feature = neighbours[..6].iter().find(own)?.feature;
         Some(Depth { feature, ..depth })
     }
 
@@ -72,9 +72,9 @@ impl Field<'_> {
         scratch: &mut Scratch,
         owners: &Owners,
         point: Point,
-        (goes, limit): (f64, f64),
+        (displacement, limit): (f64, f64),
     ) -> bool {
-        self.about(scratch, point, goes).is_some_and(|found| {
+        self.about(scratch, point, displacement).is_some_and(|found| {
             let deep = found.max_depth() + self.error > limit;
             !(found.inside && owners.own_some(found.regions) && deep)
         })
@@ -99,9 +99,9 @@ impl Field<'_> {
         let outward = |p: &Point| p[0] * out[0] + p[1] * out[1];
         let z = span(from[2], &|p| p[2]);
         let (sides, at) = if self.is_revolved() {
-            let most = span(far, &|p| p[0].hypot(p[1]))[1];
-            let least = span(far, &outward)[0].max(0.0);
-            ([[least, most], [0.0; 2], z], [far, 0.0, from[2]])
+            let max_radius = span(far, &|p| p[0].hypot(p[1]))[1];
+            let min_radius = span(far, &outward)[0].max(0.0);
+            ([[min_radius, max_radius], [0.0; 2], z], [far, 0.0, from[2]])
         } else {
             ([span(from[0], &|p| p[0]), span(from[1], &|p| p[1]), z], from)
         };
@@ -114,18 +114,18 @@ impl Field<'_> {
         if !owners.own_some(found.regions) {
             return f64::NEG_INFINITY;
         }
-        let ways = corners.map(|p| {
+        let offsets = corners.map(|p| {
             let along = |k: usize| [p[k] - from[k]; 2];
             if self.is_revolved() {
                 // The distance from the axis is convex: its change is at most that at the corner, and at least that in
                 // the radial direction.
-                let most = p[0].hypot(p[1]) - far;
-                [[(outward(&p) - far).min(most), most], [0.0; 2], along(2)]
+                let max_change = p[0].hypot(p[1]) - far;
+                [[(outward(&p) - far).min(max_change), max_change], [0.0; 2], along(2)]
             } else {
                 [along(0), along(1), along(2)]
             }
         });
         // Unknown slopes give NaN.
-        found.max_depth().min(found.max_depth_in_hull(ways)) + self.error
+        found.max_depth().min(found.max_depth_in_hull(offsets)) + self.error
     }
 }

@@ -35,24 +35,24 @@ pub(crate) fn norm(a: MeridianPoint) -> f64 {
     dot(a, a).sqrt()
 }
 
-fn least([a, b, c]: [f64; 3]) -> f64 {
+fn min3([a, b, c]: [f64; 3]) -> f64 {
     a.min(b).min(c)
 }
 
-fn most([a, b, c]: [f64; 3]) -> f64 {
+fn max3([a, b, c]: [f64; 3]) -> f64 {
     a.max(b).max(c)
 }
 
 impl Feature {
     fn new(ends: [MeridianPoint; 2], circle: Option<Circle>, surface: usize) -> Feature {
-        let way = minus(ends[1], ends[0]);
-        let length = norm(way);
-        let along = if length > 0.0 { way.map(|part| part / length) } else { [0.0; 2] };
+        let vector = minus(ends[1], ends[0]);
+        let length = norm(vector);
+        let along = if length > 0.0 { vector.map(|part| part / length) } else { [0.0; 2] };
         Feature { ends, along, length, circle, surface }
     }
 
     /// Returns the direction of travel at its beginning (0) or end (1).
-    pub(crate) fn heading(&self, end: usize) -> MeridianPoint {
+    pub(crate) fn tangent_at(&self, end: usize) -> MeridianPoint {
         let Some(Circle { centre, radius, convex }) = self.circle else { return self.along };
         let [d, z] = minus(self.ends[end], centre).map(|part| part / radius);
         if convex { [-z, d] } else { [z, -d] }
@@ -129,12 +129,12 @@ impl Feature {
         let sense = self.side_sign();
         let [d, z] = minus(p, centre);
         let d = sense * d;
-        let way = if convex { [-d.max(0.0), -z] } else { [d, z] };
-        let far = norm(way);
-        let [d, z] = if (!convex && d > 0.0) || far == 0.0 {
+        let vector = if convex { [-d.max(0.0), -z] } else { [d, z] };
+        let length = norm(vector);
+        let [d, z] = if (!convex && d > 0.0) || length == 0.0 {
             [-1.0, 0.0]
         } else {
-            way.map(|part| part / far)
+            vector.map(|part| part / length)
         };
         [sense * d, z]
     }
@@ -149,7 +149,7 @@ impl Feature {
                 below_tangents(circle, triangle, |[d, z]| [sense * (sense * d).max(0.0), z])
             }
             // Linear, or convex where it is at least 0.
-            _ => most(triangle.map(|p| self.signed_distance(p))),
+            _ => max3(triangle.map(|p| self.signed_distance(p))),
         }
     }
 
@@ -229,9 +229,9 @@ impl Feature {
             }
             Some(circle) if self.sector(circle, p) => {
                 let out = minus(p, circle.centre);
-                let far = norm(out);
-                if far > 0.0 {
-                    [0, 1].map(|k| circle.centre[k] + circle.radius * (out[k] / far))
+                let length = norm(out);
+                if length > 0.0 {
+                    [0, 1].map(|k| circle.centre[k] + circle.radius * (out[k] / length))
                 } else {
                     self.ends[0]
                 }
@@ -270,9 +270,9 @@ impl Feature {
 
     /// Returns the gradient of [`Feature::away`].
     pub(crate) fn distance_gradient(&self, p: MeridianPoint) -> MeridianPoint {
-        let way = minus(p, self.foot(p));
-        let far = norm(way);
-        if far > 0.0 { way.map(|part| part / far) } else { self.signed_gradient(p) }
+        let vector = minus(p, self.foot(p));
+        let length = norm(vector);
+        if length > 0.0 { vector.map(|part| part / length) } else { self.signed_gradient(p) }
     }
 
     /// Returns at least the distance of every point in a triangle.
@@ -280,13 +280,13 @@ impl Feature {
     pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
             // The distance from a convex set is convex.
-            None => most(triangle.map(|p| self.distance(p))),
+            None => max3(triangle.map(|p| self.distance(p))),
             Some(circle) if self.all_in_sector(circle, triangle) => {
-                let out = most(triangle.map(|p| norm(minus(p, circle.centre)) - circle.radius));
+                let out = max3(triangle.map(|p| norm(minus(p, circle.centre)) - circle.radius));
                 out.max(below_tangents(circle, triangle, |n| n))
             }
             Some(_) => {
-                let [from, to] = self.ends.map(|end| most(triangle.map(|p| norm(minus(p, end)))));
+                let [from, to] = self.ends.map(|end| max3(triangle.map(|p| norm(minus(p, end)))));
                 from.min(to)
             }
         }
@@ -301,28 +301,28 @@ impl Feature {
         let coarse = self.distance(middle) - reach;
         if let Some(Circle { centre, radius, convex: false }) = self.circle {
             // Measured from inside the circle; from beyond it only an end is near.
-            return coarse.max(least(triangle.map(|p| radius - norm(minus(p, centre)))));
+            return coarse.max(min3(triangle.map(|p| radius - norm(minus(p, centre)))));
         }
         let nearer = if self.distance(first) < self.distance(second) { first } else { second };
         coarse.max(self.separation(triangle, middle)).max(self.separation(triangle, nearer))
     }
 
-    /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `seen`,
-    /// normal to the direction of `seen` from its foot; 0 if `seen` is on the feature.
-    fn separation(&self, triangle: &Triangle, seen: MeridianPoint) -> f64 {
-        let way = minus(seen, self.foot(seen));
-        let far = norm(way);
-        if far == 0.0 {
+    /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `viewpoint`,
+    /// normal to the direction of `viewpoint` from its foot; 0 if `viewpoint` is on the feature.
+    fn separation(&self, triangle: &Triangle, viewpoint: MeridianPoint) -> f64 {
+        let vector = minus(viewpoint, self.foot(viewpoint));
+        let length = norm(vector);
+        if length == 0.0 {
             return 0.0;
         }
-        let [from, to] = self.ends.map(|end| dot(way, end));
-        let most = match &self.circle {
-            Some(circle) if self.sector(circle, [0, 1].map(|k| circle.centre[k] + way[k])) => {
-                dot(way, circle.centre) + circle.radius * far
+        let [from, to] = self.ends.map(|end| dot(vector, end));
+        let max_dot = match &self.circle {
+            Some(circle) if self.sector(circle, [0, 1].map(|k| circle.centre[k] + vector[k])) => {
+                dot(vector, circle.centre) + circle.radius * length
             }
             _ => from.max(to),
         };
-        (least(triangle.map(|p| dot(way, p))) - most) / far
+        (min3(triangle.map(|p| dot(vector, p))) - max_dot) / length
     }
 }
 
@@ -338,8 +338,12 @@ fn below_tangents(
     let out = triangle.map(|p| minus(p, circle.centre));
     let beneath = |out_of: MeridianPoint| {
         let n = touching(out_of);
-        let far = norm(n);
-        if far > 0.0 { circle.radius - least(out.map(|v| dot(n, v))) / far } else { circle.radius }
+        let length = norm(n);
+        if length > 0.0 {
+            circle.radius - min3(out.map(|v| dot(n, v))) / length
+        } else {
+            circle.radius
+        }
     };
     let deeper = usize::from(dot(out[1], out[1]) < dot(out[0], out[0]));
     beneath(out[deeper]).min(beneath(out[2]))

@@ -125,7 +125,7 @@ impl<'a> Field<'a> {
     /// Searches the open pieces, the deepest first. Returns the deepest point found if it is deeper than the best so
     /// far. With `outside`, where the best is below 0, returns the point nearest to the tool; points inside then
     /// count as 0.
-    pub(crate) fn look(
+    pub(crate) fn search_triangles(
         &self,
         search: &mut DepthSearch,
         scratch: &mut Scratch,
@@ -139,20 +139,23 @@ impl<'a> Field<'a> {
         };
         let mut best = None;
         loop {
-            let mut some = [DepthCandidate::default(); LANES];
+            let mut candidates = [DepthCandidate::default(); LANES];
             let (mut reach, mut count) = ([0.0; LANES], 0);
             let mut centres = [[0.0; 3]; LANES];
             scratch.points.clear();
             while count < LANES
-                && let Some(held) = scratch.pieces.pop()
+                && let Some(candidate) = scratch.pieces.pop()
             {
-                if held.bound <= search.wanted() || search.enough() || !search.spend(held.bound) {
+                if candidate.bound <= search.threshold()
+                    || search.is_done()
+                    || !search.spend(candidate.bound)
+                {
                     scratch.pieces.clear();
                     break;
                 }
-                let (centre, far) = held.piece.ball();
+                let (centre, far) = candidate.piece.ball();
                 scratch.points.push(centre);
-                (some[count], centres[count], reach[count]) = (held, centre, far);
+                (candidates[count], centres[count], reach[count]) = (candidate, centre, far);
                 count += 1;
             }
             if count == 0 {
@@ -166,26 +169,26 @@ impl<'a> Field<'a> {
                     && let Some(depth) = self.owned(scratch, owners, point, *depth)
                     && search.take(&depth)
                 {
-                    let (feature, index) = (depth.feature, some[lane].index);
+                    let (feature, index) = (depth.feature, candidates[lane].index);
                     best = Some(DeepestCandidate { point, feature, index });
                 }
             }
             for lane in 0..count {
-                let held = some[lane];
+                let candidate = candidates[lane];
                 let bound = depths[lane].value + self.steep * reach[lane] + self.error;
-                let mut bound = held.bound.min(bound);
-                if bound > search.wanted() && !outside {
-                    let closer = self.at_most(scratch, owners, &held.piece, centres[lane]);
+                let mut bound = candidate.bound.min(bound);
+                if bound > search.threshold() && !outside {
+                    let closer = self.at_most(scratch, owners, &candidate.piece, centres[lane]);
                     bound = bound.min(closer);
                 }
-                if bound <= search.wanted() {
+                if bound <= search.threshold() {
                     continue;
                 }
                 let before = scratch.pieces.len();
-                scratch.pieces.extend(held.piece.halves().map(|piece| DepthCandidate {
+                scratch.pieces.extend(candidate.piece.halves().map(|piece| DepthCandidate {
                     piece,
                     bound,
-                    ..held
+                    ..candidate
                 }));
                 if scratch.pieces.len() == before {
                     search.leave(bound);

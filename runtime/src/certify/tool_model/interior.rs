@@ -29,7 +29,7 @@ use crate::certify::tool_model::section::Section;
 /// A point of a tool's half plane that stands for a connected piece of its restricted interior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CorePoint {
-    pub(crate) place: MeridianPoint,
+    pub(crate) point: MeridianPoint,
     /// The nearest feature.
     pub(crate) feature: usize,
 }
@@ -45,10 +45,10 @@ struct Interior<'a> {
 /// `tolerance` plus the error bound. A piece may have several points if they are not shown to be connected.
 pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Vec<CorePoint> {
     let interior = Interior { section, limits };
-    let more = tolerance + section.error;
+    let tolerance_and_error = tolerance + section.error;
     let mut found = Vec::new();
     for (index, feature) in section.features.iter().enumerate() {
-        let limit = limits[index] + more;
+        let limit = limits[index] + tolerance_and_error;
         interior.add(&Normals::of(feature), limit, index, &mut found);
         for fan in [0, 1].into_iter().filter_map(|end| Normals::axis_fan(feature, end)) {
             interior.add(&fan, limit, index, &mut found);
@@ -57,10 +57,10 @@ pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Ve
         // Points of a fan are equally near to both features, and so belong to the stricter.
         let owner = if limits[index + 1] < limits[index] { index + 1 } else { index };
         if let Some(fan) = Normals::fan(feature, next) {
-            interior.add(&fan, limits[owner] + more, owner, &mut found);
+            interior.add(&fan, limits[owner] + tolerance_and_error, owner, &mut found);
         }
     }
-    interior.joined(found, more)
+    interior.joined(found, tolerance_and_error)
 }
 
 impl Interior<'_> {
@@ -79,20 +79,21 @@ impl Interior<'_> {
         let mut run: Option<[f64; 2]> = None;
         let spans = cuts.windows(2).map(|pair| [pair[0], pair[1]]);
         for span in spans.filter(|[from, to]| from < to).map(Some).chain([None]) {
-            let long = span.filter(|[from, to]| {
+            let free_span = span.filter(|[from, to]| {
                 self.is_free(normals.point(f64::midpoint(*from, *to), limit), limit)
             });
-            match (run, long) {
+            match (run, free_span) {
                 (Some(widest), Some(span)) if span[1] - span[0] <= widest[1] - widest[0] => {}
                 (_, Some(span)) => run = Some(span),
                 (Some([from, to]), None) => {
                     let s = f64::midpoint(from, to);
                     let longest = self.length(normals, s, limit);
-                    let place = normals.point(s, limit + DEEP * (longest - limit));
+                    let point =
+                        normals.point(s, limit + WITNESS_DEPTH_FRACTION * (longest - limit));
                     // The fan of a cusp may point out of the tool. Rounding does not affect this test, since the
                     // profile is not near.
-                    if self.section.contains(place) {
-                        found.push(CorePoint { place, feature });
+                    if self.section.contains(point) {
+                        found.push(CorePoint { point, feature });
                     }
                     run = None;
                 }
@@ -103,14 +104,14 @@ impl Interior<'_> {
 
     /// Returns whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
     fn is_free(&self, p: MeridianPoint, t: f64) -> bool {
-        p[0] >= 0.0 && self.section.away(p) >= t - NEARLY * self.section.error
+        p[0] >= 0.0 && self.section.unsigned_distance(p) >= t - ERROR_FRACTION * self.section.error
     }
 
     /// Returns the length of a normal, at least `least`: the distance at which another point of the profile is as
     /// near as its foot, or at which it reaches the axis.
     fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
         let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_HALVINGS {
             let middle = f64::midpoint(low, high);
             if self.is_free(normals.point(s, middle), middle) {
                 low = middle;
@@ -122,31 +123,31 @@ impl Interior<'_> {
     }
 
     /// Returns the radius about a point of the tool within which all points are deeper than the limit of their
-    /// nearest feature by more than `more`. The result is not positive if no such radius is shown.
+    /// nearest feature by more than `tolerance_and_error`. The result is not positive if no such radius is shown.
     ///
     /// Let the depth of the point be `d`. Every point within `r` of it has a depth of at least `d - r`, and its
     /// nearest feature is at most `d + 2r` from the point. For each limit `l`, `r` may therefore be as large as
     /// `d - l`, or as half the amount by which the features of that limit are farther away than `d`.
-    fn margin(&self, p: MeridianPoint, more: f64) -> f64 {
+    fn margin(&self, p: MeridianPoint, tolerance_and_error: f64) -> f64 {
         let depth = self.section.signed(p);
         let of = |(feature, limit): (&Feature, &f64)| {
-            (depth - limit - more).max(0.5 * (feature.distance(p) - depth))
+            (depth - limit - tolerance_and_error).max(0.5 * (feature.distance(p) - depth))
         };
         let features = self.section.features.iter().zip(self.limits);
         features.map(of).fold(depth, f64::min)
     }
 
     /// Returns whether the segment between two points is shown to stay in the interior.
-    fn connects(&self, from: MeridianPoint, to: MeridianPoint, more: f64) -> bool {
-        let way = minus(to, from);
-        let length = norm(way);
+    fn connects(&self, from: MeridianPoint, to: MeridianPoint, tolerance_and_error: f64) -> bool {
+        let displacement = minus(to, from);
+        let length = norm(displacement);
         let mut at = 0.0;
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             if at >= length {
                 return true;
             }
-            let p = [0, 1].map(|k| from[k] + way[k] * (at / length));
-            let margin = self.margin(p, more);
+            let p = [0, 1].map(|k| from[k] + displacement[k] * (at / length));
+            let margin = self.margin(p, tolerance_and_error);
             if margin <= self.section.error {
                 return false;
             }
@@ -156,39 +157,41 @@ impl Interior<'_> {
     }
 
     /// Drops redundant witnesses: one of each set of connected witnesses is left, the one with the largest margin.
-    fn joined(&self, mut found: Vec<CorePoint>, more: f64) -> Vec<CorePoint> {
-        let margin = |witness: &CorePoint| self.margin(witness.place, more);
+    fn joined(&self, mut found: Vec<CorePoint>, tolerance_and_error: f64) -> Vec<CorePoint> {
+        let margin = |witness: &CorePoint| self.margin(witness.point, tolerance_and_error);
         found.sort_by(|one, other| margin(other).total_cmp(&margin(one)));
-        let mut kept: Vec<Vec<CorePoint>> = Vec::new();
+        let mut pieces: Vec<Vec<CorePoint>> = Vec::new();
         for witness in found {
             let mut rest = Vec::new();
-            let mut all = vec![witness];
-            for piece in kept {
-                let one = piece.iter().any(|p| self.connects(p.place, witness.place, more));
-                if one {
-                    all = [piece, all].concat();
+            let mut piece_witnesses = vec![witness];
+            for piece in pieces {
+                let connected = piece
+                    .iter()
+                    .any(|p| self.connects(p.point, witness.point, tolerance_and_error));
+                if connected {
+                    piece_witnesses = [piece, piece_witnesses].concat();
                 } else {
                     rest.push(piece);
                 }
             }
-            rest.push(all);
-            kept = rest;
+            rest.push(piece_witnesses);
+            pieces = rest;
         }
-        kept.into_iter().map(|piece| piece[0]).collect()
+        pieces.into_iter().map(|piece| piece[0]).collect()
     }
 }
 
 /// A witness stands at this fraction of the way from the limit to the end of the normal.
-const DEEP: f64 = 0.75;
+const WITNESS_DEPTH_FRACTION: f64 = 0.75;
 
 /// The fraction of the error bound by which a distance may be less owing to rounding alone.
-const NEARLY: f64 = 0.25;
+const ERROR_FRACTION: f64 = 0.25;
 
 /// The number of bisections for the length of a normal: to 2^-48 of the tool's size.
-const HALVINGS: u32 = 50;
+const MAX_HALVINGS: u32 = 50;
 
 /// The maximum number of steps along a segment. After these it is not shown to stay inside.
-const STEPS: u32 = 256;
+const MAX_STEPS: u32 = 256;
 
 #[cfg(test)]
 mod tests {
@@ -252,9 +255,9 @@ mod tests {
         let limits: Vec<f64> = section.features.iter().map(limit).collect();
         let found = witnesses(&section, &limits, 1e-9);
         for witness in &found {
-            assert!(section.signed(witness.place) > limits[witness.feature], "{witness:?}");
-            let own = section.features[witness.feature].distance(witness.place);
-            assert!((own - section.signed(witness.place)).abs() < 1e-12, "{witness:?}");
+            assert!(section.signed(witness.point) > limits[witness.feature], "{witness:?}");
+            let own = section.features[witness.feature].distance(witness.point);
+            assert!((own - section.signed(witness.point)).abs() < 1e-12, "{witness:?}");
         }
         found
     }
@@ -262,7 +265,7 @@ mod tests {
     #[test]
     fn a_thin_piece_is_found() {
         let [face] = of(&Slender, &[("face", 0.0)])[..] else { panic!("one piece") };
-        assert!(face.place[1] < 0.5 && face.feature == 0, "{face:?}");
+        assert!(face.point[1] < 0.5 && face.feature == 0, "{face:?}");
         let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
         assert_eq!(chamfer.feature, 1);
     }
@@ -305,7 +308,7 @@ mod tests {
                 let found = witnesses(&section, &vec![limit; section.features.len()], 1e-9);
                 assert!(!found.is_empty());
                 for witness in found {
-                    assert!(section.signed(witness.place) > limit, "{witness:?}");
+                    assert!(section.signed(witness.point) > limit, "{witness:?}");
                 }
             }
         }
@@ -329,15 +332,15 @@ mod tests {
 
     #[test]
     fn pieces_are_as_many_as_there_are() {
-        let all = |limit: f64| [("lower", limit), ("neck", limit), ("upper", limit)];
-        assert_eq!(of(&Dumbbell, &all(0.0)).len(), 1);
+        let limits = |limit: f64| [("lower", limit), ("neck", limit), ("upper", limit)];
+        assert_eq!(of(&Dumbbell, &limits(0.0)).len(), 1);
         // A path along the axis joins them, which straight segments between witnesses do not show.
-        assert!((1..=3).contains(&of(&Dumbbell, &all(0.9)).len()));
+        assert!((1..=3).contains(&of(&Dumbbell, &limits(0.9)).len()));
         // The neck is nowhere so deep.
-        let heights: Vec<f64> = of(&Dumbbell, &all(1.5)).iter().map(|w| w.place[1]).collect();
+        let heights: Vec<f64> = of(&Dumbbell, &limits(1.5)).iter().map(|w| w.point[1]).collect();
         let [low, high] = heights[..] else { panic!("two pieces: {heights:?}") };
         assert!(low.min(high) < 10.0 && low.max(high) > 30.0, "{heights:?}");
-        assert_eq!(of(&Dumbbell, &all(3.1)), []);
+        assert_eq!(of(&Dumbbell, &limits(3.1)), []);
         assert_eq!(of(&Dumbbell, &[("lower", 0.0), ("upper", 0.0)]).len(), 2);
         assert_eq!(of(&Dumbbell, &[]), []);
     }

@@ -50,7 +50,7 @@ impl ToolModel<'_> {
         point: Point,
     ) -> Option<Depth> {
         match self {
-            ToolModel::Profile(section) => section.depth_at(owners, place(point)),
+            ToolModel::Profile(section) => section.depth_at(owners, meridian_point(point)),
             ToolModel::Field(field) => Some(field.depth_of(scratch, owners, point)),
         }
     }
@@ -59,7 +59,7 @@ impl ToolModel<'_> {
     /// lower bound of the distance of the whole tool, and points inside count as infinitely far.
     pub(crate) fn distance(&self, scratch: &mut Scratch, owners: &Owners, point: Point) -> Depth {
         match self {
-            ToolModel::Profile(section) => section.distance(owners, place(point)),
+            ToolModel::Profile(section) => section.distance(owners, meridian_point(point)),
             ToolModel::Field(field) => {
                 let depth = field.depth(scratch, point);
                 let value = if depth.value < 0.0 { depth.value } else { f64::NEG_INFINITY };
@@ -68,35 +68,37 @@ impl ToolModel<'_> {
         }
     }
 
-    /// Returns whether no point of a rectangle of the half plane, within `goes` of a point, is inside, deeper than
-    /// `limit` and owned. If the limit is below 0, returns whether no such point is nearer to the owners than that.
+    /// Returns whether no point of a rectangle of the half plane, within `displacement` of a point, is inside,
+    /// deeper than `limit` and owned. If the limit is below 0, returns whether no such point is nearer to the
+    /// owners than that.
     pub(crate) fn clears(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,
         (point, rectangle): (Point, &[MeridianPoint; 4]),
-        (goes, limit): (f64, f64),
+        (displacement, limit): (f64, f64),
     ) -> bool {
         let steep = self.lipschitz();
         let depth = match self {
             ToolModel::Profile(section) if limit < 0.0 => {
-                return section.distance(owners, place(point)).value + goes < limit;
+                return section.distance(owners, meridian_point(point)).value + displacement
+                    < limit;
             }
-            ToolModel::Profile(section) => section.signed(place(point)),
+            ToolModel::Profile(section) => section.signed(meridian_point(point)),
             ToolModel::Field(field) => field.depth(scratch, point).value,
         };
-        if depth + goes < 0.0 || depth + steep * goes <= limit {
+        if depth + displacement < 0.0 || depth + steep * displacement <= limit {
             return true;
         }
         match self {
             ToolModel::Profile(section) => {
-                section.far_from(owners, rectangle, (place(point), depth, goes))
+                section.far_from(owners, rectangle, (meridian_point(point), depth, displacement))
             }
-            ToolModel::Field(field) => field.passes(scratch, owners, point, (goes, limit)),
+            ToolModel::Field(field) => field.passes(scratch, owners, point, (displacement, limit)),
         }
     }
 }
 
-fn place([x, y, z]: Point) -> MeridianPoint {
+fn meridian_point([x, y, z]: Point) -> MeridianPoint {
     [(x * x + y * y).sqrt(), z]
 }

@@ -56,14 +56,14 @@ impl Normals {
 
     /// Returns the fan of normals between two features that meet in a reflex corner; `None` if they do not.
     pub(super) fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
-        let [arrives, leaves] = [before.heading(1), after.heading(0)];
+        let [arrives, leaves] = [before.tangent_at(1), after.tangent_at(0)];
         let turn = cross(arrives, leaves);
         // For opposite headings rounding decides the sense of the turn. A cusp therefore gets a fan whether it points
         // into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
         if turn >= 0.0 && !(turn < 1e-9 && dot(arrives, leaves) < 0.0) {
             return None;
         }
-        let inward = |way: MeridianPoint| angle([-way[1], way[0]]);
+        let inward = |vector: MeridianPoint| angle([-vector[1], vector[0]]);
         let (from, to) = (inward(leaves), inward(arrives));
         Some(Normals::Arc {
             centre: after.ends[0],
@@ -77,7 +77,7 @@ impl Normals {
     /// Returns the fan of normals between a feature's normal at its end on the axis and the axis, if the feature
     /// meets its mirror image in a reflex corner there.
     pub(super) fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
-        let [d, z] = feature.heading(end);
+        let [d, z] = feature.tangent_at(end);
         if feature.ends[end][0] != 0.0 || z >= 0.0 {
             return None;
         }
@@ -108,9 +108,9 @@ impl Normals {
                 [0, 1].map(|k| from[k] + s * along[k] + t * inward[k])
             }
             Normals::Arc { centre, from, radius, grows, .. } => {
-                let far = radius + grows * t;
+                let distance = radius + grows * t;
                 let (sin, cos) = (from + s).sin_cos();
-                [centre[0] + far * cos, centre[1] + far * sin]
+                [centre[0] + distance * cos, centre[1] + distance * sin]
             }
         }
     }
@@ -140,8 +140,8 @@ impl Normals {
             }
             (Normals::Line { along, .. }, Level::Circle { centre, radius }) => {
                 let out = minus(self.point(0.0, t), centre);
-                let (middle, off) = (-dot(*along, out), cross(*along, out));
-                let half = radius * radius - off * off;
+                let (middle, offset) = (-dot(*along, out), cross(*along, out));
+                let half = radius * radius - offset * offset;
                 if half >= 0.0 {
                     let half = half.sqrt();
                     add(middle - half);
@@ -149,20 +149,21 @@ impl Normals {
                 }
             }
             (Normals::Arc { centre, from, radius, grows, .. }, level) => {
-                let far = radius + grows * t;
+                let distance = radius + grows * t;
                 // In both cases the angles of the crossings from one direction have the same cosine.
-                let (way, cosine) = match level {
-                    Level::Line { normal, at } => (normal, (at - dot(*centre, normal)) / far),
+                let (vector, cosine) = match level {
+                    Level::Line { normal, at } => (normal, (at - dot(*centre, normal)) / distance),
                     Level::Circle { centre: other, radius } => {
-                        let way = minus(other, *centre);
-                        let apart = norm(way);
-                        let cosine =
-                            (far * far + apart * apart - radius * radius) / (2.0 * far * apart);
-                        (way, cosine)
+                        let vector = minus(other, *centre);
+                        let centre_distance = norm(vector);
+                        let cosine = (distance * distance + centre_distance * centre_distance
+                            - radius * radius)
+                            / (2.0 * distance * centre_distance);
+                        (vector, cosine)
                     }
                 };
                 if (-1.0..=1.0).contains(&cosine) {
-                    let (middle, half) = (angle(way), cosine.acos());
+                    let (middle, half) = (angle(vector), cosine.acos());
                     for crossing in [middle - half, middle + half] {
                         add((crossing - from).rem_euclid(std::f64::consts::TAU));
                     }
@@ -172,8 +173,8 @@ impl Normals {
     }
 }
 
-fn angle(way: MeridianPoint) -> f64 {
-    way[1].atan2(way[0])
+fn angle(vector: MeridianPoint) -> f64 {
+    vector[1].atan2(vector[0])
 }
 
 /// Returns the lines and circles that contain all points at the distance `t` from a feature.

@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Owners {
     /// A flag per feature; `None` for all features.
-    some: Option<Vec<bool>>,
+    owned_features: Option<Vec<bool>>,
     /// The owning regions of a tool without a profile, one bit each as in [`crate::tool::EvaluationEnclosure`].
     regions: u64,
     /// Heights of local maxima of depth among the points that the features own.
@@ -35,19 +35,19 @@ impl Rectangle {
         [low, [high[0], low[1]], high, [low[0], high[1]]]
     }
 
-    fn wide(&self) -> MeridianPoint {
+    fn size(&self) -> MeridianPoint {
         minus(self.high, self.low)
     }
 
     /// Returns its centre, and the distance from there to its corners.
     fn ball(&self) -> (MeridianPoint, f64) {
-        let [across, up] = self.wide();
+        let [across, up] = self.size();
         ([0, 1].map(|k| f64::midpoint(self.low[k], self.high[k])), 0.5 * across.hypot(up))
     }
 
     /// Returns both halves of its longer side.
     fn halves(&self) -> [Rectangle; 2] {
-        let ([across, up], (middle, _)) = (self.wide(), self.ball());
+        let ([across, up], (middle, _)) = (self.size(), self.ball());
         let longer = usize::from(up > across);
         let (mut first, mut second) = (*self, *self);
         first.high[longer] = middle[longer];
@@ -59,19 +59,20 @@ impl Rectangle {
 impl Owners {
     /// Returns the features of some surfaces.
     pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
-        let some: Vec<bool> = section.features.iter().map(|f| surfaces(f.surface)).collect();
-        let some = some.contains(&false).then_some(some);
-        let mut owners = Owners { some, ..Owners::default() };
+        let owned_features: Vec<bool> =
+            section.features.iter().map(|f| surfaces(f.surface)).collect();
+        let owned_features = owned_features.contains(&false).then_some(owned_features);
+        let mut owners = Owners { owned_features, ..Owners::default() };
         if !owners.all() {
             match owners.find_peaks(section, true) {
                 // Just below and just above: at a seam each side owns only points on its side.
                 Some(peaks) => {
                     let beside = 0.25 * section.error;
-                    let both = |peak: f64| [peak - beside, peak + beside];
-                    owners.peaks = peaks.into_iter().flat_map(both).collect();
+                    let owner_kinds = |peak: f64| [peak - beside, peak + beside];
+                    owners.peaks = peaks.into_iter().flat_map(owner_kinds).collect();
                 }
                 // No realistic profile is like this. The depth of the whole tool is an upper bound.
-                None => owners.some = None,
+                None => owners.owned_features = None,
             }
         }
         owners
@@ -81,20 +82,28 @@ impl Owners {
     /// distances and heights, the triangle meets it at the height of one of its ends, so the peaks are the heights of
     /// ends.
     pub(crate) fn near(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
-        let own = |feature: &&Feature| surfaces(feature.surface);
-        let ends = section.features.iter().filter(own).flat_map(|feature| feature.ends);
+        let is_owned = |feature: &&Feature| surfaces(feature.surface);
+        let ends = section.features.iter().filter(is_owned).flat_map(|feature| feature.ends);
         let peaks = ends.map(|end| end[1]).collect();
-        let some = section.features.iter().map(|f| surfaces(f.surface)).collect();
-        Owners { some: Some(some), peaks, ..Owners::default() }
+        let owned_features = section.features.iter().map(|f| surfaces(f.surface)).collect();
+        Owners { owned_features: Some(owned_features), peaks, ..Owners::default() }
     }
 
     /// Returns regions of a tool without a profile.
-    pub(crate) fn of_regions(info: &ToolInfo, own: impl Fn(usize, &Region) -> bool) -> Owners {
-        let some: Vec<bool> =
-            info.regions.iter().enumerate().map(|(index, region)| own(index, region)).collect();
-        let bits = (0..some.len()).filter(|index| some[*index]).map(bit);
+    pub(crate) fn of_regions(info: &ToolInfo, is_owned: impl Fn(usize, &Region) -> bool) -> Owners {
+        let owned_features: Vec<bool> = info
+            .regions
+            .iter()
+            .enumerate()
+            .map(|(index, region)| is_owned(index, region))
+            .collect();
+        let bits = (0..owned_features.len()).filter(|index| owned_features[*index]).map(bit);
         let regions = bits.fold(0, |all, bit| all | bit);
-        Owners { some: some.contains(&false).then_some(some), regions, peaks: Vec::new() }
+        Owners {
+            owned_features: owned_features.contains(&false).then_some(owned_features),
+            regions,
+            peaks: Vec::new(),
+        }
     }
 
     /// Returns whether some of these regions, a bit each, are owners.
@@ -105,13 +114,13 @@ impl Owners {
     /// Returns whether all features are owners.
     #[inline]
     pub(crate) fn all(&self) -> bool {
-        self.some.is_none()
+        self.owned_features.is_none()
     }
 
     /// Returns whether a feature is an owner.
     #[inline]
-    pub(crate) fn own(&self, feature: usize) -> bool {
-        self.some.as_ref().is_none_or(|some| some[feature])
+    pub(crate) fn is_owned(&self, feature: usize) -> bool {
+        self.owned_features.as_ref().is_none_or(|owned_features| owned_features[feature])
     }
 
     /// Returns, per slab, the heights between which the owners can own a point deeper than `deeper`.
@@ -124,7 +133,7 @@ impl Owners {
     /// Computes the zone of a slab. Rectangles of it are halved until an owner is the nearest feature in all of one
     /// or in none of it, or until the rectangle is too small to matter.
     fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<[f64; 2]> {
-        let small = section.size / f64::from(FINE);
+        let min_size = section.size / f64::from(ZONE_DIVISIONS);
         let mut zone: Option<[f64; 2]> = None;
         let mut stack = vec![Rectangle::of(slab)];
         while let Some(rectangle) = stack.pop() {
@@ -139,16 +148,16 @@ impl Owners {
                 if section.hidden_by_neighbours(index, &corners) {
                     continue;
                 }
-                let least = if self.own(index) { &mut owner } else { &mut other };
-                *least = least.min(feature.distance(middle));
+                let nearest = if self.is_owned(index) { &mut owner } else { &mut other };
+                *nearest = nearest.min(feature.distance(middle));
             }
             // A distance has the Lipschitz constant 1.
-            let apart = 2.0 * reach + section.error;
-            if owner > other + apart || owner.min(other) + reach <= deeper {
+            let uncertainty = 2.0 * reach + section.error;
+            if owner > other + uncertainty || owner.min(other) + reach <= deeper {
                 continue;
             }
-            let surely = owner + apart < other && owner - reach > deeper;
-            if surely || reach <= small {
+            let surely = owner + uncertainty < other && owner - reach > deeper;
+            if surely || reach <= min_size {
                 let [from, to] = zone.unwrap_or([low[1], high[1]]);
                 zone = Some([from.min(low[1]), to.max(high[1])]);
                 continue;
@@ -163,13 +172,13 @@ impl Owners {
     ///
     /// Rectangles are halved, the one that may be deepest first: depth has the Lipschitz constant 1.
     pub(crate) fn greatest_depth(&self, section: &Section) -> f64 {
-        let mut greatest = 0.0;
+        let mut max_depth = 0.0;
         let mut rectangles: Vec<Rectangle> = Vec::new();
         // Non-negative floating point numbers are in the order of their bits.
-        let mut open: BinaryHeap<(u64, usize)> = BinaryHeap::new();
+        let mut queue: BinaryHeap<(u64, usize)> = BinaryHeap::new();
         let mut halves: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
         let mut bound = f64::INFINITY;
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_RECTANGLES {
             for rectangle in halves.drain(..) {
                 let (middle, reach) = rectangle.ball();
                 let depth = section.signed(middle);
@@ -177,16 +186,16 @@ impl Owners {
                     section.owned(self).map(|owner| section.features[owner].distance(middle));
                 let owner = away.fold(f64::INFINITY, f64::min);
                 if depth >= 0.0 && owner <= depth + section.error {
-                    greatest = depth.max(greatest);
+                    max_depth = depth.max(max_depth);
                 }
                 if owner <= depth.abs() + 2.0 * reach + section.error && depth + reach >= 0.0 {
-                    open.push(((depth + reach).to_bits(), rectangles.len()));
+                    queue.push(((depth + reach).to_bits(), rectangles.len()));
                     rectangles.push(rectangle);
                 }
             }
-            let Some((bits, index)) = open.pop() else { return greatest };
+            let Some((bits, index)) = queue.pop() else { return max_depth };
             bound = f64::from_bits(bits);
-            if bound <= 1.01 * greatest + section.error {
+            if bound <= 1.01 * max_depth + section.error {
                 break;
             }
             halves.extend(rectangles[index].halves());
@@ -202,15 +211,15 @@ impl Owners {
     /// The heights are found by halving rectangles, down to a fraction of the error bound of a point. Returns `None`
     /// if there are too many. With `others`, only those are returned near which other features own points too.
     pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
-        let small = section.error / 32.0;
+        let min_size = section.error / 32.0;
         // All points of an arc are equally far from its centre.
         let centres = section.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
-        let mut looks = 0;
+        let mut examined = 0;
         let mut stack: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
         while let Some(rectangle) = stack.pop() {
-            looks += 1;
-            if looks > LOOKS {
+            examined += 1;
+            if examined > MAX_RECTANGLES {
                 return None;
             }
             let (middle, reach) = rectangle.ball();
@@ -218,8 +227,8 @@ impl Owners {
             if !self.may_peak(section, (middle, reach), &corners, others) {
                 continue;
             }
-            if reach <= small {
-                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * small) {
+            if reach <= min_size {
+                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     peaks.push(middle[1]);
                 }
                 continue;
@@ -242,32 +251,32 @@ impl Owners {
         let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
         let near = |index: &usize| away[*index] <= nearest + 2.0 * reach + section.error / 64.0;
         let mut nearby: Vec<(usize, MeridianPoint)> = Vec::new();
-        let mut both = [false; 2];
+        let mut owner_kinds = [false; 2];
         for index in (0..away.len()).filter(near) {
             if section.hidden_by_neighbours(index, corners) {
                 continue;
             }
-            both[usize::from(self.own(index))] = true;
+            owner_kinds[usize::from(self.is_owned(index))] = true;
             let foot = section.features[index].foot(middle);
             // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of two
             // adjacent features is nearer on either side of a line.
             let of_corner = |feature: usize| section.features[feature].at_ends(corners).is_some();
-            let known = |(other, known): &(usize, MeridianPoint)| {
+            let is_known = |(other, is_known): &(usize, MeridianPoint)| {
                 // Shared ends are identical to the bit.
-                let same = norm(minus(*known, foot)) <= section.error;
-                let owner = self.own(index) == self.own(*other);
+                let same = norm(minus(*is_known, foot)) <= section.error;
+                let owner = self.is_owned(index) == self.is_owned(*other);
                 same && (owner || (of_corner(index) && of_corner(*other)))
             };
-            if !nearby.iter().any(known) {
+            if !nearby.iter().any(is_known) {
                 nearby.push((index, foot));
             }
         }
-        nearby.len() > 2 && (both == [true, true] || !others)
+        nearby.len() > 2 && (owner_kinds == [true, true] || !others)
     }
 }
 
 /// The resolution of zones: the tool's size divided by this.
-const FINE: u32 = 1 << 11;
+const ZONE_DIVISIONS: u32 = 1 << 11;
 
 /// The maximum number of rectangles examined for peaks, or for the deepest point.
-const LOOKS: u32 = 1 << 17;
+const MAX_RECTANGLES: u32 = 1 << 17;

@@ -91,9 +91,9 @@ impl Section {
         let inside = |other: &&SectionSlab| !self.outside(line, other);
         let below = self.slabs[..slab].iter().rev().find(inside);
         let above = self.slabs[slab + 1..].iter().find(inside);
-        let beside =
+        let is_adjacent =
             |other: Option<&SectionSlab>| other.is_some_and(|o| o.low < high && low < o.high);
-        if beside(below) || beside(above) {
+        if is_adjacent(below) || is_adjacent(above) {
             // The tool continues beyond a gap: only feet on the side itself are known to be on the surface.
             return [0.0, line.length];
         }
@@ -137,7 +137,7 @@ impl Section {
     /// by more than 5e-19 of its distance.
     pub(crate) fn reflex(&self, slab: &SectionSlab) -> impl Iterator<Item = (MeridianPoint, bool)> {
         let pairs = self.features.windows(2).filter(|pair| {
-            let [before, after] = [pair[0].heading(1), pair[1].heading(0)];
+            let [before, after] = [pair[0].tangent_at(1), pair[1].tangent_at(0)];
             cross(before, after) < -1e-9
         });
         let near = |z: f64| slab.low - slab.radius <= z && z <= slab.high + slab.radius;
@@ -156,14 +156,14 @@ impl Section {
     /// Returns whether a point is inside or on the surface.
     pub(crate) fn contains(&self, p: MeridianPoint) -> bool {
         let inside = |slab: &SectionSlab| {
-            (slab.low..=slab.high).contains(&p[1]) && self.over(slab, p).0 >= 0.0
+            (slab.low..=slab.high).contains(&p[1]) && self.inner_distance(slab, p).0 >= 0.0
         };
         self.slabs.iter().any(inside)
     }
 
     /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
     #[inline]
-    fn over(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
+    fn inner_distance(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
         let of = |side: usize| (self.features[side].signed_distance(p), side);
         let outer = of(slab.side);
         slab.inner.map(of).filter(|inner| inner.0 < outer.0).unwrap_or(outer)
@@ -172,32 +172,32 @@ impl Section {
     /// Returns the depth of a point; for a point outside, a value below 0 or nothing.
     pub(crate) fn depth_at(&self, owners: &Owners, p: MeridianPoint) -> Option<Depth> {
         // Several slabs are at a height where the profile overhangs, or where slabs meet.
-        let here = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
-        let depths = here.map(|slab| self.depth((owners, 0.0), slab, p));
+        let slabs = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
+        let depths = slabs.map(|slab| self.depth((owners, 0.0), slab, p));
         depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
 
     /// Returns the distance of a point from the profile.
-    pub(crate) fn away(&self, p: MeridianPoint) -> f64 {
+    pub(crate) fn unsigned_distance(&self, p: MeridianPoint) -> f64 {
         self.nearest(0..self.features.len(), p).0
     }
 
     /// Returns the signed depth of a point: outside, the negative of its distance.
     pub(crate) fn signed(&self, p: MeridianPoint) -> f64 {
-        let value = self.away(p);
+        let value = self.unsigned_distance(p);
         if self.contains(p) { value } else { -value }
     }
 
-    /// Returns whether owners own no point of a rectangle within `goes` of a point with this depth.
+    /// Returns whether owners own no point of a rectangle within `displacement` of a point with this depth.
     pub(crate) fn far_from(
         &self,
         owners: &Owners,
         rectangle: &[MeridianPoint; 4],
-        (p, depth, goes): (MeridianPoint, f64, f64),
+        (p, depth, displacement): (MeridianPoint, f64, f64),
     ) -> bool {
         !owners.all()
             && self.owned(owners).all(|owner| {
-                self.features[owner].distance(p) > depth + 2.0 * goes
+                self.features[owner].distance(p) > depth + 2.0 * displacement
                     || self.hidden_by_neighbours(owner, rectangle)
             })
     }
@@ -211,9 +211,10 @@ impl Section {
         slab: &SectionSlab,
         p: MeridianPoint,
     ) -> Depth {
-        let (over, side) = self.over(slab, p);
+        let (over, side) = self.inner_distance(slab, p);
         if over < 0.0 {
-            let other = -over <= self.touch() && self.apart(owners, |f| f.distance(p));
+            let other =
+                -over <= self.contact_tolerance() && self.is_apart(owners, |f| f.distance(p));
             let value = if other { f64::NEG_INFINITY } else { over };
             return Depth {
                 value,
@@ -223,7 +224,7 @@ impl Section {
         }
         let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
         let gradient = self.features[feature].distance_gradient(p);
-        if !owners.own(feature) {
+        if !owners.is_owned(feature) {
             let owned = self.owned(owners).filter(|owner| !self.hidden_by_neighbours(*owner, &[p]));
             let (other, owner) = self.nearest(owned, p);
             if other > value + self.error + 2.0 * slack {
@@ -235,24 +236,27 @@ impl Section {
     }
 
     /// Returns the distance outside up to which a point counts as touching.
-    fn touch(&self) -> f64 {
+    fn contact_tolerance(&self) -> f64 {
         4.0 * self.error
     }
 
     /// Returns whether all owners are farther away than that.
-    fn apart(&self, owners: &Owners, away: impl Fn(&Feature) -> f64) -> bool {
-        !owners.all() && self.owned(owners).all(|owner| away(&self.features[owner]) > self.touch())
+    fn is_apart(&self, owners: &Owners, distance: impl Fn(&Feature) -> f64) -> bool {
+        !owners.all()
+            && self
+                .owned(owners)
+                .all(|owner| distance(&self.features[owner]) > self.contact_tolerance())
     }
 
     /// Returns at least the depth of every point of a slab in a triangle; below 0 if none is inside. A bound of at
-    /// most `enough` need not be tight.
+    /// most `threshold` need not be tight.
     #[inline]
     pub(crate) fn at_most(
         &self,
         (owners, slack): (&Owners, f64),
         slab: &SectionSlab,
         triangle: &Triangle,
-        enough: f64,
+        threshold: f64,
     ) -> f64 {
         let side = &self.features[slab.side];
         let out = side.signed_distance_upper(triangle);
@@ -260,21 +264,21 @@ impl Section {
             .inner
             .map_or(out, |inner| out.min(self.features[inner].signed_distance_upper(triangle)));
         if over < 0.0 {
-            let other = over > enough && self.apart(owners, |f| f.at_least(triangle));
+            let other = over > threshold && self.is_apart(owners, |f| f.at_least(triangle));
             return if other { f64::NEG_INFINITY } else { over };
         }
         let mut bound = if side.projects_onto(triangle, slab.feet) { out } else { f64::INFINITY };
         for near in &slab.near {
-            if bound <= enough {
+            if bound <= threshold {
                 return bound;
             }
             bound = bound.min(self.features[*near].at_most(triangle));
         }
-        if bound > enough && !owners.all() {
-            let apart = bound + 2.0 * (self.error + slack);
+        if bound > threshold && !owners.all() {
+            let separation = bound + 2.0 * (self.error + slack);
             let none = |owner: usize| {
                 self.hidden_by_neighbours(owner, triangle)
-                    || self.features[owner].at_least(triangle) > apart
+                    || self.features[owner].at_least(triangle) > separation
             };
             if self.owned(owners).all(none) {
                 return f64::NEG_INFINITY;
@@ -319,25 +323,25 @@ impl Section {
     pub(crate) fn hidden_by_neighbours(&self, feature: usize, corners: &[MeridianPoint]) -> bool {
         let Some(ends) = self.features[feature].at_ends(corners) else { return false };
         let nearer = |end: usize| {
-            let beside = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
-            beside.and_then(|beside| self.features.get(beside)).is_some_and(|other| {
-                let heading = other.heading(1 - end);
-                let way = if end == 0 { heading.map(|part| -part) } else { heading };
+            let neighbour = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
+            neighbour.and_then(|neighbour| self.features.get(neighbour)).is_some_and(|other| {
+                let tangent = other.tangent_at(1 - end);
+                let outward = if end == 0 { tangent.map(|part| -part) } else { tangent };
                 let from = self.features[feature].ends[end];
-                corners.iter().all(|p| dot(way, minus(*p, from)) > 0.0)
+                corners.iter().all(|p| dot(outward, minus(*p, from)) > 0.0)
             })
         };
         [0, 1].into_iter().all(|end| !ends[end] || nearer(end))
     }
 
     pub(crate) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
-        (0..self.features.len()).filter(|feature| owners.own(*feature))
+        (0..self.features.len()).filter(|feature| owners.is_owned(*feature))
     }
 
     fn nearest(&self, features: impl Iterator<Item = usize>, p: MeridianPoint) -> (f64, usize) {
         features.fold((f64::INFINITY, 0), |nearest, feature| {
-            let away = self.features[feature].distance(p);
-            if away < nearest.0 { (away, feature) } else { nearest }
+            let distance = self.features[feature].distance(p);
+            if distance < nearest.0 { (distance, feature) } else { nearest }
         })
     }
 }

@@ -13,7 +13,7 @@ use crate::certify::tool_model::section::{Depth, Section};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SearchLine {
     base: [f64; 3],
-    way: [f64; 3],
+    direction: [f64; 3],
     off: f64,
     start: f64,
     slide: f64,
@@ -24,7 +24,7 @@ pub(crate) struct SearchLine {
 #[derive(Clone, Copy)]
 struct End {
     t: f64,
-    place: MeridianPoint,
+    point: MeridianPoint,
     slope: f64,
 }
 
@@ -34,40 +34,40 @@ struct LineInterval(End, End);
 
 impl SearchLine {
     /// Creates the segment of a line with `t` in `span`.
-    pub(crate) fn new(base: [f64; 3], way: [f64; 3], span: [f64; 2]) -> SearchLine {
-        let slide = (way[0] * way[0] + way[1] * way[1]).sqrt();
+    pub(crate) fn new(base: [f64; 3], direction: [f64; 3], span: [f64; 2]) -> SearchLine {
+        let slide = (direction[0] * direction[0] + direction[1] * direction[1]).sqrt();
         let (start, off) = if slide > 0.0 {
-            let level = [way[0] / slide, way[1] / slide];
+            let level = [direction[0] / slide, direction[1] / slide];
             (base[0] * level[0] + base[1] * level[1], base[0] * level[1] - base[1] * level[0])
         } else {
             (0.0, (base[0] * base[0] + base[1] * base[1]).sqrt())
         };
-        SearchLine { base, way, off, start, slide, span }
+        SearchLine { base, direction, off, start, slide, span }
     }
 
     pub(crate) fn point(&self, t: f64) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.base[axis] + t * self.way[axis])
+        [0, 1, 2].map(|axis| self.base[axis] + t * self.direction[axis])
     }
 
     fn height(&self, t: f64) -> f64 {
-        self.base[2] + t * self.way[2]
+        self.base[2] + t * self.direction[2]
     }
 
-    fn place(&self, t: f64) -> MeridianPoint {
+    fn meridian_point(&self, t: f64) -> MeridianPoint {
         let along = self.start + t * self.slide;
         [(self.off * self.off + along * along).sqrt(), self.height(t)]
     }
 
     /// Returns the end at `t` of an interval that lies on the same side of the axis as `toward`.
     fn end(&self, t: f64, toward: f64) -> End {
-        let place = self.place(t);
+        let point = self.meridian_point(t);
         let along = self.start + t * self.slide;
-        let slope = if place[0] > 0.0 {
-            self.slide * (along / place[0])
+        let slope = if point[0] > 0.0 {
+            self.slide * (along / point[0])
         } else {
             self.slide.copysign(self.start + toward * self.slide)
         };
-        End { t, place, slope }
+        End { t, point, slope }
     }
 
     fn interval(&self, from: f64, to: f64) -> LineInterval {
@@ -88,7 +88,7 @@ impl SearchLine {
 
     /// Returns the portion of a span between two heights.
     fn within(&self, [from, to]: [f64; 2], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-        let (height, rise) = (self.base[2], self.way[2]);
+        let (height, rise) = (self.base[2], self.direction[2]);
         if rise == 0.0 {
             return (low <= height && height <= high).then_some([from, to]);
         }
@@ -100,30 +100,30 @@ impl SearchLine {
 
 impl LineInterval {
     /// Returns a triangle of the half plane that contains the interval.
-    fn triangle(&self, course: &SearchLine) -> Triangle {
+    fn triangle(&self, line: &SearchLine) -> Triangle {
         let LineInterval(first, last) = self;
         let length = last.t - first.t;
         let meet =
-            (last.place[0] - first.place[0] - last.slope * length) / (first.slope - last.slope);
+            (last.point[0] - first.point[0] - last.slope * length) / (first.slope - last.slope);
         let x = if meet.is_finite() { meet.clamp(0.0, length) } else { 0.5 * length };
         // Below both tangents, whatever the rounding errors.
-        let d = (first.place[0] + first.slope * x).min(last.place[0] - last.slope * (length - x));
-        let apex = [d.max(0.0), course.height(first.t + x)];
-        [first.place, last.place, apex]
+        let d = (first.point[0] + first.slope * x).min(last.point[0] - last.slope * (length - x));
+        let apex = [d.max(0.0), line.height(first.t + x)];
+        [first.point, last.point, apex]
     }
 }
 
 /// Returns the derivative of depth along a line.
-fn change(depth: &Depth, end: &End, course: &SearchLine) -> f64 {
-    dot(depth.gradient, [end.slope, course.way[2]])
+fn change(depth: &Depth, end: &End, line: &SearchLine) -> f64 {
+    dot(depth.gradient, [end.slope, line.direction[2]])
 }
 
 /// Returns the parameter at which an interval is cut. If the same feature is nearest at both ends, it is an
 /// estimate of where that is deepest, else of where the two depths are equal, as the slopes predict. Both pieces
 /// are examined wherever the cut is, so its value never makes a result wrong.
-fn cut(LineInterval(first, last): &LineInterval, depths: [&Depth; 2], course: &SearchLine) -> f64 {
+fn cut(LineInterval(first, last): &LineInterval, depths: [&Depth; 2], line: &SearchLine) -> f64 {
     let length = last.t - first.t;
-    let [up, down] = [change(depths[0], first, course), change(depths[1], last, course)];
+    let [up, down] = [change(depths[0], first, line), change(depths[1], last, line)];
     let x = if depths[0].feature == depths[1].feature {
         length * (up / (up - down))
     } else {
@@ -144,13 +144,13 @@ pub(crate) struct LineMaximum {
     pub(crate) feature: usize,
 }
 
-/// The goal of a search. Depths up to `least` are ignored. The search ends within `tolerance` of the greatest
-/// depth, at a depth above `enough`, or when the budget is spent.
+/// The goal of a search. Depths up to `min_depth` are ignored. The search ends within `tolerance` of the greatest
+/// depth, at a depth above `stop_depth`, or when the budget is spent.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {
-    pub(crate) least: f64,
+    pub(crate) min_depth: f64,
     pub(crate) tolerance: f64,
-    pub(crate) enough: f64,
+    pub(crate) stop_depth: f64,
     pub(crate) budget: u32,
 }
 
@@ -170,9 +170,9 @@ pub(crate) struct DepthSearch {
     /// The gain in depth that is not worth searching for.
     tolerance: f64,
     /// The depth above which the search ends.
-    enough: f64,
+    stop_depth: f64,
     /// The greatest bound of the regions left open because the budget was spent or they could not be divided.
-    pub(crate) most: f64,
+    pub(crate) open_bound: f64,
     /// True if a point was found.
     found: bool,
     budget: u32,
@@ -182,28 +182,28 @@ pub(crate) struct DepthSearch {
 impl DepthSearch {
     /// Begins a search.
     pub(crate) fn begin(&mut self, goal: Goal) {
-        let Goal { least, tolerance, enough, budget } = goal;
-        self.best = least;
+        let Goal { min_depth, tolerance, stop_depth, budget } = goal;
+        self.best = min_depth;
         self.tolerance = tolerance;
-        self.enough = enough;
-        self.most = f64::NEG_INFINITY;
+        self.stop_depth = stop_depth;
+        self.open_bound = f64::NEG_INFINITY;
         self.found = false;
         self.budget = budget;
     }
 
     /// Returns whether the depth found ends the search.
-    pub(crate) fn enough(&self) -> bool {
-        self.best > self.enough
+    pub(crate) fn is_done(&self) -> bool {
+        self.best > self.stop_depth
     }
 
     /// Returns the depth up to which regions can be pruned. The tolerance is added only once a point was found.
-    pub(crate) fn wanted(&self) -> f64 {
+    pub(crate) fn threshold(&self) -> f64 {
         if self.found { self.best + self.tolerance } else { self.best }
     }
 
     /// Returns whether some region was left open.
-    pub(crate) fn open(&self) -> bool {
-        self.most > f64::NEG_INFINITY
+    pub(crate) fn has_open(&self) -> bool {
+        self.open_bound > f64::NEG_INFINITY
     }
 
     /// Lowers the threshold of a search that has found nothing yet, and returns the previous one.
@@ -231,7 +231,7 @@ impl DepthSearch {
 
     /// Leaves a region with this bound open, since it cannot be examined more closely.
     pub(crate) fn leave(&mut self, bound: f64) {
-        self.most = self.most.max(bound);
+        self.open_bound = self.open_bound.max(bound);
     }
 
     /// Spends one unit of the budget on a region with this bound. If none is left, leaves it open and returns false.
@@ -245,7 +245,7 @@ impl DepthSearch {
     }
 
     /// Returns the rest of the budget.
-    pub(crate) fn left(&self) -> u32 {
+    pub(crate) fn remaining_budget(&self) -> u32 {
         self.budget
     }
 
@@ -270,22 +270,22 @@ impl DepthSearch {
     pub(crate) fn inside(
         &mut self,
         (section, owners, slack): (&Section, &Owners, f64),
-        course: &SearchLine,
+        line: &SearchLine,
     ) -> Option<LineMaximum> {
         let mut found = None;
-        for half in course.halves() {
-            let [low, high] = half.map(|t| course.height(t));
+        for half in line.halves() {
+            let [low, high] = half.map(|t| line.height(t));
             for slab in section.from(low.min(high)) {
                 let heights = [slab.low - section.error, slab.high + section.error];
                 if heights[0] > low.max(high) {
                     break;
                 }
-                if let Some([from, to]) = course.within(half, heights) {
-                    let bound = |triangle: &Triangle, enough| {
-                        section.at_most((owners, slack), slab, triangle, enough)
+                if let Some([from, to]) = line.within(half, heights) {
+                    let bound = |triangle: &Triangle, stop_depth| {
+                        section.at_most((owners, slack), slab, triangle, stop_depth)
                     };
-                    let depth = |place| section.depth((owners, slack), slab, place);
-                    self.run(course, course.interval(from, to), bound, depth, &mut found);
+                    let depth = |point| section.depth((owners, slack), slab, point);
+                    self.run(line, line.interval(from, to), bound, depth, &mut found);
                 }
             }
         }
@@ -297,27 +297,27 @@ impl DepthSearch {
     pub(crate) fn outside(
         &mut self,
         (section, owners): (&Section, &Owners),
-        course: &SearchLine,
+        line: &SearchLine,
     ) -> Option<LineMaximum> {
         let mut found = None;
-        for [from, to] in course.halves() {
+        for [from, to] in line.halves() {
             let bound =
                 |triangle: &Triangle, best| section.negative_distance_bound(owners, triangle, best);
-            let depth = |place| {
-                if owners.all() && section.contains(place) {
+            let depth = |point| {
+                if owners.all() && section.contains(point) {
                     Depth { value: 0.0, gradient: [0.0; 2], feature: 0 }
                 } else {
-                    section.distance(owners, place)
+                    section.distance(owners, point)
                 }
             };
-            self.run(course, course.interval(from, to), bound, depth, &mut found);
+            self.run(line, line.interval(from, to), bound, depth, &mut found);
         }
         found
     }
 
     fn run(
         &mut self,
-        course: &SearchLine,
+        line: &SearchLine,
         whole: LineInterval,
         bound: impl Fn(&Triangle, f64) -> f64,
         depth: impl Fn(MeridianPoint) -> Depth,
@@ -326,27 +326,27 @@ impl DepthSearch {
         self.stack.clear();
         self.stack.push(whole);
         while let Some(interval) = self.stack.pop() {
-            let bound = bound(&interval.triangle(course), self.wanted());
-            if bound <= self.wanted() || !self.spend(bound) {
+            let bound = bound(&interval.triangle(line), self.threshold());
+            if bound <= self.threshold() || !self.spend(bound) {
                 continue;
             }
-            if self.enough() {
+            if self.is_done() {
                 break;
             }
             let LineInterval(first, last) = interval;
-            let depths = [first, last].map(|end| depth(end.place));
+            let depths = [first, last].map(|end| depth(end.point));
             self.note(first.t, &depths[0], found);
             self.note(last.t, &depths[1], found);
-            if bound <= self.wanted() {
+            if bound <= self.threshold() {
                 continue;
             }
-            let t = cut(&interval, [&depths[0], &depths[1]], course);
+            let t = cut(&interval, [&depths[0], &depths[1]], line);
             if t <= first.t || t >= last.t {
                 self.leave(bound);
                 continue;
             }
-            let middle = course.end(t, first.t / 2.0 + last.t / 2.0);
-            self.note(t, &depth(middle.place), found);
+            let middle = line.end(t, first.t / 2.0 + last.t / 2.0);
+            self.note(t, &depth(middle.point), found);
             self.stack.push(LineInterval(first, middle));
             self.stack.push(LineInterval(middle, last));
         }

@@ -17,7 +17,7 @@ pub(crate) struct LocalTriangle {
     normal: Point,
     /// The base point of its meridian, and the direction along it.
     base: Point,
-    way: Point,
+    direction: Point,
     /// The largest distance between the computed meridian and the true one.
     pub(crate) skew: f64,
 }
@@ -43,7 +43,7 @@ impl LocalTriangle {
             corners,
             normal: [0.0; 3],
             base: a,
-            way: [0.0; 3],
+            direction: [0.0; 3],
             skew: rounding::height(height, shortest),
         };
         let skew = rounding::skew(height, shortest, far);
@@ -55,8 +55,8 @@ impl LocalTriangle {
         let base = normal.map(|part| part * dot(normal, a));
         let level = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
         let [x, y] = if level > 0.0 { [normal[0] / level, normal[1] / level] } else { [1.0, 0.0] };
-        let way = [normal[2] * x, normal[2] * y, -level];
-        LocalTriangle { corners, normal, base, way, skew }
+        let direction = [normal[2] * x, normal[2] * y, -level];
+        LocalTriangle { corners, normal, base, direction, skew }
     }
 
     /// Returns the meridian within the triangle.
@@ -66,17 +66,18 @@ impl LocalTriangle {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
             let inward = cross(self.normal, minus(b, a));
             // inward · (base + t way - a) >= 0
-            let (speed, least) = (dot(inward, self.way), dot(inward, minus(a, self.base)));
+            let (speed, min_value) =
+                (dot(inward, self.direction), dot(inward, minus(a, self.base)));
             if speed > 0.0 {
-                from = from.max(least / speed);
+                from = from.max(min_value / speed);
             } else if speed < 0.0 {
-                to = to.min(least / speed);
-            } else if least > 0.0 {
+                to = to.min(min_value / speed);
+            } else if min_value > 0.0 {
                 return None;
             }
         }
         (from < to && from.is_finite() && to.is_finite())
-            .then(|| SearchLine::new(self.base, self.way, [from, to]))
+            .then(|| SearchLine::new(self.base, self.direction, [from, to]))
     }
 
     /// Returns the segment of the triangle at a height, unless that is only an edge.
@@ -118,8 +119,8 @@ pub(crate) fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
     };
     let (ab, ac) = (minus(b, a), minus(c, a));
     let of = |corner: Point| {
-        let way = minus(p, corner);
-        [dot(ab, way), dot(ac, way)]
+        let direction = minus(p, corner);
+        [dot(ab, direction), dot(ac, direction)]
     };
     let ([a1, a2], [b1, b2], [c1, c2]) = (of(a), of(b), of(c));
     if a1 <= 0.0 && a2 <= 0.0 {

@@ -57,14 +57,14 @@ impl SubTriangle {
         if half.1 < mean.1 { half } else { mean }
     }
 
-    /// Returns the corners of a rectangle of the half plane that contains all points within `goes` of the triangle.
-    pub(crate) fn rectangle(&self, goes: f64) -> [[f64; 2]; 4] {
+    /// Returns the corners of a rectangle of the half plane with all points within `displacement` of the triangle.
+    pub(crate) fn rectangle(&self, displacement: f64) -> [[f64; 2]; 4] {
         let (mut far, mut low, mut high) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
         for [x, y, z] in self.corners {
             far = far.max((x * x + y * y).sqrt());
             (low, high) = (low.min(z), high.max(z));
         }
-        let (low, high, far) = (low - goes, high + goes, far + goes);
+        let (low, high, far) = (low - displacement, high + displacement, far + displacement);
         [[0.0, low], [far, low], [far, high], [0.0, high]]
     }
 

@@ -101,7 +101,7 @@ fn least(info: &ToolInfo, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64
     let length = info.unit.factor_to(mesh.unit());
     let holder = Holder::new(info, length).expect("a holder");
     let bvh = TriangleBvh::new(mesh);
-    holder.least(&bvh, (&Point3::from(tip), &axis.normalize()), None).expect("no limit")
+    holder.required_stickout(&bvh, (&Point3::from(tip), &axis.normalize()), None).expect("no limit")
 }
 
 fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
@@ -176,7 +176,7 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
             for _ in 0..30 {
                 let tip = Point3::from(Vector3::from_fn(|_, _| draw(-30.0, 30.0)));
                 let axis = Vector3::from_fn(|_, _| draw(-1.0, 1.0)).normalize();
-                let found = holder.least(&bvh, (&tip, &axis), None).expect("no limit");
+                let found = holder.required_stickout(&bvh, (&tip, &axis), None).expect("no limit");
                 let [mut true_least, mut near] = [holder.cutting; 2];
                 for place in &places {
                     let way = place - tip;
@@ -223,9 +223,9 @@ fn what_is_not_less_is_not_told_and_a_tool_alone_has_no_holder() {
     let holder = Holder::new(&info, 1.0).expect("a holder");
     let bvh = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
     let stands = (&Point3::origin(), &Vector3::z());
-    assert_eq!(holder.least(&bvh, stands, Some(20.0)), None);
-    let found = holder.least(&bvh, stands, Some(20.5)).expect("less");
+    assert_eq!(holder.required_stickout(&bvh, stands, Some(20.0)), None);
+    let found = holder.required_stickout(&bvh, stands, Some(20.5)).expect("less");
     assert!((found - 20.0).abs() < 1e-6);
-    assert_eq!(holder.least(&bvh, stands, Some(12.0)), None);
+    assert_eq!(holder.required_stickout(&bvh, stands, Some(12.0)), None);
     assert!(Holder::new(Disc.info(), 1.0).is_none());
 }

@@ -135,7 +135,7 @@ pub enum MapError {
 
 impl MapError {
     /// Converts an error of the store.
-    pub(super) fn of(file: &str, error: impl Into<redb::Error>) -> MapError {
+    pub(super) fn from_database(file: &str, error: impl Into<redb::Error>) -> MapError {
         use redb::Error as Store;
         let file = file.to_owned();
         match error.into() {

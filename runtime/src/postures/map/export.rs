@@ -99,7 +99,7 @@ impl PostureMap {
             None => write!(out, ",,,,,,,,,")?,
         }
         match access {
-            Some(access) => write!(out, ",{},", reached(access))?,
+            Some(access) => write!(out, ",{},", direction_count(access))?,
             None => write!(out, ",,")?,
         }
         match access.and_then(|access| access.stickout) {
@@ -132,11 +132,11 @@ impl PostureMap {
         write!(out, "{{\"map\": ").map_err(export)?;
         serde_json::to_writer(&mut *out, &head).map_err(json)?;
         write!(out, ",\n\"rows\": [").map_err(export)?;
-        let mut between = "\n";
+        let mut separator = "\n";
         for entry in self.rows()? {
             let (triangle, row) = entry?;
-            write!(out, "{between}").map_err(export)?;
-            between = ",\n";
+            write!(out, "{separator}").map_err(export)?;
+            separator = ",\n";
             let best = row.best.iter().map(
                 |&PostureRecord { tool, tip, axis, niceness, depth, clearance }| ExportPosture {
                     tool: self.name(tool),
@@ -149,7 +149,7 @@ impl PostureMap {
             );
             let access = row.access.iter().map(|access| ExportAccess {
                 tool: self.name(access.tool),
-                directions: reached(access),
+                directions: direction_count(access),
                 stickout: access.stickout,
             });
             let row = Triangle { triangle, best: best.collect(), access: access.collect() };
@@ -182,7 +182,7 @@ impl PostureMap {
                 niceness[triangle as usize] = best.niceness;
             }
         }
-        ply(out, mesh, &niceness, colour).map_err(|source| self.export(source))
+        write_ply_body(out, mesh, &niceness, colour).map_err(|source| self.export(source))
     }
 
     fn name(&self, tool: u16) -> &str {
@@ -197,7 +197,7 @@ impl PostureMap {
 /// Colour of a face without a posture.
 const GREY: [u8; 3] = [0x80; 3];
 
-fn ply(
+fn write_ply_body(
     out: &mut impl Write,
     mesh: &Mesh,
     niceness: &[f64],
@@ -232,12 +232,13 @@ fn ply(
 fn lines(row: &MapRow) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&Accessibility>)> {
     let of = |record: &PostureRecord| row.access.iter().find(|access| access.tool == record.tool);
     let records = row.best.iter().map(move |record| (Some(record), of(record)));
-    let alone = |access: &&Accessibility| row.best.iter().all(|record| record.tool != access.tool);
-    records.chain(row.access.iter().filter(alone).map(|access| (None, Some(access))))
+    let has_no_record =
+        |access: &&Accessibility| row.best.iter().all(|record| record.tool != access.tool);
+    records.chain(row.access.iter().filter(has_no_record).map(|access| (None, Some(access))))
 }
 
 /// Returns the number of directions from which a tool reaches a triangle.
-fn reached(access: &Accessibility) -> u32 {
+fn direction_count(access: &Accessibility) -> u32 {
     access.directions.iter().map(|word| word.count_ones()).sum()
 }
 

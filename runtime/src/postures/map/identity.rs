@@ -112,12 +112,12 @@ impl MapIdentity {
 
     /// Returns a tool's index in the list; `None` if no entry has its name and digest.
     pub fn tool(&self, info: &ToolInfo) -> Option<u16> {
-        let same = |tool: &ToolFingerprint| tool.name == info.name && tool.digest == info.digest;
-        self.tools.iter().position(same).map(|place| place as u16)
+        let matches = |tool: &ToolFingerprint| tool.name == info.name && tool.digest == info.digest;
+        self.tools.iter().position(matches).map(|index| index as u16)
     }
 
     /// Returns the reason for which data do not fit a map of this identity; `None` if they fit.
-    pub(super) fn refuses(
+    pub(super) fn row_error(
         &self,
         triangle: u32,
         best: &[PostureRecord],
@@ -135,9 +135,9 @@ impl MapIdentity {
             return Some("its tip and axis are no pose");
         }
         // A tool with nothing but cutting surfaces has infinite clearance.
-        let numbers =
+        let is_valid =
             |r: &PostureRecord| r.niceness.is_finite() && r.depth.is_finite() && r.clearance >= 0.0;
-        if !best.iter().all(numbers) {
+        if !best.iter().all(is_valid) {
             return Some("its niceness, depth or clearance is no number that they can be");
         }
         let ascending = access.is_sorted_by(|one, next| one.tool < next.tool);
@@ -146,37 +146,37 @@ impl MapIdentity {
             return Some("a tool has two accesses");
         }
         let count = self.directions.len();
-        let stray = |access: &Accessibility| {
+        let is_malformed = |access: &Accessibility| {
             let last = access.directions.last().copied().unwrap_or(0);
             access.directions.len() != count.div_ceil(64)
                 || (!count.is_multiple_of(64) && last >> (count % 64) != 0)
         };
-        access.iter().any(stray).then_some("it has other directions than the map")
+        access.iter().any(is_malformed).then_some("it has other directions than the map")
     }
 
     /// Returns a message if there are too many tools or directions: tools are numbered by 16 bits, and there
     /// are tables between directions that grow with the square of their number.
     pub(super) fn oversized(&self) -> Option<String> {
         let (tools, directions) = (self.tools.len(), self.directions.len());
-        let (most_tools, most) = (usize::from(u16::MAX) + 1, 2 * Directions::MOST);
-        if tools > most_tools {
-            return Some(format!("it has {tools} tools, and there may be {most_tools}"));
+        let (max_tools, max_directions) = (usize::from(u16::MAX) + 1, 2 * Directions::MOST);
+        if tools > max_tools {
+            return Some(format!("it has {tools} tools, and there may be {max_tools}"));
         }
-        (directions > most)
-            .then(|| format!("it has {directions} directions, and there may be {most}"))
+        (directions > max_directions)
+            .then(|| format!("it has {directions} directions, and there may be {max_directions}"))
     }
 
     /// Returns the difference between this identity, which a file has, and the requested one.
-    pub(super) fn differs(&self, asked: &MapIdentity) -> Option<Difference> {
+    pub(super) fn difference(&self, asked: &MapIdentity) -> Option<Difference> {
         if self.part != asked.part {
             return Some(Difference::Part { has: self.part, asked: asked.part });
         }
         let names = |of: &MapIdentity| -> Vec<String> {
             of.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name))).collect()
         };
-        let (has, others) = (names(self), names(asked));
-        if has != others {
-            let [has, asked] = [has, others].map(|names| names.join(", "));
+        let (has, other_names) = (names(self), names(asked));
+        if has != other_names {
+            let [has, asked] = [has, other_names].map(|names| names.join(", "));
             return Some(Difference::Tools { has, asked });
         }
         let mut tools = self.tools.iter().zip(&asked.tools);
@@ -188,12 +188,12 @@ impl MapIdentity {
                 [self, asked].map(|of| format!("{}, {} kept of each triangle", of.rules, of.keep));
             return Some(Difference::Rules { has, asked });
         }
-        let (has, others) = (&self.directions, &asked.directions);
-        let first = has.iter().zip(others).position(|(has, asked)| has != asked);
-        (has != others).then(|| Difference::Directions {
+        let (has, other_names) = (&self.directions, &asked.directions);
+        let first = has.iter().zip(other_names).position(|(has, asked)| has != asked);
+        (has != other_names).then(|| Difference::Directions {
             has: has.len(),
-            asked: others.len(),
-            first: first.unwrap_or(has.len().min(others.len())),
+            asked: other_names.len(),
+            first: first.unwrap_or(has.len().min(other_names.len())),
         })
     }
 }

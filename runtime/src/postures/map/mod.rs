@@ -31,7 +31,7 @@ const VERSION: &str = "version";
 /// Key of the identity among the facts.
 const IDENTITY: &str = "identity";
 /// The version that is written, and the newest that is read.
-const NEWEST: u32 = 1;
+const FORMAT_VERSION: u32 = 1;
 
 /// Postures at a part, per triangle, in a file.
 ///
@@ -95,7 +95,7 @@ impl Iterator for MapRows<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         let entry = self.range.next()?;
-        Some(entry.map_err(|error| self.map.says(error)).and_then(|(triangle, bytes)| {
+        Some(entry.map_err(|error| self.map.store_error(error)).and_then(|(triangle, bytes)| {
             let triangle = triangle.value();
             if u64::from(triangle) < self.next {
                 return Err(self.map.damaged(format!("triangle {triangle} is there twice")));
@@ -118,7 +118,7 @@ impl PostureMap {
     /// If the file cannot be read, or the row is damaged.
     pub fn row(&self, triangle: u32) -> Result<Option<MapRow>, MapError> {
         let table = self.table()?;
-        let bytes = table.get(triangle).map_err(|error| self.says(error))?;
+        let bytes = table.get(triangle).map_err(|error| self.store_error(error))?;
         bytes.map(|bytes| self.decoded(triangle, bytes.value())).transpose()
     }
 
@@ -127,7 +127,7 @@ impl PostureMap {
     /// # Errors
     /// If the file cannot be read. A damaged row is an error of its own in the iteration.
     pub fn rows(&self) -> Result<MapRows<'_>, MapError> {
-        let range = self.table()?.range::<u32>(..).map_err(|error| self.says(error))?;
+        let range = self.table()?.range::<u32>(..).map_err(|error| self.store_error(error))?;
         Ok(MapRows { range, map: self, next: 0 })
     }
 
@@ -139,9 +139,9 @@ impl PostureMap {
     /// does not fit the map.
     pub fn record(&self, rows: &[(u32, MapRow)]) -> Result<(), MapError> {
         for (triangle, row) in rows {
-            self.fits(*triangle, &row.best, &row.access)?;
+            self.check_row(*triangle, &row.best, &row.access)?;
         }
-        self.change(rows, |known, row| {
+        self.update(rows, |known, row| {
             known.access.clone_from(&row.access);
             merge(&mut known.best, &row.best, self.identity.keep);
         })
@@ -156,9 +156,9 @@ impl PostureMap {
     /// record does not fit the map.
     pub fn merge(&self, records: &[(u32, PostureRecord)]) -> Result<(), MapError> {
         for (triangle, record) in records {
-            self.fits(*triangle, std::slice::from_ref(record), &[])?;
+            self.check_row(*triangle, std::slice::from_ref(record), &[])?;
         }
-        self.change(records, |known, record| {
+        self.update(records, |known, record| {
             merge(&mut known.best, std::slice::from_ref(record), self.identity.keep);
         })
     }
@@ -195,15 +195,19 @@ impl PostureMap {
     }
 
     /// Joins new data to rows, in one transaction.
-    fn change<T>(&self, news: &[(u32, T)], join: impl Fn(&mut MapRow, &T)) -> Result<(), MapError> {
+    fn update<T>(
+        &self,
+        updates: &[(u32, T)],
+        join: impl Fn(&mut MapRow, &T),
+    ) -> Result<(), MapError> {
         if self.is_copy {
             return Err(MapError::ReadOnly { file: self.file.clone() });
         }
-        let write = self.database.begin_write().map_err(|error| self.says(error))?;
-        let mut table = write.open_table(ROWS).map_err(|error| self.says(error))?;
+        let write = self.database.begin_write().map_err(|error| self.store_error(error))?;
+        let mut table = write.open_table(ROWS).map_err(|error| self.store_error(error))?;
         let mut changed = false;
-        for (triangle, new) in news {
-            let old = match table.get(triangle).map_err(|error| self.says(error))? {
+        for (triangle, new) in updates {
+            let old = match table.get(triangle).map_err(|error| self.store_error(error))? {
                 Some(bytes) => self.decoded(*triangle, bytes.value())?,
                 None => MapRow::default(),
             };
@@ -211,32 +215,34 @@ impl PostureMap {
             join(&mut row, new);
             if row != old {
                 let bytes = encode(&row);
-                table.insert(triangle, bytes.as_slice()).map_err(|error| self.says(error))?;
+                table
+                    .insert(triangle, bytes.as_slice())
+                    .map_err(|error| self.store_error(error))?;
                 changed = true;
             }
         }
         drop(table);
         // Without a change there is no commit to wait for.
         if changed {
-            write.commit().map_err(|error| self.says(error))
+            write.commit().map_err(|error| self.store_error(error))
         } else {
-            write.abort().map_err(|error| self.says(error))
+            write.abort().map_err(|error| self.store_error(error))
         }
     }
 
     fn table(&self) -> Result<ReadOnlyTable<u32, &'static [u8]>, MapError> {
-        let read = self.database.begin_read().map_err(|error| self.says(error))?;
-        read.open_table(ROWS).map_err(|error| self.says(error))
+        let read = self.database.begin_read().map_err(|error| self.store_error(error))?;
+        read.open_table(ROWS).map_err(|error| self.store_error(error))
     }
 
     /// Decodes a row, and checks that it fits the map.
     fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<MapRow, MapError> {
         let identity = &self.identity;
-        let fits = |row: &MapRow| {
+        let check_row = |row: &MapRow| {
             row.best.len() <= usize::from(identity.keep.get())
-                && identity.refuses(triangle, &row.best, &row.access).is_none()
+                && identity.row_error(triangle, &row.best, &row.access).is_none()
         };
-        decode(bytes).filter(fits).ok_or_else(|| {
+        decode(bytes).filter(check_row).ok_or_else(|| {
             self.damaged(format!("the row of triangle {triangle} is not what was written"))
         })
     }
@@ -245,20 +251,20 @@ impl PostureMap {
         MapError::Damaged { file: self.file.clone(), what }
     }
 
-    fn fits(
+    fn check_row(
         &self,
         triangle: u32,
         best: &[PostureRecord],
         access: &[Accessibility],
     ) -> Result<(), MapError> {
-        match self.identity.refuses(triangle, best, access) {
+        match self.identity.row_error(triangle, best, access) {
             Some(what) => Err(MapError::Unfit { file: self.file.clone(), triangle, what }),
             None => Ok(()),
         }
     }
 
-    fn says(&self, error: impl Into<redb::Error>) -> MapError {
-        let error = MapError::of(&self.file, error);
+    fn store_error(&self, error: impl Into<redb::Error>) -> MapError {
+        let error = MapError::from_database(&self.file, error);
         if self.is_copy { as_damage(error) } else { error }
     }
 }

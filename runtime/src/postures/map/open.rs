@@ -2,7 +2,9 @@
 
 use super::codec::{decode, encode};
 use super::snapshot::{Header, MemoryStore, copy};
-use super::{FACTS, IDENTITY, MapError, MapIdentity, NEWEST, PostureMap, ROWS, VERSION, as_damage};
+use super::{
+    FACTS, FORMAT_VERSION, IDENTITY, MapError, MapIdentity, PostureMap, ROWS, VERSION, as_damage,
+};
 use crate::atomic_file::AtomicFile;
 use redb::{Builder, Database, ReadableDatabase, StorageBackend as _};
 use std::fs::{self, File, TryLockError};
@@ -11,11 +13,11 @@ use std::path::Path;
 use std::time::Duration;
 
 /// Number of attempts to copy a map that another process writes to.
-const COPIES: u32 = 200;
+const MAX_COPY_ATTEMPTS: u32 = 200;
 /// Time between attempts, after the first few.
-const PAUSE: Duration = Duration::from_millis(5);
+const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 /// Bytes that the store may cache of a copy. The copy is in memory already, and its reads are counted.
-const CACHE: usize = 0;
+const CACHE_BYTES: usize = 0;
 
 impl PostureMap {
     /// Opens a map to continue it, or creates one if there is no such file. A file whose writer was killed is
@@ -32,10 +34,10 @@ impl PostureMap {
             return Err(MapError::Oversized { file: path.display().to_string(), what });
         }
         if matches!(path.try_exists(), Ok(false)) {
-            begin(path, identity)?;
+            create(path, identity)?;
         }
         // Read a copy first, so that a file that is refused is not changed.
-        match read_identity(path)?.differs(identity) {
+        match read_identity(path)?.difference(identity) {
             Some(difference) => {
                 Err(MapError::Differs { file: path.display().to_string(), difference })
             }
@@ -64,10 +66,10 @@ impl PostureMap {
     pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        let (mut bytes, _) = start(path)?;
-        for attempt in 0..COPIES {
+        let (mut bytes, _) = open_store(path)?;
+        for attempt in 0..MAX_COPY_ATTEMPTS {
             if attempt > 2 {
-                std::thread::sleep(PAUSE);
+                std::thread::sleep(RETRY_INTERVAL);
             }
             let copied = copy(&mut bytes).map_err(|source| unreadable(&file, source))?;
             let Some((header, memory)) = copied else { continue };
@@ -76,11 +78,11 @@ impl PostureMap {
                 return Err(MapError::Truncated { file, length, whole: header.length() });
             }
             let mut builder = Builder::new();
-            builder.set_check_integrity_on_open(true).set_cache_size(CACHE);
+            builder.set_check_integrity_on_open(true).set_cache_size(CACHE_BYTES);
             let read = builder
                 .create_with_backend(memory.clone())
-                .map_err(|error| MapError::of(&file, error))
-                .and_then(|database| PostureMap::of(database, file.clone()))
+                .map_err(|error| MapError::from_database(&file, error))
+                .and_then(|database| PostureMap::from_database(database, file.clone()))
                 .map_err(|error| truncated_or(as_damage(error), &header, length));
             match read {
                 Ok(map) => {
@@ -97,7 +99,7 @@ impl PostureMap {
     }
 
     /// Returns the map in a store.
-    pub(super) fn of(database: Database, file: String) -> Result<PostureMap, MapError> {
+    pub(super) fn from_database(database: Database, file: String) -> Result<PostureMap, MapError> {
         let identity = read_facts(&database, &file)?;
         Ok(PostureMap { database, identity, file, is_copy: false })
     }
@@ -119,16 +121,16 @@ fn open_writable(path: &Path) -> Result<PostureMap, MapError> {
     let store = Builder::new().set_check_integrity_on_open(true).open(path);
     let database = store.map_err(|error| match error {
         redb::DatabaseError::Storage(redb::StorageError::Io(source)) => unreadable(&file, source),
-        error => MapError::of(&file, error),
+        error => MapError::from_database(&file, error),
     })?;
-    PostureMap::of(database, file)
+    PostureMap::from_database(database, file)
 }
 
 /// Writes the facts of a map into an empty store, and creates the table of rows.
 pub(super) fn write_facts(database: &Database, identity: &MapIdentity) -> Result<(), redb::Error> {
     let write = database.begin_write()?;
     let mut facts = write.open_table(FACTS)?;
-    facts.insert(VERSION, NEWEST.to_le_bytes().as_slice())?;
+    facts.insert(VERSION, FORMAT_VERSION.to_le_bytes().as_slice())?;
     facts.insert(IDENTITY, encode(identity).as_slice())?;
     drop(facts);
     write.open_table(ROWS)?;
@@ -137,19 +139,19 @@ pub(super) fn write_facts(database: &Database, identity: &MapIdentity) -> Result
 
 /// Reads the facts of a map, and returns its identity.
 fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> {
-    let says = |error: redb::Error| MapError::of(file, error);
-    let read = database.begin_read().map_err(|error| says(error.into()))?;
-    let facts = read.open_table(FACTS).map_err(|error| says(error.into()))?;
+    let store_error = |error: redb::Error| MapError::from_database(file, error);
+    let read = database.begin_read().map_err(|error| store_error(error.into()))?;
+    let facts = read.open_table(FACTS).map_err(|error| store_error(error.into()))?;
     let fact = |name| {
-        let bytes = facts.get(name).map_err(|error| says(error.into()))?;
+        let bytes = facts.get(name).map_err(|error| store_error(error.into()))?;
         let bytes = bytes.map(|bytes| bytes.value().to_vec());
         bytes.ok_or_else(|| MapError::Foreign { file: file.to_owned() })
     };
     let version = fact(VERSION)?;
     let version = version.try_into().map(u32::from_le_bytes);
     let version = version.map_err(|_| MapError::Foreign { file: file.to_owned() })?;
-    if version > NEWEST {
-        return Err(MapError::Newer { file: file.to_owned(), version, reads: NEWEST });
+    if version > FORMAT_VERSION {
+        return Err(MapError::Newer { file: file.to_owned(), version, reads: FORMAT_VERSION });
     }
     let identity: MapIdentity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
         file: file.to_owned(),
@@ -162,14 +164,14 @@ fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> 
 }
 
 /// Writes a new map beside its target and renames it when it is complete, so that no partial map is ever found.
-fn begin(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
+fn create(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
     let file = path.display().to_string();
     let unwritable = |source| MapError::written(file.clone(), source);
     let draft = MemoryStore::default();
     let database = Builder::new().create_with_backend(draft.clone());
-    let database = database.map_err(|error| MapError::of(&file, error))?;
-    write_facts(&database, identity).map_err(|error| MapError::of(&file, error))?;
-    database.close().map_err(|error| MapError::of(&file, error))?;
+    let database = database.map_err(|error| MapError::from_database(&file, error))?;
+    write_facts(&database, identity).map_err(|error| MapError::from_database(&file, error))?;
+    database.close().map_err(|error| MapError::from_database(&file, error))?;
     let bytes = draft.bytes().map_err(unwritable)?;
     let mut new = AtomicFile::create(path).map_err(unwritable)?;
     new.write_all(&bytes).map_err(unwritable)?;
@@ -181,7 +183,7 @@ fn begin(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
 }
 
 /// Opens a store's file for reading, and reads its header.
-fn start(path: &Path) -> Result<(File, Header), MapError> {
+fn open_store(path: &Path) -> Result<(File, Header), MapError> {
     let file = path.display().to_string();
     let open = || {
         // Check before opening: opening a pipe would block.

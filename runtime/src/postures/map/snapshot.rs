@@ -40,14 +40,15 @@ impl Header {
 
     /// Returns the least size of the file in bytes that its header implies.
     pub(super) fn length(&self) -> u64 {
-        let field = |at: usize| {
-            let bytes = self.0.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+        let field = |offset: usize| {
+            let bytes = self.0.get(offset..offset + 4).and_then(|bytes| bytes.try_into().ok());
             u128::from(bytes.map_or(0, u32::from_le_bytes))
         };
-        let [page, head, most, full, last] = [12, 16, 20, 24, 28].map(field);
-        let last = if last > 0 { head + last } else { 0 };
+        let [page, head, max_region, full_regions, trailing_region] =
+            [12, 16, 20, 24, 28].map(field);
+        let trailing_region = if trailing_region > 0 { head + trailing_region } else { 0 };
         // The header takes one page.
-        let length = page * (1 + full * (head + most) + last);
+        let length = page * (1 + full_regions * (head + max_region) + trailing_region);
         u64::try_from(length).unwrap_or(u64::MAX).max(HEADER as u64)
     }
 }
@@ -65,16 +66,16 @@ pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
     memory.set_len(length)?;
     let mut chunk = vec![0; CHUNK.min(usize::try_from(length).unwrap_or(CHUNK))];
     file.seek(SeekFrom::Start(0))?;
-    let mut at = 0;
-    while at < length {
-        let size = chunk.len().min(usize::try_from(length - at).unwrap_or(CHUNK));
+    let mut offset = 0;
+    while offset < length {
+        let size = chunk.len().min(usize::try_from(length - offset).unwrap_or(CHUNK));
         match file.read_exact(&mut chunk[..size]) {
-            Ok(()) => memory.write(at, &chunk[..size])?,
+            Ok(()) => memory.write(offset, &chunk[..size])?,
             // The file was shortened meanwhile.
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
             Err(error) => return Err(error),
         }
-        at += size as u64;
+        offset += size as u64;
     }
     let same = Header::read(file)? == before && file.metadata()?.len() == length;
     Ok(same.then(|| (before, Snapshot::new(memory, length))))
@@ -88,23 +89,24 @@ pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
 pub(super) struct Snapshot {
     memory: Arc<InMemoryBackend>,
     /// Bytes that may still be read.
-    left: Arc<AtomicI64>,
+    remaining: Arc<AtomicI64>,
 }
 
 impl Snapshot {
     fn new(memory: InMemoryBackend, length: u64) -> Snapshot {
         /// Number of times that each byte may be read; a check reads each page fewer than ten times.
-        const TIMES: u64 = 64;
+        const MAX_READS_PER_BYTE: u64 = 64;
         /// Bytes that may be read in addition.
-        const MORE: i64 = 1 << 24;
-        let left = i64::try_from(length.saturating_mul(TIMES)).unwrap_or(i64::MAX);
-        let left = Arc::new(AtomicI64::new(left.saturating_add(MORE)));
-        Snapshot { memory: Arc::new(memory), left }
+        const EXTRA_BYTES: i64 = 1 << 24;
+        let remaining =
+            i64::try_from(length.saturating_mul(MAX_READS_PER_BYTE)).unwrap_or(i64::MAX);
+        let remaining = Arc::new(AtomicI64::new(remaining.saturating_add(EXTRA_BYTES)));
+        Snapshot { memory: Arc::new(memory), remaining }
     }
 
     /// Ends the check, and with it the limit on reading.
     pub(super) fn end_check(&self) {
-        self.left.store(i64::MAX, Ordering::Relaxed);
+        self.remaining.store(i64::MAX, Ordering::Relaxed);
     }
 }
 
@@ -115,9 +117,9 @@ impl StorageBackend for Snapshot {
 
     fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
         let size = i64::try_from(out.len()).unwrap_or(i64::MAX);
-        if self.left.fetch_sub(size, Ordering::Relaxed) < size {
+        if self.remaining.fetch_sub(size, Ordering::Relaxed) < size {
             // Make all later reads fail too.
-            self.left.store(0, Ordering::Relaxed);
+            self.remaining.store(0, Ordering::Relaxed);
             return Err(io::Error::new(io::ErrorKind::InvalidData, "its pages form no tree"));
         }
         self.memory.read(offset, out)

@@ -103,24 +103,24 @@ pub struct ToolPath {
 }
 
 /// Largest number of planes.
-const MOST: usize = 100_000;
+const MAX_PLANES: usize = 100_000;
 
 /// Largest number of points, estimated from the length of the lines: some gigabytes, and weeks on any machine.
-const MOST_PLACES: usize = 20_000_000;
+const MAX_POINTS: usize = 20_000_000;
 
 /// Fraction of the tolerance reserved for motions between cutter locations.
-const BETWEEN: f64 = 1.0 / 8.0;
+const MOTION_TOLERANCE_FRACTION: f64 = 1.0 / 8.0;
 
 /// Number of lines per unit of parallel work.
-const TOGETHER: usize = 8;
+const LINES_PER_TASK: usize = 8;
 
 /// Search budget of a query. A motion that takes more to prove is left to an alternative.
-const BUDGET: u32 = 1 << 18;
+const QUERY_BUDGET: u32 = 1 << 18;
 
 /// Plans the path of a tool over a part.
 pub(super) struct PathPlanner<'a> {
-    touching: ToolPlacement<'a>,
-    judge: Validator<'a>,
+    placement: ToolPlacement<'a>,
+    validator: Validator<'a>,
     rules: &'a Rules,
     postures: Vec<CandidatePosture>,
 }
@@ -167,50 +167,50 @@ impl PathRequest<'_> {
         let normal = normal.ok_or(PathError::Normal)?;
         let [low, high] = mesh.bounds();
         let planes = (high - low).norm() / pattern.stepover;
-        if planes > MOST as f64 {
-            return Err(PathError::TooMany { planes, most: MOST });
+        if planes > MAX_PLANES as f64 {
+            return Err(PathError::TooMany { planes, most: MAX_PLANES });
         }
         let places = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
-        if places > MOST_PLACES as f64 {
-            return Err(PathError::TooFine { places, most: MOST_PLACES });
+        if places > MAX_POINTS as f64 {
+            return Err(PathError::TooFine { places, most: MAX_POINTS });
         }
-        let mut leader = PathPlanner::new(bvh, tool, rules)?;
-        let around = RetractSphere::new(mesh, leader.touching.reach());
+        let mut planner = PathPlanner::new(bvh, tool, rules)?;
+        let sphere = RetractSphere::new(mesh, planner.placement.reach());
         let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
         let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
             .iter()
             .enumerate()
             .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
             .collect();
-        let runs = parallel::ranges(lines.len(), TOGETHER, |range| {
+        let runs = parallel::ranges(lines.len(), LINES_PER_TASK, |range| {
             // Errors were reported for the planner above.
-            let Ok(mut leader) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
+            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
             let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
-                leader.judge.certifier.forget();
-                (*plane, leader.runs(mesh, (directions, accessibility), line))
+                planner.validator.certifier.clear_caches();
+                (*plane, planner.runs(mesh, (directions, accessibility), line))
             };
             lines[range].iter().map(run).collect()
         });
         let mut path = DrawnPath {
-            seen: lines.iter().map(|(_, line)| line.len()).sum(),
+            point_count: lines.iter().map(|(_, line)| line.len()).sum(),
             ..DrawnPath::default()
         };
         let mut runs = runs.into_iter().flatten().peekable();
-        while let Some((plane, mut here)) = runs.next() {
+        while let Some((plane, mut plane_runs)) = runs.next() {
             while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
-                here.extend(more);
+                plane_runs.extend(more);
             }
-            here.iter().for_each(|run| path.count(run));
+            plane_runs.iter().for_each(|run| path.count(run));
             // Continue with the remaining run whose end is nearest.
-            while let Some((next, reverse)) = path.nearest(&here) {
-                let mut run = here.swap_remove(next);
+            while let Some((next, reverse)) = path.nearest(&plane_runs) {
+                let mut run = plane_runs.swap_remove(next);
                 if reverse {
                     run.reverse();
                 }
-                path.follow(&mut leader, &around, &run, 3.0 * pattern.stepover);
+                path.follow(&mut planner, &sphere, &run, 3.0 * pattern.stepover);
             }
         }
-        path.end(&mut leader, &around)
+        path.end(&mut planner, &sphere)
     }
 }
 
@@ -220,28 +220,35 @@ impl<'a> PathPlanner<'a> {
         tool: &'a dyn Tool,
         rules: &'a Rules,
     ) -> Result<PathPlanner<'a>, ValidatorError> {
-        let at_stops = Rules { tolerance: rules.tolerance * (1.0 - BETWEEN), ..rules.clone() };
-        let mut judge = Validator::new(bvh, tool, &at_stops)?;
-        judge.certifier = judge.certifier.with_budget(BUDGET);
-        let touching = ToolPlacement::new(tool, bvh.unit());
-        Ok(PathPlanner { touching, judge, rules, postures: Vec::new() })
+        let location_rules = Rules {
+            tolerance: rules.tolerance * (1.0 - MOTION_TOLERANCE_FRACTION),
+            ..rules.clone()
+        };
+        let mut validator = Validator::new(bvh, tool, &location_rules)?;
+        validator.certifier = validator.certifier.with_budget(QUERY_BUDGET);
+        let placement = ToolPlacement::new(tool, bvh.unit());
+        Ok(PathPlanner { placement, validator, rules, postures: Vec::new() })
     }
 
     /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
-    fn stand(&mut self, spot: &SurfacePoint, axis: Vector3<f64>) -> Option<PathPosture> {
-        self.touching.list(*spot, [axis], &mut self.postures);
+    fn posture_at(
+        &mut self,
+        surface_point: &SurfacePoint,
+        axis: Vector3<f64>,
+    ) -> Option<PathPosture> {
+        self.placement.list(*surface_point, [axis], &mut self.postures);
         let nice = self.postures.iter().filter(|posture| posture.niceness > self.rules.niceness);
         let mut poses = nice.filter_map(|posture| Pose::from_axis(posture.tip, axis).ok());
-        let pose = poses.find(|pose| self.judge.accepts(pose))?;
-        Some(PathPosture { spot: *spot, pose, axis })
+        let pose = poses.find(|pose| self.validator.accepts(pose))?;
+        Some(PathPosture { surface_point: *surface_point, pose, axis })
     }
 
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion (`true`), or to be
     /// deeper (`false`); `None` if neither is proved or the motion is ambiguous.
-    fn sweep(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
+    fn check_motion(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
         let motion = Motion::new(from, to).ok()?;
-        let more = BETWEEN * self.rules.tolerance;
-        match self.judge.certifier.check_motion(&motion, more) {
+        let more = MOTION_TOLERANCE_FRACTION * self.rules.tolerance;
+        match self.validator.certifier.check_motion(&motion, more) {
             MotionVerdict::Clear | MotionVerdict::SurfaceOnly => Some(true),
             MotionVerdict::Touching(..) | MotionVerdict::Inside(_) => Some(false),
             MotionVerdict::Undecided(_) => None,
@@ -249,79 +256,85 @@ impl<'a> PathPlanner<'a> {
     }
 
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
-    fn goes(&mut self, from: &Pose, to: &Pose) -> bool {
-        self.sweep(from, to) == Some(true)
+    fn is_clear(&mut self, from: &Pose, to: &Pose) -> bool {
+        self.check_motion(from, to) == Some(true)
     }
 }
 
 /// A path under construction.
 #[derive(Default)]
 struct DrawnPath {
-    stops: Vec<(Pose, bool)>,
+    locations: Vec<(Pose, bool)>,
     /// The last approach from outside: the index of its cutter location on the surface, and its leg.
-    came: Option<(usize, RetractLeg)>,
+    last_approach: Option<(usize, RetractLeg)>,
     /// The last posture on the surface.
     last: Option<PathPosture>,
-    seen: usize,
-    places: usize,
+    point_count: usize,
+    contact_points: usize,
     dropped: usize,
-    lifts: usize,
+    retracts: usize,
     steps: usize,
-    turned: [f64; 2],
+    squared_turns: [f64; 2],
 }
 
 impl DrawnPath {
     fn count(&mut self, run: &PostureRun) {
-        self.places += run.ways.len();
-        self.steps += run.ways.len() - 1;
-        self.turned[0] += run.turned;
-        self.turned[1] += run.turns();
+        self.contact_points += run.postures.len();
+        self.steps += run.postures.len() - 1;
+        self.squared_turns[0] += run.squared_turns;
+        self.squared_turns[1] += run.turns();
     }
 
     /// Returns the index of the run with the nearest end, and whether that is its last posture.
     fn nearest(&self, runs: &[PostureRun]) -> Option<(usize, bool)> {
         let from = self.last.as_ref().map(|last| last.pose.tip());
-        let far = |way: &PathPosture| from.map_or(0.0, |from| (way.pose.tip() - from).norm());
+        let distance_to =
+            |posture: &PathPosture| from.map_or(0.0, |from| (posture.pose.tip() - from).norm());
         let ends = runs.iter().enumerate().filter_map(|(index, run)| {
-            let (first, last) = (run.ways.first()?, run.ways.last()?);
-            Some([(far(first), index, false), (far(last), index, true)])
+            let (first, last) = (run.postures.first()?, run.postures.last()?);
+            Some([(distance_to(first), index, false), (distance_to(last), index, true)])
         });
         let nearest = ends.flatten().min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, index, reverse)| (index, reverse))
     }
 
-    fn stop(&mut self, pose: Pose, rapid: bool) {
-        self.stops.push((pose, rapid));
+    fn push_location(&mut self, pose: Pose, rapid: bool) {
+        self.locations.push((pose, rapid));
     }
 
     /// Moves to a run and along it. Two points that cannot be joined on the surface are joined above it or
     /// around the part; a point that cannot be joined at all is dropped.
     fn follow(
         &mut self,
-        leader: &mut PathPlanner<'_>,
-        around: &RetractSphere,
+        planner: &mut PathPlanner<'_>,
+        sphere: &RetractSphere,
         run: &PostureRun,
-        near: f64,
+        max_link: f64,
     ) {
-        for (index, way) in run.ways.iter().enumerate() {
-            let joined = match (index.checked_sub(1), &self.last) {
+        for (index, posture) in run.postures.iter().enumerate() {
+            let links = match (index.checked_sub(1), &self.last) {
                 // The pose tells whether the previous posture of the run was reached or dropped.
-                (Some(before), Some(last)) if run.ways[before].pose == last.pose => {
-                    run.joined[before].clone()
+                (Some(before), Some(last)) if run.postures[before].pose == last.pose => {
+                    run.links[before].clone()
                 }
-                (_, Some(last)) if (way.spot.point - last.spot.point).norm() <= near => {
-                    leader.join(last, way, &[])
+                (_, Some(last))
+                    if (posture.surface_point.point - last.surface_point.point).norm()
+                        <= max_link =>
+                {
+                    planner.link(last, posture, &[])
                 }
                 _ => None,
             };
-            if let Some(stops) = joined {
-                stops.into_iter().for_each(|pose| self.stop(pose, false));
-            } else if !self.hop(leader, around, way) && !self.go_round(leader, around, way) {
+            if let Some(locations) = links {
+                locations.into_iter().for_each(|pose| self.push_location(pose, false));
+            } else if !self.hop(planner, sphere, posture)
+                && !self.move_around(planner, sphere, posture)
+            {
                 self.dropped += 1;
                 continue;
             }
-            self.stop(way.pose, false);
-            self.last = Some(*way);
+            self.push_location(posture.pose, false);
+            self.last = Some(*posture);
         }
     }
 
@@ -329,82 +342,84 @@ impl DrawnPath {
     /// `false` if that is not proved.
     fn hop(
         &mut self,
-        leader: &mut PathPlanner<'_>,
-        around: &RetractSphere,
-        way: &PathPosture,
+        planner: &mut PathPlanner<'_>,
+        sphere: &RetractSphere,
+        posture: &PathPosture,
     ) -> bool {
         let Some(last) = &self.last else { return false };
-        let (from, to) = (last.pose, way.pose);
-        let (Some(up), Some(over)) = (around.lifted(&from), around.lifted(&to)) else {
+        let (from, to) = (last.pose, posture.pose);
+        let (Some(up), Some(over)) = (sphere.retracted(&from), sphere.retracted(&to)) else {
             return false;
         };
-        let proved = leader.goes(&from, &up) && leader.goes(&up, &over) && leader.goes(&over, &to);
+        let proved = planner.is_clear(&from, &up)
+            && planner.is_clear(&up, &over)
+            && planner.is_clear(&over, &to);
         if proved {
-            self.stop(up, false);
-            self.stop(over, true);
-            self.lifts += 1;
+            self.push_location(up, false);
+            self.push_location(over, true);
+            self.retracts += 1;
         }
         proved
     }
 
     /// Leaves the surface, and comes to a posture from outside. Returns `false` if that is not proved.
-    fn go_round(
+    fn move_around(
         &mut self,
-        leader: &mut PathPlanner<'_>,
-        around: &RetractSphere,
-        way: &PathPosture,
+        planner: &mut PathPlanner<'_>,
+        sphere: &RetractSphere,
+        posture: &PathPosture,
     ) -> bool {
-        let Some(leg) = around.leg(leader, &way.pose) else { return false };
-        let left = self.stops.len();
-        if let Some(from) = self.leave(leader, around) {
-            let Some(stops) = around.between(leader, &from, &leg.far) else {
-                self.stops.truncate(left);
+        let Some(leg) = sphere.leg(planner, &posture.pose) else { return false };
+        let location_count = self.locations.len();
+        if let Some(from) = self.leave(planner, sphere) {
+            let Some(locations) = sphere.between(planner, &from, &leg.outer) else {
+                self.locations.truncate(location_count);
                 return false;
             };
-            stops.into_iter().for_each(|pose| self.stop(pose, true));
-            self.lifts += 1;
+            locations.into_iter().for_each(|pose| self.push_location(pose, true));
+            self.retracts += 1;
         }
-        self.stop(leg.far, true);
-        self.stop(leg.near, true);
-        self.came = Some((self.stops.len(), leg));
+        self.push_location(leg.outer, true);
+        self.push_location(leg.lead_end, true);
+        self.last_approach = Some((self.locations.len(), leg));
         true
     }
 
     /// Leaves the surface and returns the outer pose; `None` if nothing was touched yet. Where the leg from the
     /// last cutter location is not proved, the tool first goes back along the earlier ones, hops included, at
     /// most to the last one that was approached from outside.
-    fn leave(&mut self, leader: &mut PathPlanner<'_>, around: &RetractSphere) -> Option<Pose> {
-        let (first, came) = self.came?;
-        let mut at = self.stops.len() - 1;
+    fn leave(&mut self, planner: &mut PathPlanner<'_>, sphere: &RetractSphere) -> Option<Pose> {
+        let (first, last_approach) = self.last_approach?;
+        let mut index = self.locations.len() - 1;
         let leg = loop {
-            if at == first {
-                break came;
+            if index == first {
+                break last_approach;
             }
-            if let Some(leg) = around.leg(leader, &self.stops[at].0) {
+            if let Some(leg) = sphere.leg(planner, &self.locations[index].0) {
                 break leg;
             }
-            at -= 1;
-            self.stop(self.stops[at].0, false);
+            index -= 1;
+            self.push_location(self.locations[index].0, false);
         };
-        self.stop(leg.near, false);
-        self.stop(leg.far, true);
-        Some(leg.far)
+        self.push_location(leg.lead_end, false);
+        self.push_location(leg.outer, true);
+        Some(leg.outer)
     }
 
     fn end(
         mut self,
-        leader: &mut PathPlanner<'_>,
-        around: &RetractSphere,
+        planner: &mut PathPlanner<'_>,
+        sphere: &RetractSphere,
     ) -> Result<ToolPath, PathError> {
-        self.leave(leader, around).ok_or(PathError::NoPosture)?;
+        self.leave(planner, sphere).ok_or(PathError::NoPosture)?;
         let steps = self.steps.max(1) as f64;
-        let places = self.places - self.dropped;
+        let contact_points = self.contact_points - self.dropped;
         Ok(ToolPath {
-            contact_points: places,
-            left_out: self.seen - places,
-            retracts: self.lifts,
-            turns: self.turned.map(|turned| (turned / steps).sqrt()),
-            locations: self.stops,
+            contact_points: contact_points,
+            left_out: self.point_count - contact_points,
+            retracts: self.retracts,
+            turns: self.squared_turns.map(|squared_turns| (squared_turns / steps).sqrt()),
+            locations: self.locations,
         })
     }
 }

@@ -19,8 +19,8 @@ pub(super) struct RetractSphere {
 /// A move off the surface along the tool's axis: a short lead in feed, and then out to the sphere.
 #[derive(Clone, Copy)]
 pub(super) struct RetractLeg {
-    pub(super) near: Pose,
-    pub(super) far: Pose,
+    pub(super) lead_end: Pose,
+    pub(super) outer: Pose,
 }
 
 /// Length of the lead in feed, as a fraction of half the diagonal of the part's box.
@@ -39,49 +39,51 @@ impl RetractSphere {
     }
 
     /// Returns the pose moved off the surface by the lead, along the axis.
-    pub(super) fn lifted(&self, pose: &Pose) -> Option<Pose> {
+    pub(super) fn retracted(&self, pose: &Pose) -> Option<Pose> {
         pose.translated(pose.axis() * self.lead).ok()
     }
 
     /// Returns the move off the surface from a posture, if it is proved.
-    pub(super) fn leg(&self, leader: &mut PathPlanner<'_>, pose: &Pose) -> Option<RetractLeg> {
+    pub(super) fn leg(&self, planner: &mut PathPlanner<'_>, pose: &Pose) -> Option<RetractLeg> {
         let (from, axis) = (pose.tip() - self.centre, pose.axis());
         // Distance along the axis at which a ray from inside leaves the sphere.
-        let along = from.dot(&axis);
-        let out = (along * along + self.radius * self.radius - from.norm_squared()).sqrt() - along;
-        let near = pose.translated(axis * self.lead.min(0.5 * out)).ok()?;
-        let far = pose.translated(axis * out).ok()?;
-        (leader.goes(pose, &near) && leader.goes(&near, &far)).then_some(RetractLeg { near, far })
+        let height = from.dot(&axis);
+        let exit =
+            (height * height + self.radius * self.radius - from.norm_squared()).sqrt() - height;
+        let lead_end = pose.translated(axis * self.lead.min(0.5 * exit)).ok()?;
+        let outer = pose.translated(axis * exit).ok()?;
+        (planner.is_clear(pose, &lead_end) && planner.is_clear(&lead_end, &outer))
+            .then_some(RetractLeg { lead_end, outer })
     }
 
     /// Returns the poses between two poses on the sphere, without these: upright, around, and over to the
     /// second axis. Returns `None` if a motion is not proved.
     pub(super) fn between(
         &self,
-        leader: &mut PathPlanner<'_>,
+        planner: &mut PathPlanner<'_>,
         from: &Pose,
         to: &Pose,
     ) -> Option<Vec<Pose>> {
         let [first, last] = [from, to].map(|pose| (pose.tip() - self.centre) / self.radius);
         let turn = first.angle(&last);
-        let about = Unit::try_new(first.cross(&last), 1e-9)
+        let axis = Unit::try_new(first.cross(&last), 1e-9)
             .or_else(|| Unit::try_new(first.cross(&Vector3::x()), 1e-3))
             .unwrap_or_else(Vector3::y_axis);
-        let pieces = (turn / FRAC_PI_3).ceil().max(1.0);
+        let segments = (turn / FRAC_PI_3).ceil().max(1.0);
         let upright = |k: usize| {
-            let part = nalgebra::Rotation3::from_axis_angle(&about, turn * k as f64 / pieces);
-            let way = part * first;
-            Pose::from_axis(self.centre + way * self.radius, way).ok()
+            let rotation = nalgebra::Rotation3::from_axis_angle(&axis, turn * k as f64 / segments);
+            let direction = rotation * first;
+            Pose::from_axis(self.centre + direction * self.radius, direction).ok()
         };
-        let stops: Option<Vec<Pose>> = (0..=pieces as usize).map(upright).collect();
-        let stops = stops?;
-        let mut at = *from;
-        for stop in stops.iter().chain([to]) {
-            if !leader.goes(&at, stop) {
+        let poses: Option<Vec<Pose>> = (0..=segments as usize).map(upright).collect();
+        let poses = poses?;
+        let mut current = *from;
+        for next in poses.iter().chain([to]) {
+            if !planner.is_clear(&current, next) {
                 return None;
             }
-            at = *stop;
+            current = *next;
         }
-        Some(stops)
+        Some(poses)
     }
 }

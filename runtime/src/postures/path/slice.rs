@@ -37,11 +37,11 @@ pub(super) fn slices(
     for id in mesh.ids() {
         let corners = mesh.triangle(id);
         let heights = heights(mesh, normal, id);
-        let place = |height: f64| (height - low) / (high - low) * count - 0.5;
-        let least = heights.into_iter().fold(f64::INFINITY, f64::min);
-        let most = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let first = place(least).floor().max(0.0) as usize;
-        let last = place(most).ceil().max(0.0) as usize;
+        let point = |height: f64| (height - low) / (high - low) * count - 0.5;
+        let lowest = heights.into_iter().fold(f64::INFINITY, f64::min);
+        let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let first = point(lowest).floor().max(0.0) as usize;
+        let last = point(highest).ceil().max(0.0) as usize;
         for k in first..=last.min(planes.len() - 1) {
             if let Some(ends) = crossed(corners, heights, plane(k)) {
                 planes[k].push(SliceSegment { triangle: id, ends });
@@ -50,7 +50,9 @@ pub(super) fn slices(
     }
     planes
         .iter()
-        .map(|pieces| chains(pieces).iter().map(|line| along(mesh, line, step)).collect())
+        .map(|segments| {
+            join_segments(segments).iter().map(|line| sample_line(mesh, line, step)).collect()
+        })
         .collect()
 }
 
@@ -58,9 +60,9 @@ pub(super) fn slices(
 /// planes, divided by the distance between planes.
 pub(super) fn length_of_lines(mesh: &Mesh, normal: &Vector3<f64>, stepover: f64) -> f64 {
     let [low, high] = range(mesh, normal);
-    let steep =
+    let projected_areas =
         mesh.ids().filter_map(|id| Some(mesh.area(id) * mesh.normal(id)?.cross(normal).norm()));
-    steep.sum::<f64>() / stepover.min(high - low)
+    projected_areas.sum::<f64>() / stepover.min(high - low)
 }
 
 fn heights(mesh: &Mesh, normal: &Vector3<f64>, id: TriangleId) -> [f64; 3] {
@@ -79,37 +81,40 @@ fn range(mesh: &Mesh, normal: &Vector3<f64>) -> [f64; 2] {
 /// as above it. Both triangles of a side get the same point.
 fn crossed(corners: [Point3<f64>; 3], heights: [f64; 3], plane: f64) -> Option<[Point3<f64>; 2]> {
     let above = heights.map(|height| height >= plane);
-    let mut places = (0..3).filter_map(|k| {
+    let mut points = (0..3).filter_map(|k| {
         let next = (k + 1) % 3;
         let (low, high) = if above[k] { (next, k) } else { (k, next) };
         (above[k] != above[next]).then(|| {
-            let part = (plane - heights[low]) / (heights[high] - heights[low]);
-            corners[low] + (corners[high] - corners[low]) * part
+            let fraction = (plane - heights[low]) / (heights[high] - heights[low]);
+            corners[low] + (corners[high] - corners[low]) * fraction
         })
     });
-    Some([places.next()?, places.next()?])
+    Some([points.next()?, points.next()?])
 }
 
 /// Joins segments into lines: segments that have an end in common follow each other.
-fn chains(pieces: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
-    let key = |place: Point3<f64>| [place.x, place.y, place.z].map(|part| (part + 0.0).to_bits());
+fn join_segments(segments: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
+    let key =
+        |point: Point3<f64>| [point.x, point.y, point.z].map(|fraction| (fraction + 0.0).to_bits());
     let mut ends: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
-    for (index, piece) in pieces.iter().enumerate() {
-        for end in piece.ends {
+    for (index, segment) in segments.iter().enumerate() {
+        for end in segment.ends {
             ends.entry(key(end)).or_default().push(index);
         }
     }
-    let mut used = vec![false; pieces.len()];
+    let mut used = vec![false; segments.len()];
     let mut lines = Vec::new();
     // Open lines begin at an end that no other segment has; the remaining lines are closed.
-    let open = |piece: &SliceSegment| piece.ends.iter().position(|end| ends[&key(*end)].len() == 1);
-    let starts = (0..pieces.len()).filter_map(|index| open(&pieces[index]).map(|end| (index, end)));
-    for (start, end) in starts.chain((0..pieces.len()).map(|index| (index, 0))) {
+    let open =
+        |segment: &SliceSegment| segment.ends.iter().position(|end| ends[&key(*end)].len() == 1);
+    let starts =
+        (0..segments.len()).filter_map(|index| open(&segments[index]).map(|end| (index, end)));
+    for (start, end) in starts.chain((0..segments.len()).map(|index| (index, 0))) {
         let mut line = Vec::new();
-        let (mut at, mut from) = (start, pieces[start].ends[end]);
+        let (mut at, mut from) = (start, segments[start].ends[end]);
         while !used[at] {
             used[at] = true;
-            let SliceSegment { triangle, ends: [first, last] } = pieces[at];
+            let SliceSegment { triangle, ends: [first, last] } = segments[at];
             let to = if key(first) == key(from) { last } else { first };
             line.push(SliceSegment { triangle, ends: [from, to] });
             from = to;
@@ -127,34 +132,34 @@ fn chains(pieces: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
 
 /// Returns points along a line: the midpoints of equal divisions of its segments, except those that are too
 /// near to the previous point.
-fn along(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint> {
-    let mut places: Vec<SlicePoint> = Vec::new();
-    let mut since = f64::INFINITY;
+fn sample_line(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint> {
+    let mut points: Vec<SlicePoint> = Vec::new();
+    let mut distance = f64::INFINITY;
     let mut crossed = Vec::new();
     for (index, SliceSegment { triangle, ends: [from, to] }) in line.iter().enumerate() {
         if let Some(before) = index.checked_sub(1)
-            && !places.is_empty()
+            && !points.is_empty()
         {
             let normals = [line[before].triangle, *triangle].map(|side| mesh.normal(side));
             let spot = |normal| SurfacePoint { point: *from, normal };
             crossed.extend(normals.into_iter().flatten().map(spot));
         }
-        let way = to - from;
-        let parts = (way.norm() / step).ceil().max(1.0);
-        let part = way.norm() / parts;
+        let displacement = to - from;
+        let parts = (displacement.norm() / step).ceil().max(1.0);
+        let fraction = displacement.norm() / parts;
         for k in 0..parts as usize {
             // Each division adds half its length before its midpoint, and half after it.
-            since += 0.5 * part;
-            if since >= 0.5 * step {
-                let point = from + way * ((k as f64 + 0.5) / parts);
+            distance += 0.5 * fraction;
+            if distance >= 0.5 * step {
+                let point = from + displacement * ((k as f64 + 0.5) / parts);
                 let crossed = std::mem::take(&mut crossed);
-                places.push(SlicePoint { point, triangle: *triangle, crossed });
-                since = 0.0;
+                points.push(SlicePoint { point, triangle: *triangle, crossed });
+                distance = 0.0;
             }
-            since += 0.5 * part;
+            distance += 0.5 * fraction;
         }
     }
-    places
+    points
 }
 
 #[cfg(test)]
@@ -174,15 +179,19 @@ mod tests {
             assert_eq!(lines.len(), 1, "at {height}");
             let radius = (100.0 - height * height).sqrt();
             let line = &lines[0];
-            let way: f64 = line.windows(2).map(|pair| (pair[1].point - pair[0].point).norm()).sum();
-            assert!((way - TAU * radius).abs() < 0.6 + 0.01 * TAU * radius, "{way} at {height}");
+            let displacement: f64 =
+                line.windows(2).map(|pair| (pair[1].point - pair[0].point).norm()).sum();
+            assert!(
+                (displacement - TAU * radius).abs() < 0.6 + 0.01 * TAU * radius,
+                "{displacement} at {height}"
+            );
             for pair in line.windows(2) {
-                let far = (pair[1].point - pair[0].point).norm();
-                assert!(far < 1.01, "{far} at {height}");
+                let spacing = (pair[1].point - pair[0].point).norm();
+                assert!(spacing < 1.01, "{spacing} at {height}");
             }
-            for place in line {
-                assert!((place.point.z - height).abs() < 1e-9);
-                assert!((place.point.coords.norm() - 10.0).abs() < 0.05);
+            for point in line {
+                assert!((point.point.z - height).abs() < 1e-9);
+                assert!((point.point.coords.norm() - 10.0).abs() < 0.05);
             }
         }
     }
@@ -193,8 +202,8 @@ mod tests {
         let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
         let slices = slices(&block, &Vector3::x(), [4.0, 1.0]);
         assert_eq!((slices.len(), slices[0].len()), (1, 1));
-        let way: f64 =
+        let displacement: f64 =
             slices[0][0].windows(2).map(|pair| (pair[1].point - pair[0].point).norm()).sum();
-        assert!((10.0..12.0).contains(&way), "{way}");
+        assert!((10.0..12.0).contains(&displacement), "{displacement}");
     }
 }

@@ -34,8 +34,8 @@ pub(super) enum PostureDecision {
 }
 
 impl SweepStats {
-    pub(super) fn of(&mut self, decided: PostureDecision) -> &mut u64 {
-        match decided {
+    pub(super) fn count_of(&mut self, decision: PostureDecision) -> &mut u64 {
+        match decision {
             PostureDecision::BelowNiceness => &mut self.below_niceness,
             PostureDecision::CachedObstruction => &mut self.cached_obstruction,
             PostureDecision::Obstructed => &mut self.obstructed,

@@ -13,131 +13,133 @@ use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
 
 /// Number of recent obstructions that are kept per direction, the latest first.
-const KNOWN: usize = 8;
+const MAX_OBSTRUCTIONS: usize = 8;
 
 /// One thread's tools, each with its caches.
 pub(super) struct Worker<'a> {
-    of: &'a PostureSweep<'a>,
+    sweep: &'a PostureSweep<'a>,
     tools: Vec<CandidateTool<'a>>,
 }
 
 /// A tool to try, with its caches.
 struct CandidateTool<'a> {
     index: u16,
-    touching: ToolPlacement<'a>,
+    placement: ToolPlacement<'a>,
     holder: Option<Holder>,
-    judge: Validator<'a>,
+    validator: Validator<'a>,
     /// Set if the points of the tool that may not be in the part are connected. If one of them is outside the
     /// part and no triangle touches them, then all of them are outside.
     one_piece: bool,
     /// Points of the part that were in the way, per direction.
-    known: Vec<Vec<Point3<f64>>>,
+    obstructions: Vec<Vec<Point3<f64>>>,
     postures: Vec<CandidatePosture>,
 }
 
 impl<'a> Worker<'a> {
-    pub(super) fn new(of: &'a PostureSweep<'a>) -> Result<Worker<'a>, SweepError> {
-        let tools = of.tools.iter().zip(0..);
+    pub(super) fn new(sweep: &'a PostureSweep<'a>) -> Result<Worker<'a>, SweepError> {
+        let tools = sweep.tools.iter().zip(0..);
         let tools = tools
-            .map(|(tool, index)| CandidateTool::new(of, *tool, index))
+            .map(|(tool, index)| CandidateTool::new(sweep, *tool, index))
             .collect::<Result<_, _>>()?;
-        Ok(Worker { of, tools })
+        Ok(Worker { sweep, tools })
     }
 
     /// Computes the rows of some triangles.
     pub(super) fn batch(&mut self, triangles: &[u32]) -> Batch {
-        let mut tally = SweepStats::default();
+        let mut stats = SweepStats::default();
         let mut rows: Vec<(u32, MapRow)> =
             triangles.iter().map(|id| (*id, MapRow::default())).collect();
-        for tried in &mut self.tools {
-            tried.forget();
+        for candidate in &mut self.tools {
+            candidate.clear_caches();
             for (id, row) in &mut rows {
-                tally.triangles += 1;
-                let mesh = self.of.mesh;
+                stats.triangles += 1;
+                let mesh = self.sweep.mesh;
                 let [a, b, c] = mesh.triangle(TriangleId(*id));
                 let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
                 // A triangle without an area has no normal.
-                let spot =
+                let surface_point =
                     mesh.normal(TriangleId(*id)).map(|normal| SurfacePoint { point, normal });
-                let access = tried.triangle(self.of, spot, (&mut row.best, &mut tally));
+                let access =
+                    candidate.triangle(self.sweep, surface_point, (&mut row.best, &mut stats));
                 row.access.push(access);
             }
         }
         for (_, row) in &mut rows {
-            merge(&mut row.best, &[], self.of.keep);
+            merge(&mut row.best, &[], self.sweep.keep);
         }
-        Batch { rows, stats: tally }
+        Batch { rows, stats }
     }
 }
 
 impl<'a> CandidateTool<'a> {
     fn new(
-        of: &PostureSweep<'a>,
+        sweep: &PostureSweep<'a>,
         tool: &'a dyn Tool,
         index: u16,
     ) -> Result<CandidateTool<'a>, SweepError> {
-        let (info, unit) = (tool.info(), of.bvh.unit());
-        let mut judge = Validator::new(of.bvh, tool, &of.rules)?;
+        let (info, unit) = (tool.info(), sweep.bvh.unit());
+        let mut validator = Validator::new(sweep.bvh, tool, &sweep.rules)?;
         Ok(CandidateTool {
             index,
-            touching: ToolPlacement::new(tool, unit),
+            placement: ToolPlacement::new(tool, unit),
             holder: Holder::new(info, info.unit.factor_to(unit)),
-            one_piece: judge.certifier.is_one_piece(),
-            judge,
-            known: vec![Vec::new(); of.directions.list().len()],
+            one_piece: validator.certifier.is_one_piece(),
+            validator,
+            obstructions: vec![Vec::new(); sweep.directions.list().len()],
             postures: Vec::new(),
         })
     }
 
     /// Clears the caches, so that a batch does not depend on the one before.
-    fn forget(&mut self) {
-        self.judge.certifier.forget();
-        self.known.iter_mut().for_each(Vec::clear);
+    fn clear_caches(&mut self) {
+        self.validator.certifier.clear_caches();
+        self.obstructions.iter_mut().for_each(Vec::clear);
     }
 
     /// Returns the directions from which the tool reaches a triangle, and appends the best postures to `best`.
     fn triangle(
         &mut self,
-        of: &PostureSweep<'a>,
-        spot: Option<SurfacePoint>,
-        (best, tally): (&mut Vec<PostureRecord>, &mut SweepStats),
+        sweep: &PostureSweep<'a>,
+        surface_point: Option<SurfacePoint>,
+        (best, stats): (&mut Vec<PostureRecord>, &mut SweepStats),
     ) -> Accessibility {
-        let mut directions = vec![0; of.directions.words()];
-        tally.not_facing += of.directions.list().len() as u64;
-        let Some(spot) = spot else {
+        let mut directions = vec![0; sweep.directions.words()];
+        stats.not_facing += sweep.directions.list().len() as u64;
+        let Some(surface_point) = surface_point else {
             return Accessibility { tool: self.index, directions, stickout: None };
         };
         let mut reached: Vec<CandidatePosture> = Vec::new();
-        let mut before = None;
+        let mut location = None;
         let mut postures = std::mem::take(&mut self.postures);
-        let axes = of.directions.list().iter().map(|axis| Vector3::from(*axis));
-        self.touching.list(spot, axes, &mut postures);
+        let axes = sweep.directions.list().iter().map(|axis| Vector3::from(*axis));
+        self.placement.list(surface_point, axes, &mut postures);
         // A tool can have several contacts in one direction; the nicest acceptable one counts.
         for contacts in postures.chunk_by(|a, b| a.direction == b.direction) {
-            let mut decided = PostureDecision::BelowNiceness;
-            for posture in contacts.iter().filter(|contact| contact.niceness > of.rules.niceness) {
-                decided = self.decide(of, posture, spot, &mut before);
-                if decided == PostureDecision::Acceptable {
+            let mut decision = PostureDecision::BelowNiceness;
+            for posture in contacts.iter().filter(|contact| contact.niceness > sweep.rules.niceness)
+            {
+                decision = self.decide(sweep, posture, surface_point, &mut location);
+                if decision == PostureDecision::Acceptable {
                     directions[posture.direction / 64] |= 1 << (posture.direction % 64);
                     reached.push(*posture);
                     break;
                 }
             }
-            tally.not_facing -= 1;
-            *tally.of(decided) += 1;
+            stats.not_facing -= 1;
+            *stats.count_of(decision) += 1;
         }
         self.postures = postures;
-        let stickout = self.stickout(of, &reached);
+        let stickout = self.stickout(sweep, &reached);
         let rank = |posture: &CandidatePosture| {
             // Comparing niceness in `f32` ignores rounding errors; ties go to the middle of the cone.
-            (posture.niceness as f32, -of.directions.margin(&directions, posture.direction))
+            (posture.niceness as f32, -sweep.directions.margin(&directions, posture.direction))
         };
         let mut ranked: Vec<_> = reached.iter().map(|posture| (rank(posture), posture)).collect();
-        ranked.sort_by(|((nice, margin), _), ((other, wide), _)| {
-            other.total_cmp(nice).then(wide.total_cmp(margin))
+        ranked.sort_by(|((niceness, margin), _), ((other_niceness, other_margin), _)| {
+            other_niceness.total_cmp(niceness).then(other_margin.total_cmp(margin))
         });
-        for (_, posture) in ranked.into_iter().take(of.keep.get().into()) {
-            let axis = of.directions.list()[posture.direction];
+        for (_, posture) in ranked.into_iter().take(sweep.keep.get().into()) {
+            let axis = sweep.directions.list()[posture.direction];
             if let Ok(pose) = Pose::from_axis(posture.tip, axis.into()) {
                 best.push(self.record(axis, &pose, posture.niceness));
             }
@@ -148,17 +150,19 @@ impl<'a> CandidateTool<'a> {
     /// Decides a posture: by known obstructions, then by a search of the triangles, then by containment.
     fn decide(
         &mut self,
-        of: &PostureSweep<'a>,
+        sweep: &PostureSweep<'a>,
         posture: &CandidatePosture,
-        spot: SurfacePoint,
-        before: &mut Option<Location>,
+        surface_point: SurfacePoint,
+        location: &mut Option<Location>,
     ) -> PostureDecision {
-        let axis = Vector3::from(of.directions.list()[posture.direction]);
-        let known = &mut self.known[posture.direction];
-        let certifier = &mut self.judge.certifier;
-        let stands = (&posture.tip, &axis);
-        if let Some(at) = known.iter().position(|place| certifier.is_too_deep(stands, place)) {
-            known[..=at].rotate_right(1);
+        let axis = Vector3::from(sweep.directions.list()[posture.direction]);
+        let obstructions = &mut self.obstructions[posture.direction];
+        let certifier = &mut self.validator.certifier;
+        let tip_and_axis = (&posture.tip, &axis);
+        if let Some(at) =
+            obstructions.iter().position(|point| certifier.is_too_deep(tip_and_axis, point))
+        {
+            obstructions[..=at].rotate_right(1);
             return PostureDecision::CachedObstruction;
         }
         let Ok(pose) = Pose::from_axis(posture.tip, axis) else {
@@ -166,16 +170,17 @@ impl<'a> CandidateTool<'a> {
         };
         match certifier.touches(&pose) {
             ContactVerdict::Yes(witness) => {
-                known.truncate(KNOWN - 1);
-                known.insert(0, witness.point);
+                obstructions.truncate(MAX_OBSTRUCTIONS - 1);
+                obstructions.insert(0, witness.point);
                 PostureDecision::Obstructed
             }
             ContactVerdict::Undecided(_) => PostureDecision::Undecided,
             ContactVerdict::No => {
                 // A point before the triangle and deep in the tool: if it is outside the part, so is the tool.
-                let place = spot.point + spot.normal * (2.0 * of.rules.tolerance);
-                if self.one_piece && certifier.is_too_deep(stands, &place) {
-                    return match before.get_or_insert_with(|| of.bvh.locate(place)) {
+                let point =
+                    surface_point.point + surface_point.normal * (2.0 * sweep.rules.tolerance);
+                if self.one_piece && certifier.is_too_deep(tip_and_axis, &point) {
+                    return match location.get_or_insert_with(|| sweep.bvh.locate(point)) {
                         Location::Inside => PostureDecision::Obstructed,
                         Location::Outside | Location::Unknown => PostureDecision::Acceptable,
                         Location::Undecided => PostureDecision::Undecided,
@@ -196,20 +201,21 @@ impl<'a> CandidateTool<'a> {
         let tip = pose.tip().into();
         let mut record =
             PostureRecord { tool: self.index, tip, axis, niceness, depth: 0.0, clearance: 0.0 };
-        self.judge.measure(&mut record, pose);
+        self.validator.measure(&mut record, pose);
         record
     }
 
     /// Returns the least stick-out over all postures, at most that of the tool as it is, which was validated.
-    fn stickout(&self, of: &PostureSweep<'a>, reached: &[CandidatePosture]) -> Option<f64> {
+    fn stickout(&self, sweep: &PostureSweep<'a>, reached: &[CandidatePosture]) -> Option<f64> {
         let holder = self.holder.as_ref()?;
         let mut least: Option<f64> = None;
         for posture in reached {
-            let axis = Vector3::from(of.directions.list()[posture.direction]);
-            if let Some(needed) = holder.least(of.bvh, (&posture.tip, &axis), least) {
+            let axis = Vector3::from(sweep.directions.list()[posture.direction]);
+            if let Some(needed) = holder.required_stickout(sweep.bvh, (&posture.tip, &axis), least)
+            {
                 least = Some(needed);
             }
         }
-        least.map(|least| least.min(holder.own))
+        least.map(|least| least.min(holder.stickout))
     }
 }

@@ -26,8 +26,8 @@ impl Disk {
     }
 
     fn map(&self) -> Result<PostureMap, MapError> {
-        let store = self.store().map_err(|error| MapError::of("disk", error))?;
-        PostureMap::of(store, "disk".to_owned())
+        let store = self.store().map_err(|error| MapError::from_database("disk", error))?;
+        PostureMap::from_database(store, "disk".to_owned())
     }
 
     fn take(&self, count: usize) -> io::Result<()> {

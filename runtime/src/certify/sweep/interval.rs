@@ -21,7 +21,7 @@ pub(crate) struct MotionInterval {
     views: [(Vector3<f64>, Matrix3<f64>); 3],
     /// Bounds on the displacement of a point from the middle of the interval, and on the deviation of its path from
     /// straight.
-    pace: MotionBounds,
+    bounds: MotionBounds,
     /// The axis of the rotation, in the tool's frame.
     axis: Vector3<f64>,
 }
@@ -36,12 +36,12 @@ struct MotionBounds {
 }
 
 impl MotionInterval {
-    /// Creates the interval `[from, to]`. Points that come no nearer to the tool than `keep` are irrelevant.
+    /// Creates the interval `[from, to]`. Points farther from the tool than `required_clearance` are irrelevant.
     pub(crate) fn new(
         setting: &QuerySetting<'_>,
         motion: &Motion,
         [from, to]: [f64; 2],
-        keep: f64,
+        required_clearance: f64,
     ) -> MotionInterval {
         let per_length = 1.0 / setting.length;
         let parts = [from, from / 2.0 + to / 2.0, to];
@@ -55,36 +55,38 @@ impl MotionInterval {
         let (length, turn) = (straight.norm(), motion.angle() * half);
         // A rotation preserves the distance from the tip, so a point that comes that near is never farther away in
         // this interval. No point of the tool is farther from its tip than √2 of its size.
-        let reach = 1.5 * setting.size + keep + 2.0 * length;
+        let reach = 1.5 * setting.size + required_clearance + 2.0 * length;
         MotionInterval {
             from,
             to,
             start: motion.start() - setting.bvh.frame.origin,
             poses,
             views,
-            pace: MotionBounds { straight: straight.abs().into(), length, turn, reach },
+            bounds: MotionBounds { straight: straight.abs().into(), length, turn, reach },
             axis: motion.rotation_axis(),
         }
     }
 
     /// Returns a corner of the part, given relative to the part's origin, at the start, the middle and the end.
-    pub(crate) fn seen(&self, corner: &Point) -> [Point; 3] {
+    pub(crate) fn transformed(&self, corner: &Point) -> [Point; 3] {
         let from_start = Vector3::from(*corner) - self.start;
         let [first, middle, last] = &self.views;
-        let seen = |(way, back): &(Vector3<f64>, Matrix3<f64>)| (back * (from_start - way)).into();
-        [seen(first), seen(middle), seen(last)]
+        let transformed = |(displacement, back): &(Vector3<f64>, Matrix3<f64>)| {
+            (back * (from_start - displacement)).into()
+        };
+        [transformed(first), transformed(middle), transformed(last)]
     }
 
     /// Returns whether a piece comes near enough to be relevant.
     pub(crate) fn reaches(&self, piece: &SubTriangle, length: f64) -> bool {
         let (centre, reach) = piece.ball();
-        let [_, (way, _), _] = &self.views;
-        let far = (Vector3::from(centre) - self.start - way).norm();
-        far - reach <= length * self.pace.reach
+        let [_, (displacement, _), _] = &self.views;
+        let far = (Vector3::from(centre) - self.start - displacement).norm();
+        far - reach <= length * self.bounds.reach
     }
 
     /// Returns the largest distance of the corners from the axis of the rotation.
-    pub(crate) fn about(&self, corners: &[Point; 3]) -> f64 {
+    pub(crate) fn rotation_radius(&self, corners: &[Point; 3]) -> f64 {
         let [u, v, w] = [self.axis.x, self.axis.y, self.axis.z];
         let square = |&[x, y, z]: &Point| {
             let [a, b, c] = [w * y - v * z, u * z - w * x, v * x - u * y];
@@ -94,8 +96,8 @@ impl MotionInterval {
     }
 
     /// Returns whether the tool rotates.
-    pub(crate) fn turns(&self) -> bool {
-        self.pace.turn > 0.0
+    pub(crate) fn rotates(&self) -> bool {
+        self.bounds.turn > 0.0
     }
 
     pub(crate) fn middle(&self) -> f64 {
@@ -105,23 +107,23 @@ impl MotionInterval {
     /// Returns a bound on how far a path is from straight, for a point whose distance from the axis of the rotation
     /// is at most `reach` in the middle of the interval.
     pub(crate) fn deviation_bound(&self, reach: f64) -> f64 {
-        let MotionBounds { length, turn, .. } = self.pace;
-        turn * (length + 0.5 * turn * self.pace.reach.min(reach + length))
+        let MotionBounds { length, turn, .. } = self.bounds;
+        turn * (length + 0.5 * turn * self.bounds.reach.min(reach + length))
     }
 
     /// Returns a bound on the displacement of such a point from the middle of the interval.
     pub(crate) fn displacement_bound(&self, reach: f64) -> f64 {
-        let MotionBounds { length, turn, .. } = self.pace;
-        length + turn * reach.min(self.pace.reach) + self.deviation_bound(reach)
+        let MotionBounds { length, turn, .. } = self.bounds;
+        length + turn * reach.min(self.bounds.reach) + self.deviation_bound(reach)
     }
 
-    /// Returns the displacement in `f32`, rounded up, with `keep` added to its translation.
-    pub(crate) fn shift(&self, keep: f64) -> Displacement {
-        let MotionBounds { straight, length, turn, reach } = self.pace;
+    /// Returns the displacement in `f32`, rounded up, with `required_clearance` added to its translation.
+    pub(crate) fn shift(&self, required_clearance: f64) -> Displacement {
+        let MotionBounds { straight, length, turn, reach } = self.bounds;
         let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
         Displacement {
             axis: self.axis.map(|part| part as f32).into(),
-            straight: straight.map(|part| up(part + keep)),
+            straight: straight.map(|part| up(part + required_clearance)),
             length: up(length),
             turn: up(turn),
             reach: up(reach),
