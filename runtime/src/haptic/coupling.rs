@@ -43,8 +43,8 @@ pub(super) fn springs(limits: &DeviceLimits) -> Vector6<f64> {
     diagonal(limits.stiffness, limits.turning_stiffness)
 }
 
-fn diagonal(way: f64, turn: f64) -> Vector6<f64> {
-    Vector6::new(way, way, way, turn, turn, turn)
+fn diagonal(linear: f64, angular: f64) -> Vector6<f64> {
+    Vector6::new(linear, linear, linear, angular, angular, angular)
 }
 
 /// Returns the secant stiffness (force divided by stretch) of a spring with limited force at a given
@@ -52,53 +52,56 @@ fn diagonal(way: f64, turn: f64) -> Vector6<f64> {
 pub(super) fn spring(
     coupling: &Coupling,
     limits: &DeviceLimits,
-    stretch: &Vector6<f64>,
+    displacement: &Vector6<f64>,
 ) -> (Vector6<f64>, f64) {
-    let [way, turn] = halves(stretch).map(|part| part.norm());
-    let (force, by_way) = capped(coupling.stiffness, limits.force, way);
-    let (torque, by_turn) = capped(coupling.turning_stiffness, limits.torque, turn);
-    (diagonal(force, torque), by_way + by_turn)
+    let [linear, angular] = halves(displacement).map(|part| part.norm());
+    let (force, linear_energy) = capped_spring(coupling.stiffness, limits.force, linear);
+    let (torque, angular_energy) =
+        capped_spring(coupling.turning_stiffness, limits.torque, angular);
+    (diagonal(force, torque), linear_energy + angular_energy)
 }
 
 /// Returns the secant stiffness and the energy of a one-dimensional spring whose force is limited to
-/// `most`.
-fn capped(stiffness: f64, most: f64, stretch: f64) -> (f64, f64) {
-    if stiffness * stretch <= most {
-        (stiffness, 0.5 * stiffness * stretch * stretch)
+/// `limit`.
+fn capped_spring(stiffness: f64, limit: f64, displacement: f64) -> (f64, f64) {
+    if stiffness * displacement <= limit {
+        (stiffness, 0.5 * stiffness * displacement * displacement)
     } else {
-        (most / stretch, most * (stretch - 0.5 * most / stiffness))
+        (limit / displacement, limit * (displacement - 0.5 * limit / stiffness))
     }
 }
 
 /// Limits force and torque to the device's maxima; directions are kept.
-pub(super) fn saturated(push: &DeviceWrench, limits: &DeviceLimits) -> DeviceWrench {
-    let least = |size: f64, most: f64| if size > most { most / size } else { 1.0 };
+pub(super) fn saturate(wrench: &DeviceWrench, limits: &DeviceLimits) -> DeviceWrench {
+    let factor = |size: f64, limit: f64| if size > limit { limit / size } else { 1.0 };
     DeviceWrench {
-        force: push.force * least(push.force.norm(), limits.force),
-        torque: push.torque * least(push.torque.norm(), limits.torque),
+        force: wrench.force * factor(wrench.force.norm(), limits.force),
+        torque: wrench.torque * factor(wrench.torque.norm(), limits.torque),
     }
 }
 
 /// Returns the positive semidefinite part of a contact's symmetrised stiffness, and its largest
 /// eigenvalue relative to the stiffness that the device can render. At 1, the stiffest direction or
 /// rotation is at the device's limit.
-pub(super) fn rendered(matrix: &Matrix6<f64>, limits: &DeviceLimits) -> (Matrix6<f64>, f64) {
-    let unit = diagonal(limits.stiffness, limits.turning_stiffness).map(|most| 1.0 / most.sqrt());
+pub(super) fn limit_stiffness(matrix: &Matrix6<f64>, limits: &DeviceLimits) -> (Matrix6<f64>, f64) {
+    let scale =
+        diagonal(limits.stiffness, limits.turning_stiffness).map(|limit| 1.0 / limit.sqrt());
     let scaled = Matrix6::from_fn(|row, column| {
-        0.5 * (matrix[(row, column)] + matrix[(column, row)]) * unit[row] * unit[column]
+        0.5 * (matrix[(row, column)] + matrix[(column, row)]) * scale[row] * scale[column]
     });
     let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(scaled);
-    let kept = eigenvectors * Matrix6::from_diagonal(&eigenvalues.map(|value| value.max(0.0)));
-    let kept = kept * eigenvectors.transpose();
-    let matrix = Matrix6::from_fn(|row, column| kept[(row, column)] / (unit[row] * unit[column]));
+    let projected = eigenvectors * Matrix6::from_diagonal(&eigenvalues.map(|value| value.max(0.0)));
+    let projected = projected * eigenvectors.transpose();
+    let matrix =
+        Matrix6::from_fn(|row, column| projected[(row, column)] / (scale[row] * scale[column]));
     (matrix, eigenvalues.max())
 }
 
-pub(super) fn as_push(both: &Vector6<f64>) -> DeviceWrench {
+pub(super) fn to_wrench(both: &Vector6<f64>) -> DeviceWrench {
     let [force, torque] = halves(both);
     DeviceWrench { force, torque }
 }
 
-pub(super) fn as_vector(push: &DeviceWrench) -> Vector6<f64> {
-    join(&push.force, &push.torque)
+pub(super) fn to_vector(wrench: &DeviceWrench) -> Vector6<f64> {
+    join(&wrench.force, &wrench.torque)
 }

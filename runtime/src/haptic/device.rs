@@ -17,8 +17,8 @@ pub struct DeviceWrench {
 impl DeviceWrench {
     /// Returns the wrench multiplied by a factor.
     #[must_use]
-    pub fn scaled(&self, by: f64) -> DeviceWrench {
-        DeviceWrench { force: self.force * by, torque: self.torque * by }
+    pub fn scaled(&self, factor: f64) -> DeviceWrench {
+        DeviceWrench { force: self.force * factor, torque: self.torque * factor }
     }
 
     /// Returns the sum of two wrenches.
@@ -138,7 +138,7 @@ pub struct PlaybackDevice {
     poses: Vec<Pose>,
     motions: Vec<Motion>,
     /// Poses of the path per cycle.
-    pace: f64,
+    poses_per_cycle: f64,
     limits: DeviceLimits,
     cycle: u64,
 }
@@ -154,30 +154,30 @@ impl PlaybackDevice {
         cycles: u64,
         limits: DeviceLimits,
     ) -> Result<PlaybackDevice, MotionError> {
-        let full = poses.iter().all(Pose::has_spin);
-        let motions = match full {
+        let all_have_spin = poses.iter().all(Pose::has_spin);
+        let motions = match all_have_spin {
             true => Vec::new(),
             false => {
                 let pairs = poses.windows(2);
                 pairs.map(|pair| Motion::new(&pair[0], &pair[1])).collect::<Result<_, _>>()?
             }
         };
-        let pace = poses.len().saturating_sub(1) as f64 / cycles.max(1) as f64;
-        Ok(PlaybackDevice { poses, motions, pace, limits, cycle: 0 })
+        let poses_per_cycle = poses.len().saturating_sub(1) as f64 / cycles.max(1) as f64;
+        Ok(PlaybackDevice { poses, motions, poses_per_cycle, limits, cycle: 0 })
     }
 }
 
 impl Device for PlaybackDevice {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
-        let at = self.cycle as f64 * self.pace;
-        let place = at as usize;
+        let position = self.cycle as f64 * self.poses_per_cycle;
+        let index = position as usize;
         self.cycle += 1;
-        if at > self.poses.len().saturating_sub(1) as f64 {
+        if position > self.poses.len().saturating_sub(1) as f64 {
             return Err(DeviceError::Ended);
         }
-        match self.motions.get(place) {
-            Some(motion) => Ok(motion.pose(at - place as f64)),
-            None => self.poses.get(place).copied().ok_or(DeviceError::Ended),
+        match self.motions.get(index) {
+            Some(motion) => Ok(motion.pose(position - index as f64)),
+            None => self.poses.get(index).copied().ok_or(DeviceError::Ended),
         }
     }
 

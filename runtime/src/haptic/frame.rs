@@ -23,19 +23,19 @@ impl Frame {
     /// another, in the world frame. With five axes, the rotation is the shortest that takes one tool
     /// axis to the other.
     pub(super) fn between(&self, from: &Pose, to: &Pose) -> Vector6<f64> {
-        let way = (self.centre_of(to) - self.centre_of(from)) * self.unit;
-        let turn = match self.axes {
+        let translation = (self.centre_of(to) - self.centre_of(from)) * self.unit;
+        let rotation = match self.axes {
             DeviceAxes::Five => {
                 let (sine, cosine) = (from.axis().cross(&to.axis()), from.axis().dot(&to.axis()));
                 let size = sine.norm();
                 if size > 0.0 { sine * (size.atan2(cosine) / size) } else { Vector3::zeros() }
             }
             DeviceAxes::Six => {
-                let turn = to.rotation() * from.rotation().transpose();
-                Rotation3::from_matrix_unchecked(turn).scaled_axis()
+                let rotation = to.rotation() * from.rotation().transpose();
+                Rotation3::from_matrix_unchecked(rotation).scaled_axis()
             }
         };
-        join(&way, &turn)
+        join(&translation, &rotation)
     }
 
     /// Returns a pose after the displacement and rotation of `step`, as returned by `between`.
@@ -43,20 +43,20 @@ impl Frame {
     /// # Errors
     /// Fails if the result is not a valid pose: the step is NaN or leads out of bounds.
     pub(super) fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Result<Pose, PoseError> {
-        let [way, turn] = halves(step);
-        let turned = Rotation3::from_scaled_axis(turn);
-        let centre = self.centre_of(pose) + way / self.unit;
-        let about = Point3::from(centre - turned * (self.centre_of(pose) - pose.tip().coords));
-        pose.rotated_to(turned.into_inner(), about)
+        let [translation, rotation] = halves(step);
+        let turned = Rotation3::from_scaled_axis(rotation);
+        let centre = self.centre_of(pose) + translation / self.unit;
+        let tip = Point3::from(centre - turned * (self.centre_of(pose) - pose.tip().coords));
+        pose.rotated_to(turned.into_inner(), tip)
     }
 }
 
-pub(super) fn join(way: &Vector3<f64>, turn: &Vector3<f64>) -> Vector6<f64> {
-    Vector6::new(way.x, way.y, way.z, turn.x, turn.y, turn.z)
+pub(super) fn join(translation: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z)
 }
 
-pub(super) fn halves(both: &Vector6<f64>) -> [Vector3<f64>; 2] {
-    [0, 3].map(|row| both.fixed_rows::<3>(row).into_owned())
+pub(super) fn halves(vector: &Vector6<f64>) -> [Vector3<f64>; 2] {
+    [0, 3].map(|row| vector.fixed_rows::<3>(row).into_owned())
 }
 
 #[cfg(test)]

@@ -57,18 +57,18 @@ pub struct Tremor {
 
 /// A simulated hand that holds a device.
 pub struct SimulatedHand<F> {
-    wish: F,
+    target: F,
     frame: Frame,
     limits: DeviceLimits,
     period: f64,
     cycle: u64,
-    way: Oscillator,
-    turn: Oscillator,
-    at: Option<HandleState>,
-    push: DeviceWrench,
+    linear: Oscillator,
+    angular: Oscillator,
+    state: Option<HandleState>,
+    wrench: DeviceWrench,
     tremor: Option<TremorFilter>,
     /// Encoder resolutions, mm and rad; 0 for exact values.
-    steps: [f64; 2],
+    encoder_steps: [f64; 2],
 }
 
 debug!([F] SimulatedHand<F>, "SimulatedHand", |this| { cycle: this.cycle, limits: this.limits });
@@ -82,29 +82,33 @@ struct HandleState {
 }
 
 impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
-    /// Creates a hand that commands the tool pose `wish` as a function of time in seconds, with a device
+    /// Creates a hand that commands the tool pose `target` as a function of time in seconds, with a device
     /// of `rate` cycles per second. The handle starts at the first commanded pose, at rest.
     ///
     /// # Errors
     /// Fails if the rate or a limit is out of its range.
-    pub fn new(limits: DeviceLimits, rate: f64, wish: F) -> Result<SimulatedHand<F>, SettingError> {
+    pub fn new(
+        limits: DeviceLimits,
+        rate: f64,
+        target: F,
+    ) -> Result<SimulatedHand<F>, SettingError> {
         limits.check()?;
         let frame = Frame { centre: Point3::origin(), unit: 1.0, axes: limits.axes };
         let period = setting::period(rate)?;
-        let [way, turn] = Oscillator::both(&HandImpedance::default(), period)?;
-        let (push, steps) = (DeviceWrench::default(), [0.0; 2]);
+        let [linear, angular] = Oscillator::linear_and_angular(&HandImpedance::default(), period)?;
+        let (wrench, encoder_steps) = (DeviceWrench::default(), [0.0; 2]);
         Ok(SimulatedHand {
-            wish,
+            target,
             frame,
             limits,
             period,
             cycle: 0,
-            way,
-            turn,
-            at: None,
-            push,
+            linear,
+            angular,
+            state: None,
+            wrench,
             tremor: None,
-            steps,
+            encoder_steps,
         })
     }
 
@@ -114,10 +118,10 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
     /// Fails if a number of the impedance is out of its range.
     pub fn with_impedance(
         mut self,
-        grip: &HandImpedance,
+        impedance: &HandImpedance,
     ) -> Result<SimulatedHand<F>, SettingError> {
-        grip.check()?;
-        [self.way, self.turn] = Oscillator::both(grip, self.period)?;
+        impedance.check()?;
+        [self.linear, self.angular] = Oscillator::linear_and_angular(impedance, self.period)?;
         Ok(self)
     }
 
@@ -151,57 +155,61 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
     ///
     /// # Errors
     /// Fails if a resolution is negative or not finite.
-    pub fn with_encoders(mut self, way: f64, turn: f64) -> Result<SimulatedHand<F>, SettingError> {
-        setting::not_negative("step of the encoders in mm", way)?;
-        setting::not_negative("step of the encoders in rad", turn)?;
-        self.steps = [way, turn];
+    pub fn with_encoders(
+        mut self,
+        linear: f64,
+        angular: f64,
+    ) -> Result<SimulatedHand<F>, SettingError> {
+        setting::not_negative("step of the encoders in mm", linear)?;
+        setting::not_negative("step of the encoders in rad", angular)?;
+        self.encoder_steps = [linear, angular];
         Ok(self)
     }
 
     /// Returns the true pose of the handle, or `None` before the first cycle.
     pub fn pose_of_handle(&self) -> Option<Pose> {
-        self.at.map(|at| at.pose)
+        self.state.map(|state| state.pose)
     }
 
     /// Returns the pose as quantised by the encoders.
-    fn encoded(&self, at: &HandleState) -> Result<Pose, PoseError> {
-        if self.steps == [0.0; 2] {
-            return Ok(at.pose);
+    fn quantized_pose(&self, state: &HandleState) -> Result<Pose, PoseError> {
+        if self.encoder_steps == [0.0; 2] {
+            return Ok(state.pose);
         }
-        let off = self.frame.between(&at.start, &at.pose);
-        let step = |row: usize| self.steps[row / 3];
-        let told = Vector6::from_fn(|row, _| match step(row) {
-            0.0 => off[row],
-            step => (off[row] / step).round() * step,
+        let offset = self.frame.between(&state.start, &state.pose);
+        let step = |row: usize| self.encoder_steps[row / 3];
+        let quantized = Vector6::from_fn(|row, _| match step(row) {
+            0.0 => offset[row],
+            step => (offset[row] / step).round() * step,
         });
-        self.frame.moved(&at.start, &told)
+        self.frame.moved(&state.start, &quantized)
     }
 }
 
 impl<F: FnMut(f64) -> Pose> Device for SimulatedHand<F> {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
-        let mut wish = (self.wish)(self.cycle as f64 * self.period);
+        let mut target = (self.target)(self.cycle as f64 * self.period);
         if let Some(tremor) = &mut self.tremor {
-            wish = self.frame.moved(&wish, &join(&tremor.next(), &Vector3::zeros()))?;
+            target = self.frame.moved(&target, &join(&tremor.next(), &Vector3::zeros()))?;
         }
         self.cycle += 1;
-        let at = match self.at {
-            None => HandleState { pose: wish, start: wish, speed: Vector6::zeros() },
-            Some(at) => {
-                let [off, turned] = halves(&self.frame.between(&wish, &at.pose));
-                let [speed, spin] = halves(&at.speed);
-                let (off, speed) = self.way.after(off, speed, &self.push.force);
-                let (turned, spin) = self.turn.after(turned, spin, &self.push.torque);
-                let pose = self.frame.moved(&wish, &join(&off, &turned))?;
-                HandleState { pose, speed: join(&speed, &spin), ..at }
+        let state = match self.state {
+            None => HandleState { pose: target, start: target, speed: Vector6::zeros() },
+            Some(state) => {
+                let [offset, turned] = halves(&self.frame.between(&target, &state.pose));
+                let [speed, spin] = halves(&state.speed);
+                let (offset, speed) = self.linear.advance(offset, speed, &self.wrench.force);
+                let (turned, spin) = self.angular.advance(turned, spin, &self.wrench.torque);
+                let pose = self.frame.moved(&target, &join(&offset, &turned))?;
+                HandleState { pose, speed: join(&speed, &spin), ..state }
             }
         };
-        self.at = Some(at);
-        Ok(self.encoded(&at)?)
+        self.state = Some(state);
+        Ok(self.quantized_pose(&state)?)
     }
 
-    fn apply(&mut self, push: &DeviceWrench) -> Result<(), DeviceError> {
-        self.push = *push;
+    fn apply(&mut self, wrench: &DeviceWrench) -> Result<(), DeviceError> {
+        self.wrench = *wrench;
         Ok(())
     }
 
@@ -214,7 +222,7 @@ impl<F: FnMut(f64) -> Pose> Device for SimulatedHand<F> {
 /// exact, by the matrix exponential.
 #[derive(Clone, Copy, Debug)]
 struct Oscillator {
-    own: Matrix2<f64>,
+    transition: Matrix2<f64>,
     by_force: Vector2<f64>,
 }
 
@@ -222,13 +230,17 @@ struct Oscillator {
 const NEWTON: f64 = 1000.0;
 
 impl Oscillator {
-    fn both(grip: &HandImpedance, period: f64) -> Result<[Oscillator; 2], SettingError> {
-        let way = ("mass of the grip in kg", [grip.mass, grip.damping, grip.stiffness]);
-        let turn = (
+    fn linear_and_angular(
+        impedance: &HandImpedance,
+        period: f64,
+    ) -> Result<[Oscillator; 2], SettingError> {
+        let linear =
+            ("mass of the grip in kg", [impedance.mass, impedance.damping, impedance.stiffness]);
+        let angular = (
             "inertia of the grip in kg·mm²",
-            [grip.inertia, grip.turning_damping, grip.turning_stiffness],
+            [impedance.inertia, impedance.turning_damping, impedance.turning_stiffness],
         );
-        Ok([Oscillator::new(way, period)?, Oscillator::new(turn, period)?])
+        Ok([Oscillator::new(linear, period)?, Oscillator::new(angular, period)?])
     }
 
     /// Computes the model for a mass (kg or kg·mm²), a damping and a stiffness; `what` names the mass in errors.
@@ -240,75 +252,75 @@ impl Oscillator {
         (what, [mass, damping, stiffness]): (&'static str, [f64; 3]),
         period: f64,
     ) -> Result<Oscillator, SettingError> {
-        let by = NEWTON / mass;
+        let gain = NEWTON / mass;
         let rates = Matrix3::new(
             0.0,
             1.0,
             0.0, //
-            -stiffness * by,
-            -damping * by,
-            by, //
+            -stiffness * gain,
+            -damping * gain,
+            gain, //
             0.0,
             0.0,
             0.0,
         );
-        let after = (rates * period).exp();
-        if !after.iter().all(|part| part.is_finite()) {
+        let exponential = (rates * period).exp();
+        if !exponential.iter().all(|part| part.is_finite()) {
             let range = "one that is not so small beside damping and stiffness";
             return Err(SettingError { what, value: mass, range });
         }
         Ok(Oscillator {
-            own: after.fixed_view::<2, 2>(0, 0).into_owned(),
-            by_force: after.fixed_view::<2, 1>(0, 2).into_owned(),
+            transition: exponential.fixed_view::<2, 2>(0, 0).into_owned(),
+            by_force: exponential.fixed_view::<2, 1>(0, 2).into_owned(),
         })
     }
 
     /// Returns the offset from the commanded position and the velocity, one cycle later.
-    fn after(
+    fn advance(
         &self,
-        off: Vector3<f64>,
+        offset: Vector3<f64>,
         speed: Vector3<f64>,
         force: &Vector3<f64>,
     ) -> (Vector3<f64>, Vector3<f64>) {
-        let (own, by) = (&self.own, &self.by_force);
+        let (transition, gain) = (&self.transition, &self.by_force);
         (
-            own[(0, 0)] * off + own[(0, 1)] * speed + by[0] * force,
-            own[(1, 0)] * off + own[(1, 1)] * speed + by[1] * force,
+            transition[(0, 0)] * offset + transition[(0, 1)] * speed + gain[0] * force,
+            transition[(1, 0)] * offset + transition[(1, 1)] * speed + gain[1] * force,
         )
     }
 }
 
 struct TremorFilter {
-    draw: Pcg64Mcg,
+    random: Pcg64Mcg,
     /// The last two outputs of the recursion `x' = a x + b y + noise`.
     last: [Vector3<f64>; 2],
-    own: [f64; 2],
+    transition: [f64; 2],
     noise: f64,
 }
 
 /// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per
 /// cycle.
-const DAMPED: f64 = 0.1;
+const DAMPING_RATIO: f64 = 0.1;
 
 impl TremorFilter {
     fn new(tremor: &Tremor, period: f64) -> TremorFilter {
         let angle = std::f64::consts::TAU * tremor.frequency * period;
-        let radius = (-DAMPED * angle).exp();
-        let own = [2.0 * radius * angle.cos(), -radius * radius];
+        let radius = (-DAMPING_RATIO * angle).exp();
+        let transition = [2.0 * radius * angle.cos(), -radius * radius];
         // The variance of such a process (Box, Jenkins and Reinsel, *Time Series Analysis*, eq. 3.2.30).
-        let [first, second] = own;
+        let [first, second] = transition;
         let gain = (1.0 - second) / ((1.0 + second) * ((1.0 - second).powi(2) - first * first));
-        let draw = Pcg64Mcg::seed_from_u64(tremor.seed);
+        let random = Pcg64Mcg::seed_from_u64(tremor.seed);
         // Uniform noise between -1 and 1 has a variance of a third.
         let noise = tremor.size * (3.0 / gain).sqrt();
-        TremorFilter { draw, last: [Vector3::zeros(); 2], own, noise }
+        TremorFilter { random, last: [Vector3::zeros(); 2], transition, noise }
     }
 
     fn next(&mut self) -> Vector3<f64> {
-        let mut uniform = || (self.draw.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
+        let mut uniform = || (self.random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
         let noise = Vector3::new(uniform(), uniform(), uniform()) * self.noise;
         let [last, before] = self.last;
-        let next = self.own[0] * last + self.own[1] * before + noise;
+        let next = self.transition[0] * last + self.transition[1] * before + noise;
         self.last = [next, last];
         next
     }

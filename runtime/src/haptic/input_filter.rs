@@ -38,39 +38,43 @@ pub struct DeviceFaults {
 /// The result of filtering a pose.
 pub(super) enum FilteredInput {
     /// A pose that continues the motion.
-    On(Pose),
+    Continued(Pose),
     /// A pose at which the motion begins, or begins again after a jump.
-    Anew(Pose),
+    Restarted(Pose),
     /// No usable pose; the last good one is held.
     Held,
 }
 
 /// A filter that holds the last good pose until there is another.
 pub(super) struct InputFilter {
-    fastest: SpeedLimit,
+    speed_limit: SpeedLimit,
     period: f64,
     last: Option<Pose>,
     /// A pose too far from the last one, and the number of cycles that the device has stayed near it.
-    elsewhere: Option<(Pose, u64)>,
+    jumped_to: Option<(Pose, u64)>,
     pub(super) faults: DeviceFaults,
 }
 
 /// Time that a device must stay near a pose after a jump before the pose is accepted, s.
-const SETTLED: f64 = 0.05;
+const SETTLE_TIME: f64 = 0.05;
 
 impl InputFilter {
-    pub(super) fn new(fastest: SpeedLimit, period: f64) -> InputFilter {
+    pub(super) fn new(speed_limit: SpeedLimit, period: f64) -> InputFilter {
         InputFilter {
-            fastest,
+            speed_limit,
             period,
             last: None,
-            elsewhere: None,
+            jumped_to: None,
             faults: DeviceFaults::default(),
         }
     }
 
-    pub(super) fn take(&mut self, said: Result<Pose, DeviceError>, frame: &Frame) -> FilteredInput {
-        let pose = match said {
+    pub(super) fn filter(
+        &mut self,
+        reading: Result<Pose, DeviceError>,
+        frame: &Frame,
+    ) -> FilteredInput {
+        let pose = match reading {
             Ok(pose) => pose,
             Err(error) => {
                 match error {
@@ -83,29 +87,30 @@ impl InputFilter {
         };
         let Some(last) = self.last else {
             self.last = Some(pose);
-            return FilteredInput::Anew(pose);
+            return FilteredInput::Restarted(pose);
         };
-        if self.near(&last, &pose, frame) {
+        if self.is_reachable(&last, &pose, frame) {
             self.last = Some(pose);
-            self.elsewhere = None;
-            return FilteredInput::On(pose);
+            self.jumped_to = None;
+            return FilteredInput::Continued(pose);
         }
         self.faults.jumps += 1;
-        let stayed = match &self.elsewhere {
-            Some((there, stayed)) if self.near(there, &pose, frame) => stayed + 1,
+        let cycles = match &self.jumped_to {
+            Some((jumped, cycles)) if self.is_reachable(jumped, &pose, frame) => cycles + 1,
             _ => 0,
         };
-        self.elsewhere = Some((pose, stayed));
-        if stayed as f64 * self.period < SETTLED {
+        self.jumped_to = Some((pose, cycles));
+        if cycles as f64 * self.period < SETTLE_TIME {
             return FilteredInput::Held;
         }
         self.last = Some(pose);
-        self.elsewhere = None;
-        FilteredInput::Anew(pose)
+        self.jumped_to = None;
+        FilteredInput::Restarted(pose)
     }
 
-    fn near(&self, from: &Pose, to: &Pose, frame: &Frame) -> bool {
-        let [way, turn] = halves(&frame.between(from, to)).map(|part| part.norm());
-        way <= self.fastest.linear * self.period && turn <= self.fastest.angular * self.period
+    fn is_reachable(&self, from: &Pose, to: &Pose, frame: &Frame) -> bool {
+        let [translation, rotation] = halves(&frame.between(from, to)).map(|part| part.norm());
+        translation <= self.speed_limit.linear * self.period
+            && rotation <= self.speed_limit.angular * self.period
     }
 }

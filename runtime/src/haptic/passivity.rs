@@ -9,7 +9,7 @@
 //! Ryu, Preusche, Hannaford and Hirzinger, 2005).
 
 use super::DeviceWrench;
-use super::coupling::{as_push, as_vector};
+use super::coupling::{to_vector, to_wrench};
 use nalgebra::Vector6;
 
 /// Energy balance since the session began or restarted, in N·mm.
@@ -32,43 +32,47 @@ pub(super) struct Passivity {
     /// The controller's share of the last wrench.
     damping: Vector6<f64>,
     /// The excess of stored over supplied energy, N·mm.
-    missing: f64,
+    excess: f64,
 }
 
 impl Passivity {
     /// Accounts for a displacement of the hand under the last wrench.
-    pub(super) fn moved(&mut self, push: &DeviceWrench, way: &Vector6<f64>) {
-        self.energy.put_in -= as_vector(push).dot(way);
-        self.energy.taken_out -= self.damping.dot(way);
+    pub(super) fn add_work(&mut self, wrench: &DeviceWrench, displacement: &Vector6<f64>) {
+        self.energy.put_in -= to_vector(wrench).dot(displacement);
+        self.energy.taken_out -= self.damping.dot(displacement);
     }
 
     /// Accounts for stored energy that does not come from the hand but counts as supplied.
-    pub(super) fn given(&mut self, energy: f64) {
+    pub(super) fn supply(&mut self, energy: f64) {
         self.energy.put_in += energy;
     }
 
     /// Updates the stored energy and the excess.
-    pub(super) fn holds(&mut self, held: f64) {
+    pub(super) fn set_stored(&mut self, held: f64) {
         self.energy.held = held;
-        self.missing = held - self.energy.put_in;
-        self.energy.generated = self.energy.generated.max(self.missing);
+        self.excess = held - self.energy.put_in;
+        self.energy.generated = self.energy.generated.max(self.excess);
     }
 
     /// Returns a damper wrench against the displacement of the last cycle. It dissipates the excess if
-    /// the next displacement is equally long. It is never stronger than [`BRAKE`] times the force of the
+    /// the next displacement is equally long. It is never stronger than [`MAX_DAMPING_FRACTION`] times the force of the
     /// stiffest springs that the device can render over that displacement.
-    pub(super) fn damped(&mut self, way: &Vector6<f64>, stiffest: &Vector6<f64>) -> DeviceWrench {
-        let brake = stiffest.component_mul(way);
-        let work = brake.dot(way);
-        self.damping = if self.missing > 0.0 && work > 0.0 {
-            brake * -(self.missing / work).min(BRAKE)
+    pub(super) fn damping_wrench(
+        &mut self,
+        displacement: &Vector6<f64>,
+        max_stiffness: &Vector6<f64>,
+    ) -> DeviceWrench {
+        let damper = max_stiffness.component_mul(displacement);
+        let power = damper.dot(displacement);
+        self.damping = if self.excess > 0.0 && power > 0.0 {
+            damper * -(self.excess / power).min(MAX_DAMPING_FRACTION)
         } else {
             Vector6::zeros()
         };
-        as_push(&self.damping)
+        to_wrench(&self.damping)
     }
 }
 
 /// Largest damper force, relative to the force of the stiffest renderable spring over the same
 /// displacement. At 0.5, the damper is half as stiff over a cycle as the device can bear.
-const BRAKE: f64 = 0.5;
+const MAX_DAMPING_FRACTION: f64 = 0.5;

@@ -28,7 +28,7 @@ pub enum RealtimeError {
     #[error("no real-time priority ({0}): start as root, or allow it with `ulimit -r`")]
     Priority(String),
     /// The core was refused.
-    #[error("not kept on core {core}: this process may run on {}", Listed(.cores))]
+    #[error("not kept on core {core}: this process may run on {}", CoreList(.cores))]
     Core {
         /// The requested core.
         core: usize,
@@ -44,23 +44,23 @@ impl Realtime {
     /// Applies the requests to the calling thread. Returns those that were refused; the others take
     /// effect.
     pub fn apply(&self) -> Vec<RealtimeError> {
-        let mut refused = Vec::new();
+        let mut errors = Vec::new();
         if let Some(core) = self.core
-            && let Err(error) = stay_on(core)
+            && let Err(error) = pin_to_core(core)
         {
-            refused.push(error);
+            errors.push(error);
         }
         if self.locked
-            && let Err(error) = memory()
+            && let Err(error) = lock_memory()
         {
-            refused.push(RealtimeError::Memory(error));
+            errors.push(RealtimeError::Memory(error));
         }
         if let Some(priority) = self.priority
-            && let Err(error) = first(priority)
+            && let Err(error) = set_priority(priority)
         {
-            refused.push(RealtimeError::Priority(error));
+            errors.push(RealtimeError::Priority(error));
         }
-        refused
+        errors
     }
 }
 
@@ -75,7 +75,7 @@ pub fn check_core(core: usize) -> Result<(), RealtimeError> {
 }
 
 /// Binds the calling thread to a core.
-fn stay_on(core: usize) -> Result<(), RealtimeError> {
+fn pin_to_core(core: usize) -> Result<(), RealtimeError> {
     // Check first: the system's core set has a fixed size, beyond which no core may be requested.
     check_core(core)?;
     if core_affinity::set_for_current(core_affinity::CoreId { id: core }) {
@@ -86,9 +86,9 @@ fn stay_on(core: usize) -> Result<(), RealtimeError> {
 }
 
 /// A list of cores, displayed as ranges: `core 0 to 7, 12`.
-struct Listed<'a>(&'a [usize]);
+struct CoreList<'a>(&'a [usize]);
 
-impl fmt::Display for Listed<'_> {
+impl fmt::Display for CoreList<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return f.write_str("cores that the system does not name");
@@ -106,26 +106,27 @@ impl fmt::Display for Listed<'_> {
 }
 
 #[cfg(unix)]
-fn memory() -> Result<(), String> {
+fn lock_memory() -> Result<(), String> {
     use rustix::mm::{MlockAllFlags, mlockall};
     mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).map_err(|error| error.to_string())
 }
 
 #[cfg(not(unix))]
-fn memory() -> Result<(), String> {
+fn lock_memory() -> Result<(), String> {
     Err("this system has no such call".to_owned())
 }
 
 #[cfg(unix)]
-fn first(priority: u8) -> Result<(), String> {
+fn set_priority(priority: u8) -> Result<(), String> {
     let value = ThreadPriorityValue::try_from(priority).map_err(|error| error.to_string())?;
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let wanted = ThreadPriority::Crossplatform(value);
-    set_thread_priority_and_policy(thread_native_id(), wanted, policy).map_err(|e| e.to_string())
+    let priority_value = ThreadPriority::Crossplatform(value);
+    set_thread_priority_and_policy(thread_native_id(), priority_value, policy)
+        .map_err(|e| e.to_string())
 }
 
 #[cfg(not(unix))]
-fn first(_: u8) -> Result<(), String> {
+fn set_priority(_: u8) -> Result<(), String> {
     use thread_priority::ThreadPriority;
     thread_priority::set_current_thread_priority(ThreadPriority::Max).map_err(|e| e.to_string())
 }

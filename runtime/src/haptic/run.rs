@@ -19,14 +19,14 @@ pub trait Clock {
 pub struct MonotonicClock {
     start: Instant,
     /// The time to spin before each deadline.
-    awake: Duration,
+    spin_time: Duration,
 }
 
 impl MonotonicClock {
-    /// Creates a clock that spins for `awake` before each deadline. Choose the time that the system
+    /// Creates a clock that spins for `spin_time` before each deadline. Choose the time that the system
     /// takes to wake a thread.
-    pub fn new(awake: Duration) -> MonotonicClock {
-        MonotonicClock { start: Instant::now(), awake }
+    pub fn new(spin_time: Duration) -> MonotonicClock {
+        MonotonicClock { start: Instant::now(), spin_time }
     }
 }
 
@@ -36,8 +36,8 @@ impl Clock for MonotonicClock {
     }
 
     fn wait_until(&mut self, time: Duration) {
-        if let Some(left) = time.checked_sub(self.start.elapsed() + self.awake) {
-            std::thread::sleep(left);
+        if let Some(remaining) = time.checked_sub(self.start.elapsed() + self.spin_time) {
+            std::thread::sleep(remaining);
         }
         while self.start.elapsed() < time {
             std::hint::spin_loop();
@@ -107,7 +107,7 @@ impl LoopReport {
         }
     }
 
-    fn note(&mut self, state: &SessionState) {
+    fn record_state(&mut self, state: &SessionState) {
         let sizes = [state.wrench_on_hand.force.norm(), state.wrench_on_hand.torque.norm()];
         self.peak_wrench = [0, 1].map(|k: usize| self.peak_wrench[k].max(sizes[k]));
         self.last = Some(*state);
@@ -152,15 +152,15 @@ impl StateStream {
     }
 }
 
-/// Creates both ends of a state channel, with a buffer for `room` states in the stream.
-pub fn state_channel(room: usize) -> (StatePublisher, LatestState, StateStream) {
-    let (latest, seen) = triple_buffer::triple_buffer(&None);
-    let (record, taken) = rtrb::RingBuffer::new(room);
-    (StatePublisher { latest, record }, LatestState(seen), StateStream(taken))
+/// Creates both ends of a state channel, with a buffer for `capacity` states in the stream.
+pub fn state_channel(capacity: usize) -> (StatePublisher, LatestState, StateStream) {
+    let (latest, output) = triple_buffer::triple_buffer(&None);
+    let (record, consumer) = rtrb::RingBuffer::new(capacity);
+    (StatePublisher { latest, record }, LatestState(output), StateStream(consumer))
 }
 
 /// Delay of a cycle that counts as a stall.
-const STALL: Duration = Duration::from_secs(1);
+const STALL_THRESHOLD: Duration = Duration::from_secs(1);
 
 impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
     /// Runs cycles at their scheduled times, independent of the duration of earlier cycles. The run ends after
@@ -179,11 +179,11 @@ impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
         let mut due = clock.now();
         while report.cycles + report.skipped < cycles && !stop.load(Ordering::Relaxed) {
             clock.wait_until(due);
-            let began = clock.now();
-            let late = began.saturating_sub(due);
-            if late > STALL || due.saturating_sub(began) > period {
+            let started = clock.now();
+            let late = started.saturating_sub(due);
+            if late > STALL_THRESHOLD || due.saturating_sub(started) > period {
                 report.stalls += 1;
-                due = began;
+                due = started;
             }
             let state = self.cycle(device);
             if self.faults().ended {
@@ -191,20 +191,21 @@ impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
             }
             report.cycles += 1;
             if let Some(state) = state {
-                report.note(&state);
+                report.record_state(&state);
                 publisher.latest.write(Some(state));
                 report.dropped_states += u64::from(publisher.record.push(state).is_err());
             }
             report.start_delays.saturating_record(nanoseconds(late));
             let ended = clock.now();
-            report.durations.saturating_record(nanoseconds(ended.saturating_sub(began)));
+            report.durations.saturating_record(nanoseconds(ended.saturating_sub(started)));
             due += period;
             // The number of whole periods that have passed.
-            let behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
-            let behind = u32::try_from(behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
+            let cycles_behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
+            let cycles_behind =
+                u32::try_from(cycles_behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
             report.missed += u64::from(ended > due);
-            report.skipped += u64::from(behind);
-            due += period * behind;
+            report.skipped += u64::from(cycles_behind);
+            due += period * cycles_behind;
         }
         report.faults = self.faults();
         report

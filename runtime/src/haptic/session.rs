@@ -1,6 +1,6 @@
 //! A haptic session: the computation of one cycle.
 
-use super::coupling::{Coupling, as_push, as_vector, rendered, saturated, spring, springs};
+use super::coupling::{Coupling, limit_stiffness, saturate, spring, springs, to_vector, to_wrench};
 use super::frame::{Frame, halves};
 use super::input_filter::{DeviceFaults, FilteredInput, InputFilter, SpeedLimit};
 use super::passivity::{EnergyBalance, Passivity};
@@ -92,15 +92,15 @@ pub struct Session<'a, T: ?Sized = dyn Tool + 'a> {
     period: f64,
     limits: DeviceLimits,
     frame: Frame,
-    guard: InputFilter,
+    input_filter: InputFilter,
     passivity: Passivity,
     /// The poses of device and tool, and their difference.
-    place: Option<CoupledPoses>,
+    poses: Option<CoupledPoses>,
     /// The contact force at the tool's pose.
     last: Option<ContactForce>,
-    push: DeviceWrench,
+    device_wrench: DeviceWrench,
     /// The fraction of the wrench that is applied, from 0 to 1; it ramps up after a start.
-    engaged: f64,
+    ramp: f64,
     cycle: u64,
 }
 
@@ -110,7 +110,7 @@ debug!([T: ?Sized] Session<'_, T>, "Session", |this| { period: this.period, limi
 struct CoupledPoses {
     device: Pose,
     tool: Pose,
-    stretch: Vector6<f64>,
+    displacement: Vector6<f64>,
 }
 
 /// A contact force, in N, N·mm and mm.
@@ -125,11 +125,11 @@ struct ContactForce {
 }
 
 /// Duration of the ramp of the wrench after the motion begins anew, s.
-const COMING_ON: f64 = 0.1;
+const RAMP_TIME: f64 = 0.1;
 /// Maximum number of tool evaluations per cycle.
-const ASKED: usize = 6;
+const MAX_EVALUATIONS: usize = 6;
 /// Largest residual of the balance between spring and contact, relative to the device's maxima.
-const BALANCED: f64 = 1e-7;
+const BALANCE_TOLERANCE: f64 = 1e-7;
 
 impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
     /// Creates a session for a probe, with the probe's law and compliance centre. It reserves 127 bytes
@@ -157,12 +157,12 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
             period,
             limits,
             frame: Frame { centre, unit, axes: limits.axes },
-            guard: InputFilter::new(settings.fastest, period),
+            input_filter: InputFilter::new(settings.fastest, period),
             passivity: Passivity::default(),
-            place: None,
+            poses: None,
             last: None,
-            push: DeviceWrench::default(),
-            engaged: 0.0,
+            device_wrench: DeviceWrench::default(),
+            ramp: 0.0,
             cycle: 0,
             probe,
         })
@@ -175,49 +175,53 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
 
     /// Returns the counts of device faults.
     pub fn faults(&self) -> DeviceFaults {
-        self.guard.faults
+        self.input_filter.faults
     }
 
     /// Executes one cycle: reads the device's pose and applies a wrench to it. Returns `None` until the
     /// device has reported its first pose.
     pub fn cycle(&mut self, device: &mut impl Device) -> Option<SessionState> {
-        let taken = self.guard.take(device.pose(), &self.frame);
-        let held = matches!(taken, FilteredInput::Held);
-        let before = self.place.map(|place| place.device);
-        let (now, way) = match (taken, before) {
-            (FilteredInput::On(pose), Some(before)) => (pose, self.frame.between(&before, &pose)),
-            (FilteredInput::Held, Some(before)) => (before, Vector6::zeros()),
-            (FilteredInput::On(pose) | FilteredInput::Anew(pose), _) => {
-                self.begin(pose);
+        let input = self.input_filter.filter(device.pose(), &self.frame);
+        let held = matches!(input, FilteredInput::Held);
+        let previous = self.poses.map(|poses| poses.device);
+        let (device_pose, displacement) = match (input, previous) {
+            (FilteredInput::Continued(pose), Some(previous)) => {
+                (pose, self.frame.between(&previous, &pose))
+            }
+            (FilteredInput::Held, Some(previous)) => (previous, Vector6::zeros()),
+            (FilteredInput::Continued(pose) | FilteredInput::Restarted(pose), _) => {
+                self.restart(pose);
                 (pose, Vector6::zeros())
             }
             // The pose of the tool is still unknown.
             (FilteredInput::Held, None) => return None,
         };
-        self.passivity.moved(&self.push, &way);
-        let (evaluations, push, energy) = match self.rendering {
-            Rendering::Direct { scaled, damping } => self.direct(now, &way, (scaled, damping)),
-            Rendering::Coupled(coupling) => self.coupled(now, &coupling),
+        self.passivity.add_work(&self.device_wrench, &displacement);
+        let (evaluations, device_wrench, energy) = match self.rendering {
+            Rendering::Direct { scaled, damping } => {
+                self.direct(device_pose, &displacement, (scaled, damping))
+            }
+            Rendering::Coupled(coupling) => self.coupled(device_pose, &coupling),
         };
         // A hand that begins inside a part is not struck: the energy of the ramp counts as supplied.
-        let more = (self.engaged + self.period / COMING_ON).min(1.0) - self.engaged;
-        self.engaged += more;
-        self.passivity.given(more * energy);
-        self.passivity.holds(self.engaged * energy);
-        let mut push = saturated(&push.scaled(self.engaged), &self.limits);
+        let ramp_step = (self.ramp + self.period / RAMP_TIME).min(1.0) - self.ramp;
+        self.ramp += ramp_step;
+        self.passivity.supply(ramp_step * energy);
+        self.passivity.set_stored(self.ramp * energy);
+        let mut device_wrench = saturate(&device_wrench.scaled(self.ramp), &self.limits);
         if self.passive {
-            let damped = self.passivity.damped(&way, &springs(&self.limits));
-            push = saturated(&push.and(&damped), &self.limits);
+            let damping = self.passivity.damping_wrench(&displacement, &springs(&self.limits));
+            device_wrench = saturate(&device_wrench.and(&damping), &self.limits);
         }
-        if device.apply(&push).is_err() {
-            self.guard.faults.failed_writes += 1;
+        if device.apply(&device_wrench).is_err() {
+            self.input_filter.faults.failed_writes += 1;
         }
-        self.push = push;
+        self.device_wrench = device_wrench;
         let state = SessionState {
             cycle: self.cycle,
-            device: now,
-            tool: self.place.map_or(now, |place| place.tool),
-            wrench_on_hand: push,
+            device: device_pose,
+            tool: self.poses.map_or(device_pose, |poses| poses.tool),
+            wrench_on_hand: device_wrench,
             wrench: evaluations.wrench,
             stiffest: evaluations.stiffest,
             energy: self.passivity.energy,
@@ -227,13 +231,14 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         Some(state)
     }
 
-    /// Moves the tool to the hand's pose, without a wrench.
-    fn begin(&mut self, pose: Pose) {
-        self.place = Some(CoupledPoses { device: pose, tool: pose, stretch: Vector6::zeros() });
-        self.push = DeviceWrench::default();
+    /// Moves the tool to the hand's pose, without a device_wrench.
+    fn restart(&mut self, pose: Pose) {
+        self.poses =
+            Some(CoupledPoses { device: pose, tool: pose, displacement: Vector6::zeros() });
+        self.device_wrench = DeviceWrench::default();
         self.passivity = Passivity::default();
         self.last = None;
-        self.engaged = 0.0;
+        self.ramp = 0.0;
     }
 
     /// Returns the contact force on the tool at a pose.
@@ -241,22 +246,22 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         let Stiffness { wrench, matrix } = self.probe.stiffness(pose);
         let (newtons, unit) = (self.newtons, self.frame.unit);
         // A torque has one more length dimension than a force; a derivative by length has one less.
-        let lengths = |row: usize| if row < 3 { 1.0 } else { unit };
+        let length_factor = |row: usize| if row < 3 { 1.0 } else { unit };
         let mut torque = wrench.torque;
         if self.frame.axes == DeviceAxes::Five {
             torque -= pose.axis() * pose.axis().dot(&torque);
         }
-        let force = as_vector(&DeviceWrench { force: wrench.force, torque });
+        let force = to_vector(&DeviceWrench { force: wrench.force, torque });
         let matrix = Matrix6::from_fn(|row, column| {
-            newtons * lengths(row) * lengths(column) / unit * matrix[(row, column)]
+            newtons * length_factor(row) * length_factor(column) / unit * matrix[(row, column)]
         });
         let (matrix, stiffest) = match wrench.colliding {
             0 => (Matrix6::zeros(), 0.0),
-            _ => rendered(&matrix, &self.limits),
+            _ => limit_stiffness(&matrix, &self.limits),
         };
         ContactForce {
             wrench,
-            force: Vector6::from_fn(|row, _| newtons * lengths(row) * force[row]),
+            force: Vector6::from_fn(|row, _| newtons * length_factor(row) * force[row]),
             // Other laws have no energy.
             energy: if wrench.law == Law::Gradient { newtons * unit * wrench.energy } else { 0.0 },
             matrix,
@@ -267,63 +272,64 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
     /// Renders directly: the tool is at the device's pose.
     fn direct(
         &mut self,
-        now: Pose,
-        way: &Vector6<f64>,
+        device: Pose,
+        displacement: &Vector6<f64>,
         (scaled, damping): (bool, f64),
     ) -> (ContactForce, DeviceWrench, f64) {
-        let evaluations = self.contact_force(&now);
+        let evaluations = self.contact_force(&device);
         let gain = if scaled { 1.0 / evaluations.stiffest.max(1.0) } else { 1.0 };
         let mut force = evaluations.force * gain;
         if evaluations.wrench.colliding > 0 {
-            force -= springs(&self.limits).component_mul(way) * (damping / self.period);
+            force -= springs(&self.limits).component_mul(displacement) * (damping / self.period);
         }
-        self.place = Some(CoupledPoses { device: now, tool: now, stretch: Vector6::zeros() });
+        self.poses = Some(CoupledPoses { device, tool: device, displacement: Vector6::zeros() });
         let held = evaluations.energy * gain;
-        (evaluations, as_push(&force), held)
+        (evaluations, to_wrench(&force), held)
     }
 
     /// Renders through the coupling: finds the pose at which contact and coupling balance, by Newton's
     /// method from the last pose. The next cycle corrects the residual, which depends on the hand's
     /// displacement; the hand gets the spring force as it is.
-    fn coupled(&mut self, now: Pose, coupling: &Coupling) -> (ContactForce, DeviceWrench, f64) {
-        let (mut tool, before) = match &self.place {
-            Some(place) => (place.tool, place.stretch),
-            None => (now, Vector6::zeros()),
+    fn coupled(&mut self, device: Pose, coupling: &Coupling) -> (ContactForce, DeviceWrench, f64) {
+        let (mut tool, previous) = match &self.poses {
+            Some(poses) => (poses.tool, poses.displacement),
+            None => (device, Vector6::zeros()),
         };
         let damper = coupling.springs() * (coupling.damping / self.period);
         let mut evaluations = self.last.take().unwrap_or_else(|| self.contact_force(&tool));
-        let mut asked = 0;
+        let mut evaluations_done = 0;
         loop {
-            let stretch = self.frame.between(&tool, &now);
-            let (stiffness, energy) = spring(coupling, &self.limits, &stretch);
-            let pull =
-                stiffness.component_mul(&stretch) + damper.component_mul(&(stretch - before));
-            let left = pull + evaluations.force;
-            let solved = match asked < ASKED && !self.balanced(&left) {
+            let displacement = self.frame.between(&tool, &device);
+            let (stiffness, energy) = spring(coupling, &self.limits, &displacement);
+            let spring_force = stiffness.component_mul(&displacement)
+                + damper.component_mul(&(displacement - previous));
+            let residual = spring_force + evaluations.force;
+            let solved = match evaluations_done < MAX_EVALUATIONS && !self.is_balanced(&residual) {
                 true => {
                     (evaluations.matrix + Matrix6::from_diagonal(&(stiffness + damper))).cholesky()
                 }
                 false => None,
             };
             let Some(solved) = solved else {
-                self.place = Some(CoupledPoses { device: now, tool, stretch });
+                self.poses = Some(CoupledPoses { device, tool, displacement });
                 let held = evaluations.energy + energy;
                 self.last = Some(evaluations);
-                return (evaluations, as_push(&-pull), held);
+                return (evaluations, to_wrench(&-spring_force), held);
             };
-            let step = solved.solve(&left);
-            asked += 1;
+            let step = solved.solve(&residual);
+            evaluations_done += 1;
             match self.frame.moved(&tool, &step) {
                 Ok(moved) => tool = moved,
                 // Reject a step out of bounds, and end the iteration.
-                Err(_) => asked = ASKED,
+                Err(_) => evaluations_done = MAX_EVALUATIONS,
             }
             evaluations = self.contact_force(&tool);
         }
     }
 
-    fn balanced(&self, left: &Vector6<f64>) -> bool {
-        let [force, torque] = halves(left).map(|part| part.norm());
-        force <= BALANCED * self.limits.force && torque <= BALANCED * self.limits.torque
+    fn is_balanced(&self, residual: &Vector6<f64>) -> bool {
+        let [force, torque] = halves(residual).map(|part| part.norm());
+        force <= BALANCE_TOLERANCE * self.limits.force
+            && torque <= BALANCE_TOLERANCE * self.limits.torque
     }
 }

@@ -32,11 +32,11 @@ const NOT_NEGATIVE: &str = "a finite number of 0 or more";
 const FINITE: &str = "a finite number";
 
 fn check(
-    holds: bool,
+    valid: bool,
     (what, value): (&'static str, f64),
     range: &'static str,
 ) -> Result<(), SettingError> {
-    if holds { Ok(()) } else { Err(SettingError { what, value, range }) }
+    if valid { Ok(()) } else { Err(SettingError { what, value, range }) }
 }
 
 pub(super) fn above_zero(what: &'static str, value: f64) -> Result<(), SettingError> {
@@ -85,8 +85,9 @@ impl SessionSettings {
             Some(Rendering::Coupled(coupling)) => coupling.check()?,
             None => {}
         }
-        let SpeedLimit { linear: way, angular: turn } = fastest;
-        let speeds = [("largest speed in mm/s", way), ("largest turning speed in rad/s", turn)];
+        let SpeedLimit { linear, angular } = fastest;
+        let speeds =
+            [("largest speed in mm/s", linear), ("largest turning speed in rad/s", angular)];
         speeds.into_iter().try_for_each(|speed| {
             check(speed.1 > 0.0, speed, "a number above 0, or infinity to accept any speed")
         })

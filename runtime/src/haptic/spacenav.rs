@@ -35,17 +35,17 @@ pub struct SpeedGains {
 }
 
 /// Approximate reading at full displacement of the cap.
-const FULL: f64 = 350.0;
+const FULL_DISPLACEMENT: f64 = 350.0;
 /// Longest time between events while the cap is held.
-const SILENT: Duration = Duration::from_millis(250);
+const EVENT_TIMEOUT: Duration = Duration::from_millis(250);
 /// Time between attempts to reconnect to the daemon.
-const AGAIN: Duration = Duration::from_millis(100);
+const RECONNECT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The last known state of the cap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cap {
-    Pushed([i32; 6]),
-    Gone,
+    Displaced([i32; 6]),
+    Disconnected,
 }
 
 /// A SpaceMouse. A separate thread reads it, so that the loop never waits. If the daemon goes away, the
@@ -76,18 +76,18 @@ impl Spacenav {
         rate: f64,
         gains: SpeedGains,
     ) -> io::Result<Spacenav> {
-        let wrong = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
-        let period = setting::period(rate).map_err(wrong)?;
+        let invalid_input = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
+        let period = setting::period(rate).map_err(invalid_input)?;
         setting::above_zero("linear speed at full displacement, in mm/s", gains.linear)
-            .map_err(wrong)?;
+            .map_err(invalid_input)?;
         setting::above_zero("angular speed at full displacement, in rad/s", gains.angular)
-            .map_err(wrong)?;
-        let stream = connected(socket)?;
-        let (news, cap) = triple_buffer::triple_buffer(&Cap::Pushed([0; 6]));
+            .map_err(invalid_input)?;
+        let stream = connect(socket)?;
+        let (publisher, cap) = triple_buffer::triple_buffer(&Cap::Displaced([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
         let reader = {
             let (socket, stop) = (socket.to_owned(), Arc::clone(&stop));
-            std::thread::spawn(move || listen(stream, &socket, news, &stop))
+            std::thread::spawn(move || listen(stream, &socket, publisher, &stop))
         };
         let axes = if start.has_spin() { DeviceAxes::Six } else { DeviceAxes::Five };
         let unit = unit.factor_to(Unit::Millimetre);
@@ -96,9 +96,9 @@ impl Spacenav {
     }
 }
 
-fn connected(socket: &Path) -> io::Result<UnixStream> {
+fn connect(socket: &Path) -> io::Result<UnixStream> {
     let stream = UnixStream::connect(socket)?;
-    stream.set_read_timeout(Some(SILENT))?;
+    stream.set_read_timeout(Some(EVENT_TIMEOUT))?;
     Ok(stream)
 }
 
@@ -106,19 +106,19 @@ fn connected(socket: &Path) -> io::Result<UnixStream> {
 fn listen(
     mut stream: UnixStream,
     socket: &Path,
-    mut news: triple_buffer::Input<Cap>,
+    mut publisher: triple_buffer::Input<Cap>,
     stop: &AtomicBool,
 ) {
     let mut event = [0; 32];
-    let mut have = 0;
+    let mut received = 0;
     while !stop.load(Ordering::Relaxed) {
-        match stream.read(&mut event[have..]) {
+        match stream.read(&mut event[received..]) {
             Ok(more) if more > 0 => {
-                have += more;
-                if have == event.len() {
-                    have = 0;
+                received += more;
+                if received == event.len() {
+                    received = 0;
                     if let Some(pushed) = motion(&event) {
-                        news.write(Cap::Pushed(pushed));
+                        publisher.write(Cap::Displaced(pushed));
                     }
                 }
             }
@@ -127,15 +127,15 @@ fn listen(
             Err(error)
                 if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) =>
             {
-                news.write(Cap::Pushed([0; 6]));
+                publisher.write(Cap::Displaced([0; 6]));
             }
             Ok(_) | Err(_) => {
-                news.write(Cap::Gone);
-                have = 0;
-                std::thread::sleep(AGAIN);
-                if let Ok(again) = connected(socket) {
-                    stream = again;
-                    news.write(Cap::Pushed([0; 6]));
+                publisher.write(Cap::Disconnected);
+                received = 0;
+                std::thread::sleep(RECONNECT_INTERVAL);
+                if let Ok(reconnected) = connect(socket) {
+                    stream = reconnected;
+                    publisher.write(Cap::Displaced([0; 6]));
                 }
             }
         }
@@ -144,27 +144,27 @@ fn listen(
 
 /// Returns the displacements and rotations of the cap if the event is a motion.
 fn motion(event: &[u8; 32]) -> Option<[i32; 6]> {
-    let number = |at: usize| {
+    let word = |at: usize| {
         let bytes = [0, 1, 2, 3].map(|k| event[4 * at + k]);
         i32::from_ne_bytes(bytes)
     };
-    (number(0) == 0).then(|| [1, 2, 3, 4, 5, 6].map(number))
+    (word(0) == 0).then(|| [1, 2, 3, 4, 5, 6].map(word))
 }
 
 impl Device for Spacenav {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         let [x, y, z, about_x, about_y, about_z] = match *self.cap.read() {
-            Cap::Pushed(pushed) => pushed.map(|part| f64::from(part) / FULL),
-            Cap::Gone => {
+            Cap::Displaced(pushed) => pushed.map(|part| f64::from(part) / FULL_DISPLACEMENT),
+            Cap::Disconnected => {
                 let gone = io::Error::new(io::ErrorKind::NotConnected, "spacenavd went away");
                 return Err(DeviceError::NotResponding(gone));
             }
         };
         // World z is up and y points away from the user. Right, up and away form a left-handed frame,
         // but the daemon and all its clients use the opposite sign for turns about the cap's z.
-        let way = Vector3::new(x, z, y) * (self.gains.linear * self.period);
-        let turn = Vector3::new(about_x, about_z, about_y) * (self.gains.angular * self.period);
-        self.pose = self.frame.moved(&self.pose, &join(&way, &turn))?;
+        let translation = Vector3::new(x, z, y) * (self.gains.linear * self.period);
+        let rotation = Vector3::new(about_x, about_z, about_y) * (self.gains.angular * self.period);
+        self.pose = self.frame.moved(&self.pose, &join(&translation, &rotation))?;
         Ok(self.pose)
     }
 

@@ -81,7 +81,7 @@ debug!([] Verifier<'_>, "Verifier", |this| {
 const RESOLUTION: f64 = 1e-3;
 
 /// Number of consecutive motions that share certifiers. It makes results independent of the number of cores.
-const TOGETHER: usize = 32;
+const LOCATIONS_PER_TASK: usize = 32;
 
 impl<'a> Verifier<'a> {
     /// Creates a verifier of a tool at a part, with a tolerance of 0.
@@ -126,9 +126,9 @@ impl<'a> Verifier<'a> {
         // Accept exactly what a certifier accepts.
         Certifier::new(self.bvh, self.tool)?.with_allowance(surface, allowed)?;
         let surfaces = &self.tool.info().surfaces;
-        let index = surfaces.iter().position(|known| known.name == surface);
-        if let Some(known) = index.and_then(|index| self.allowed.get_mut(index)) {
-            *known = Some(allowed);
+        let index = surfaces.iter().position(|entry| entry.name == surface);
+        if let Some(entry) = index.and_then(|index| self.allowed.get_mut(index)) {
+            *entry = Some(allowed);
         }
         Ok(self)
     }
@@ -181,40 +181,43 @@ impl<'a> Verifier<'a> {
         program.check_unit(self.bvh.unit())?;
         program.check_poses(self.tool.info())?;
         program.check_cutter(self.tool.info(), self.bvh.unit())?;
-        let stops = &program.locations;
+        let locations = &program.locations;
         let certifier = Certifier::new(self.bvh, self.tool)?;
         let surfaces = 0..self.allowed.len();
-        let greatest = |surface| {
+        let max_depth = |surface| {
             let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
             depth.unwrap_or(f64::INFINITY)
         };
-        let greatest: Vec<f64> = surfaces.map(SurfaceId).map(greatest).collect();
-        let found = parallel::ranges(stops.len(), TOGETHER, |range| {
-            let mut checker = Checker::new(self, &greatest)?;
+        let max_depths: Vec<f64> = surfaces.map(SurfaceId).map(max_depth).collect();
+        let found = parallel::ranges(locations.len(), LOCATIONS_PER_TASK, |range| {
+            let mut checker = Checker::new(self, &max_depths)?;
             let count = range.len();
-            let findings = range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>();
+            let findings = range
+                .flat_map(|index| checker.check_location(locations, index))
+                .collect::<Vec<_>>();
             progress(count);
             Ok(findings)
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
         let findings: Vec<Finding> = found.into_iter().flatten().collect();
         Ok(VerifyReport {
-            motions: stops.len().saturating_sub(1),
-            approach: self.approach(stops, &findings)?,
+            motions: locations.len().saturating_sub(1),
+            approach: self.approach(locations, &findings)?,
             findings,
             inside_known: self.bvh.has_inside(),
-            unrestricted: !self.restricts(stops, &greatest),
+            unrestricted: !self.restricts(locations, &max_depths),
         })
     }
 
-    /// Returns whether a surface of the tool could violate its limit or its margin. `greatest` has the greatest
+    /// Returns whether a surface of the tool could violate its limit or its margin. `max_depths` has the greatest
     /// possible depth of each surface.
-    fn restricts(&self, stops: &[CutterLocation], greatest: &[f64]) -> bool {
-        let modes =
-            [false, true].into_iter().filter(|mode| stops.iter().any(|stop| stop.rapid == *mode));
+    fn restricts(&self, locations: &[CutterLocation], max_depths: &[f64]) -> bool {
+        let modes = [false, true]
+            .into_iter()
+            .filter(|mode| locations.iter().any(|location| location.rapid == *mode));
         modes
-            .flat_map(|rapid| self.limits(rapid).into_iter().zip(greatest))
-            .any(|(limit, greatest)| limit < 0.0 || limit + self.resolution < *greatest)
+            .flat_map(|rapid| self.limits(rapid).into_iter().zip(max_depths))
+            .any(|(limit, max_depth)| limit < 0.0 || limit + self.resolution < *max_depth)
     }
 
     /// Returns the motion from one pose to another, without the spin for a tool of revolution.
@@ -237,7 +240,7 @@ impl<'a> Verifier<'a> {
 
 /// Checks motions one after another.
 struct Checker<'a> {
-    of: &'a Verifier<'a>,
+    verifier: &'a Verifier<'a>,
     /// The certifiers for feed and for rapid traverse, in this order.
     modes: [Mode<'a>; 2],
 }
@@ -247,29 +250,30 @@ struct Mode<'a> {
     certifier: Certifier<'a>,
     limits: Vec<f64>,
     /// The greatest possible depth of each surface.
-    greatest: &'a [f64],
+    max_depths: &'a [f64],
 }
 
 /// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
-const THROUGH: f64 = 0.98;
+const THROUGH_FRACTION: f64 = 0.98;
 
 impl<'a> Checker<'a> {
-    fn new(of: &'a Verifier<'a>, greatest: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
+    fn new(verifier: &'a Verifier<'a>, max_depths: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
         let mode = |rapid| {
-            let limits = of.limits(rapid);
-            let mut certifier = Certifier::new(of.bvh, of.tool)?.with_budget(of.budget);
-            for (surface, limit) in of.tool.info().surfaces.iter().zip(&limits) {
+            let limits = verifier.limits(rapid);
+            let mut certifier =
+                Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
+            for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
                 certifier = certifier.with_allowance(&surface.name, *limit)?;
             }
-            Ok::<_, VerifyError>(Mode { certifier, limits, greatest })
+            Ok::<_, VerifyError>(Mode { certifier, limits, max_depths })
         };
-        Ok(Checker { of, modes: [mode(false)?, mode(true)?] })
+        Ok(Checker { verifier, modes: [mode(false)?, mode(true)?] })
     }
 
     /// Returns the findings of the motion to a cutter location.
-    fn stop(&mut self, stops: &[CutterLocation], index: usize) -> Vec<Finding> {
-        let to = stops[index];
-        let before = index.checked_sub(1).map(|before| stops[before]);
+    fn check_location(&mut self, locations: &[CutterLocation], index: usize) -> Vec<Finding> {
+        let to = locations[index];
+        let before = index.checked_sub(1).map(|before| locations[before]);
         let from = before.map_or(to.pose, |before| before.pose);
         let finding = |part: f64, pose: Pose, kind: FindingKind| Finding {
             location: index,
@@ -283,12 +287,12 @@ impl<'a> Checker<'a> {
         let mode = &mut self.modes[usize::from(to.rapid)];
         let mut findings = Vec::new();
         // Where the motion is ambiguous, check the cutter location itself.
-        let motion = self.of.motion(&from, &to.pose).or_else(|error| {
+        let motion = self.verifier.motion(&from, &to.pose).or_else(|error| {
             findings.push(finding(1.0, to.pose, FindingKind::Ambiguous(error)));
-            self.of.motion(&to.pose, &to.pose)
+            self.verifier.motion(&to.pose, &to.pose)
         });
         if let Ok(motion) = motion {
-            for (part, kind) in mode.motion(&motion, self.of.resolution) {
+            for (part, kind) in mode.motion(&motion, self.verifier.resolution) {
                 findings.push(finding(part, motion.pose(part), kind));
             }
         }
@@ -325,7 +329,7 @@ impl Mode<'_> {
                     ));
                 }
                 MotionDepth::Deeper { at, depth, most, witness } => {
-                    let through = depth.high >= THROUGH * self.greatest[index];
+                    let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
                     found.push((
                         at,
                         FindingKind::Deep { surface, allowed, depth, most, through, witness },
@@ -341,8 +345,8 @@ impl Mode<'_> {
         if !inside.is_empty() && self.certifier.is_buried(&motion.pose(0.0)) == Some(true) {
             found.push((0.0, FindingKind::Inside { surface: None }));
         } else {
-            let of = |surface| (0.0, FindingKind::Inside { surface: Some(surface) });
-            found.extend(inside.into_iter().map(of));
+            let finding = |surface| (0.0, FindingKind::Inside { surface: Some(surface) });
+            found.extend(inside.into_iter().map(finding));
         }
         found
     }
