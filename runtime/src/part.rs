@@ -1,6 +1,6 @@
 //! The workpiece, prepared for queries.
 
-use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_place, unit_normal};
+use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_position, unit_normal};
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
 use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
@@ -105,7 +105,7 @@ impl Part {
                 continue;
             }
             if unseen.is_none() {
-                tree.cover = None;
+                tree.covering_radius = None;
             }
             tree.remove(places);
         }
@@ -131,7 +131,7 @@ impl Part {
             for (place, point, normal) in tree.all() {
                 let (there, turned) = to(point, normal);
                 if there != point || turned != normal {
-                    check_place(place, &there)?;
+                    check_position(place, &there)?;
                     here.push((place, there, unit_normal(place, turned)?));
                 }
             }
@@ -140,10 +140,9 @@ impl Part {
         for (tree, moved) in
             self.levels.iter_mut().zip(&moved).filter(|(_, moved)| !moved.is_empty())
         {
-            let farthest = tree.put(moved);
-            tree.cover = tree.cover.map(|CoveringRadius { radius, .. }| CoveringRadius {
-                radius: radius + 2.0 * farthest,
-                proved: false,
+            let farthest = tree.replace(moved);
+            tree.covering_radius = tree.covering_radius.map(|CoveringRadius { radius, .. }| {
+                CoveringRadius { radius: radius + 2.0 * farthest, proved: false }
             });
         }
         Ok(())

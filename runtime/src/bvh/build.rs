@@ -5,7 +5,7 @@ use crate::parallel;
 use nalgebra::Point3;
 
 /// Subtrees whose left half has fewer items are sorted on one core.
-const ALONE: usize = 1 << 12;
+const MAX_SEQUENTIAL_ITEMS: usize = 1 << 12;
 
 /// An item to be sorted: its representative point in the tree's frame, and its index.
 #[derive(Clone, Copy)]
@@ -23,10 +23,10 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// Returns the bounding box of points; without any, low is +∞ and high is -∞.
-    pub(crate) fn of(places: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
+    pub(crate) fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
         let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-        for place in places {
-            for (axis, part) in place.into_iter().enumerate() {
+        for point in points {
+            for (axis, part) in point.into_iter().enumerate() {
                 bounds.low[axis] = bounds.low[axis].min(part);
                 bounds.high[axis] = bounds.high[axis].max(part);
             }
@@ -40,7 +40,7 @@ impl Bounds {
     }
 
     /// Returns the squared distance of a point from the box; 0 inside.
-    pub(crate) fn away(&self, at: [f64; 3]) -> f64 {
+    pub(crate) fn squared_distance(&self, at: [f64; 3]) -> f64 {
         let mut squared = 0.0;
         for (axis, at) in at.into_iter().enumerate() {
             let out = (self.low[axis] - at).max(at - self.high[axis]).max(0.0);
@@ -60,18 +60,18 @@ impl Bounds {
 
 impl Frame {
     /// Returns the frame of a set of points.
-    pub(crate) fn around(places: impl IntoIterator<Item = [f64; 3]>) -> Frame {
-        let whole = Bounds::of(places);
-        let scale = power_of_two(whole.size());
-        let origin = Point3::from([0, 1, 2].map(|axis| whole.middle(axis)));
+    pub(crate) fn around(points: impl IntoIterator<Item = [f64; 3]>) -> Frame {
+        let bounds = Bounds::of(points);
+        let scale = power_of_two(bounds.size());
+        let origin = Point3::from([0, 1, 2].map(|axis| bounds.middle(axis)));
         // A box around boxes is slightly larger than their contents.
-        let size = outward(whole.size() / scale * (1.0 + 1e-6));
+        let size = outward(bounds.size() / scale * (1.0 + 1e-6));
         Frame { origin, scale, size }
     }
 
     /// Returns a point in this frame and its unit.
-    pub(crate) fn inside(&self, place: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| (place[axis] - self.origin[axis]) / self.scale)
+    pub(crate) fn inside(&self, point: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (point[axis] - self.origin[axis]) / self.scale)
     }
 }
 
@@ -79,7 +79,7 @@ impl Frame {
 pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
     let mut levels = Vec::new();
     loop {
-        let level: Vec<Boxes> = boxes.chunks(WIDTH).map(side_by_side).collect();
+        let level: Vec<Boxes> = boxes.chunks(WIDTH).map(pack_boxes).collect();
         boxes = level.iter().map(around).collect();
         levels.push(level);
         if boxes.len() == 1 {
@@ -110,7 +110,7 @@ pub(crate) fn order(items: &mut [BuildItem]) {
         a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
     });
     let (low, high) = items.split_at_mut(left);
-    if low.len() < ALONE {
+    if low.len() < MAX_SEQUENTIAL_ITEMS {
         order(low);
         order(high);
     } else {
@@ -118,17 +118,17 @@ pub(crate) fn order(items: &mut [BuildItem]) {
     }
 }
 
-fn side_by_side(bounds: &[Bounds]) -> Boxes {
+fn pack_boxes(bounds: &[Bounds]) -> Boxes {
     let mut boxes = Boxes { centre: [[f32::NAN; WIDTH]; 3], half: [[0.0; WIDTH]; 3] };
     for (lane, bounds) in bounds.iter().enumerate() {
-        boxes.put(lane, bounds);
+        boxes.set_lane(lane, bounds);
     }
     boxes
 }
 
 impl Boxes {
     /// Stores a box in a lane. An empty box (low above high) becomes an absent one.
-    pub(crate) fn put(&mut self, lane: usize, bounds: &Bounds) {
+    pub(crate) fn set_lane(&mut self, lane: usize, bounds: &Bounds) {
         for axis in 0..3 {
             let [low, high] = [bounds.low[axis], bounds.high[axis]];
             let centre = if low <= high { bounds.middle(axis) as f32 } else { f32::NAN };
@@ -156,6 +156,6 @@ pub(crate) fn around(boxes: &Boxes) -> Bounds {
 
 /// Returns the smallest `f32` that is at least `value`.
 pub(crate) fn outward(value: f64) -> f32 {
-    let near = value as f32;
-    if f64::from(near) < value { near.next_up() } else { near }
+    let rounded = value as f32;
+    if f64::from(rounded) < value { rounded.next_up() } else { rounded }
 }

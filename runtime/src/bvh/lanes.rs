@@ -27,7 +27,7 @@ fn dot<S: Simd>(v: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
 /// Transforms sixteen vectors to the tool's frame. `rows` is the rotation with its scale, `from` the transformed
 /// point that the vectors start at.
 #[inline(always)]
-pub(crate) fn seen<S: Simd>(v: &Triple<S>, rows: &[[f32; 3]; 3], from: [f32; 3]) -> Triple<S> {
+pub(crate) fn transform<S: Simd>(v: &Triple<S>, rows: &[[f32; 3]; 3], from: [f32; 3]) -> Triple<S> {
     [dot(v, rows[0]) + from[0], dot(v, rows[1]) + from[1], dot(v, rows[2]) + from[2]]
 }
 
@@ -38,4 +38,5 @@ pub(crate) fn extent<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
 }
 
 /// The lane indices.
-pub(crate) const LANE: [u32; WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+pub(crate) const LANE_INDICES: [u32; WIDTH] =
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -82,18 +82,18 @@ impl QuerySetup {
             view.from_tip[axis] = frame.origin[axis] - tip[axis];
         }
         let from = view.from_tip;
-        let mut seen = [0.0; 3];
+        let mut tool_origin = [0.0; 3];
         for axis in 0..3 {
             // The columns of the rotation are the tool's axes.
             let row = [rotation[(0, axis)], rotation[(1, axis)], rotation[(2, axis)]];
-            let place = row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
-            seen[axis] = place * per_length;
-            view.origin[axis] = seen[axis] as f32;
-            view.carry[axis] = row.map(|part| part * per_length);
+            let coordinate = row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
+            tool_origin[axis] = coordinate * per_length;
+            view.origin[axis] = tool_origin[axis] as f32;
+            view.exact_rows[axis] = row.map(|part| part * per_length);
             view.rows[axis] = row.map(|part| (part * self.unit) as f32);
         }
         view.scale = self.scale;
-        let [x, y, z] = seen;
+        let [x, y, z] = tool_origin;
         // Written so that NaN counts as reachable.
         !(z < self.along[0] || z > self.along[1] || x * x + y * y > self.across)
     }
@@ -108,13 +108,13 @@ impl ReachBounds {
             let radius = slab.radius + margin;
             // Two more roundings: the conversion to `f32`, and the square in the comparison.
             let squared = ((radius * radius * (1.0 + 8.0 * ROUNDOFF)) as f32).next_up();
-            let here = [low(slab.low), high(slab.high), squared];
+            let entry = [low(slab.low), high(slab.high), squared];
             // If there are more slabs than room, the last entry covers the rest.
-            let place: &mut [f32; 3] = &mut slabs[index.min(SLABS - 1)];
-            *place = if index < SLABS {
-                here
+            let slab: &mut [f32; 3] = &mut slabs[index.min(SLABS - 1)];
+            *slab = if index < SLABS {
+                entry
             } else {
-                [place[0].min(here[0]), place[1].max(here[1]), place[2].max(here[2])]
+                [slab[0].min(entry[0]), slab[1].max(entry[1]), slab[2].max(entry[2])]
             };
             all |= 1 << index.min(SLABS - 1);
         }
@@ -142,7 +142,7 @@ pub(crate) struct PoseTransform {
     from_tip: [f64; 3],
     pub(crate) scale: f64,
     /// Rotation and scale from the part's frame and unit to the tool's.
-    pub(crate) carry: [[f64; 3]; 3],
+    pub(crate) exact_rows: [[f64; 3]; 3],
 }
 
 impl PoseTransform {
@@ -156,13 +156,13 @@ impl PoseTransform {
     /// Returns the transform from the tree's frame and unit to the tool's in `f64`: rows and origin.
     pub(crate) fn exactly(&self) -> ([[f64; 3]; 3], [f64; 3]) {
         let [x, y, z] = self.from_tip;
-        let origin = self.carry.map(|row| row[0] * x + row[1] * y + row[2] * z);
-        (self.carry.map(|row| row.map(|part| part * self.scale)), origin)
+        let origin = self.exact_rows.map(|row| row[0] * x + row[1] * y + row[2] * z);
+        (self.exact_rows.map(|row| row.map(|part| part * self.scale)), origin)
     }
 
     /// Transforms a point from the tree's frame and unit to the tool's, in `f32`.
     #[inline(always)]
-    pub(crate) fn seen(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    pub(crate) fn transform(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         let [a, b, c] = &self.rows;
         let along = |row: &[f32; 3], from: f32| x * row[0] + y * row[1] + z * row[2] + from;
         [along(a, self.origin[0]), along(b, self.origin[1]), along(c, self.origin[2])]

@@ -14,57 +14,69 @@ use std::collections::HashMap;
 /// Random candidates drawn per requested point.
 const CANDIDATES: usize = 4;
 /// One in this many of the final points is inserted where the surface is far from all others.
-const PUT: usize = 25;
+const POINTS_PER_HOLE: usize = 25;
 /// Maximum number of points tested against cells in the search for such holes, per point and per piece;
 /// several times the usual number.
-const MOST_HELD: usize = 1 << 9;
+const MAX_TESTS: usize = 1 << 9;
 /// Initial distance of a hole from all points, in spacings.
-const FAR: f64 = 0.95;
+const INITIAL_HOLE_DISTANCE: f64 = 0.95;
 /// Ratio of the hole distances of successive rounds.
-const NEARER: f64 = 0.97;
+const HOLE_DISTANCE_RATIO: f64 = 0.97;
 
-pub(super) fn blue(
+pub(super) fn sample_blue_noise(
     mesh: &Mesh,
-    facets: &AreaSampler,
+    sampler: &AreaSampler,
     surface: &Surface,
     count: usize,
     seed: u64,
 ) -> Cloud {
-    let drawn = facets.even(mesh, count * CANDIDATES, seed);
-    let put = count.div_ceil(PUT).min(count - 1);
-    let kept = decimate::decimate(&drawn.points, &drawn.normals, facets.spread, count - put);
+    let candidates = sampler.stratified(mesh, count * CANDIDATES, seed);
+    let hole_count = count.div_ceil(POINTS_PER_HOLE).min(count - 1);
+    let kept = decimate::decimate(
+        &candidates.points,
+        &candidates.normals,
+        sampler.distinct_area,
+        count - hole_count,
+    );
     let mut cloud = Cloud::with_capacity(count, mesh.unit());
-    let take = |cloud: &mut Cloud, index: usize| {
-        cloud.push(drawn.points[index], drawn.normals[index], drawn.triangles[index], 0.0);
+    let push_candidate = |cloud: &mut Cloud, index: usize| {
+        cloud.push(
+            candidates.points[index],
+            candidates.normals[index],
+            candidates.triangles[index],
+            0.0,
+        );
     };
-    kept.iter().for_each(|index| take(&mut cloud, *index as usize));
+    kept.iter().for_each(|index| push_candidate(&mut cloud, *index as usize));
 
-    let mut far = FAR * surface.spacing;
+    let mut min_distance = INITIAL_HOLE_DISTANCE * surface.spacing;
     let mut farthest = surface.farthest();
-    let mut work = MOST_HELD * (count + farthest.len());
+    let mut remaining_tests = MAX_TESTS * (count + farthest.len());
     while cloud.len() < count {
         let sites = VoronoiSites::new(surface, &cloud.points, &cloud.normals);
-        let mut holes = surface.holes(&sites, far, &mut farthest, &mut work);
+        let mut holes = surface.holes(&sites, min_distance, &mut farthest, &mut remaining_tests);
         holes.sort_unstable_by(|a, b| {
-            let place =
-                |hole: &Hole| (hole.triangle, <[f64; 3]>::from(hole.place).map(f64::to_bits));
-            b.distance.total_cmp(&a.distance).then_with(|| place(a).cmp(&place(b)))
+            let sort_key =
+                |hole: &Hole| (hole.triangle, <[f64; 3]>::from(hole.point).map(f64::to_bits));
+            b.distance.total_cmp(&a.distance).then_with(|| sort_key(a).cmp(&sort_key(b)))
         });
-        let mut taken = InsertedPoints::new(far);
+        let mut inserted = InsertedPoints::new(min_distance);
         for hole in holes {
-            if cloud.len() < count && taken.put(&hole) {
+            if cloud.len() < count && inserted.insert(&hole) {
                 let normal = mesh.normal(TriangleId(hole.triangle)).unwrap_or_default();
-                cloud.push(hole.place, normal, hole.triangle, 0.0);
+                cloud.push(hole.point, normal, hole.triangle, 0.0);
             }
         }
-        far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
-        if far <= surface.rounded() || work == 0 {
+        min_distance =
+            HOLE_DISTANCE_RATIO * farthest.iter().copied().fold(0.0, f64::max).min(min_distance);
+        if min_distance <= surface.position_error() || remaining_tests == 0 {
             // No part of the surface is away from all points, or the search for such a part takes too
             // long. Take more of the drawn points instead.
-            let mut rest = (0..drawn.len()).filter(|i| kept.binary_search(&(*i as u32)).is_err());
-            let step = (drawn.len() - kept.len()) / (count - cloud.len()).max(1);
+            let mut rest =
+                (0..candidates.len()).filter(|i| kept.binary_search(&(*i as u32)).is_err());
+            let step = (candidates.len() - kept.len()) / (count - cloud.len()).max(1);
             while let Some(index) = rest.next().filter(|_| cloud.len() < count) {
-                take(&mut cloud, index);
+                push_candidate(&mut cloud, index);
                 rest.by_ref().take(step.max(1) - 1).for_each(drop);
             }
         }
@@ -77,33 +89,34 @@ pub(super) fn blue(
 struct InsertedPoints {
     width: f64,
     cells: HashMap<[i64; 3], Vec<Point3<f64>>>,
-    all: Vec<Point3<f64>>,
+    points: Vec<Point3<f64>>,
 }
 
 impl InsertedPoints {
     fn new(width: f64) -> InsertedPoints {
-        InsertedPoints { width, cells: HashMap::new(), all: vec![] }
+        InsertedPoints { width, cells: HashMap::new(), points: vec![] }
     }
 
     /// Inserts a point into a hole, unless an inserted point is nearer to it than all others are.
     /// Returns whether the point was inserted.
-    fn put(&mut self, hole: &Hole) -> bool {
-        let cell = [0, 1, 2].map(|axis| (hole.place[axis] / self.width).floor() as i64);
+    fn insert(&mut self, hole: &Hole) -> bool {
+        let cell = [0, 1, 2].map(|axis| (hole.point[axis] / self.width).floor() as i64);
         let reach = (hole.distance / self.width).ceil();
-        let near = |place: &Point3<f64>| (place - hole.place).norm() < 0.999 * hole.distance;
-        let taken = if (2.0 * reach + 1.0).powi(3) > self.all.len() as f64 {
-            self.all.iter().any(near)
+        let is_near = |point: &Point3<f64>| (point - hole.point).norm() < 0.999 * hole.distance;
+        let is_taken = if (2.0 * reach + 1.0).powi(3) > self.points.len() as f64 {
+            self.points.iter().any(is_near)
         } else {
-            let each = || -(reach as i64)..=reach as i64;
-            let beside =
-                each().flat_map(|x| each().flat_map(move |y| each().map(move |z| [x, y, z])));
-            let key = |by: [i64; 3]| [0, 1, 2].map(|axis| cell[axis].wrapping_add(by[axis]));
-            beside.filter_map(|by| self.cells.get(&key(by))).flatten().any(near)
+            let offsets = || -(reach as i64)..=reach as i64;
+            let cells = offsets()
+                .flat_map(|x| offsets().flat_map(move |y| offsets().map(move |z| [x, y, z])));
+            let key =
+                |offset: [i64; 3]| [0, 1, 2].map(|axis| cell[axis].wrapping_add(offset[axis]));
+            cells.filter_map(|offset| self.cells.get(&key(offset))).flatten().any(is_near)
         };
-        if !taken {
-            self.cells.entry(cell).or_default().push(hole.place);
-            self.all.push(hole.place);
+        if !is_taken {
+            self.cells.entry(cell).or_default().push(hole.point);
+            self.points.push(hole.point);
         }
-        !taken
+        !is_taken
     }
 }

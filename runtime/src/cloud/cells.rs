@@ -7,15 +7,15 @@ use crate::parallel;
 use nalgebra::Point3;
 
 /// σ² of the `voronoi` module, in squared spacings.
-const TURNED: f64 = 2.25;
+const NORMAL_WEIGHT: f64 = 2.25;
 /// Pieces per parallel task.
-const TOGETHER: usize = 256;
+const PIECES_PER_TASK: usize = 256;
 /// Initial limits on the number of points tested against the cells of a piece: the upper limit, and the
 /// lower limit for surfaces with many pieces.
-const MOST_CROWD: usize = 1 << 14;
-const LEAST_CROWD: usize = 1 << 10;
+const MAX_TESTS_PER_PIECE: usize = 1 << 14;
+const MIN_TESTS_PER_PIECE: usize = 1 << 10;
 /// Total for all pieces, unless the lower limit per piece requires more.
-const MOST_CROWDS: usize = 1 << 26;
+const MAX_TESTS_TOTAL: usize = 1 << 26;
 /// Bound on the distance between a corner and its computed position, relative to the part's size and to
 /// the radius: 9000u, with unit roundoff u.
 ///
@@ -24,17 +24,17 @@ const MOST_CROWDS: usize = 1 << 26;
 /// less than six times the triangle's longest edge: 120u of the part's size in all. A cell's corner errs
 /// by 5u of its distance for each line that cut it (see `voronoi`), which allows up to 1700 lines. The
 /// distance itself errs by 4u.
-const ROUNDED: f64 = 1e-12;
+const POSITION_ERROR: f64 = 1e-12;
 /// Fractions of a piece's area that its cells must fill, for the covering radius of the piece in the
 /// first pass and in the refined pass. Cells fill a piece except for rounding (see `voronoi`). If they
 /// do not, something else went wrong or the area itself is mere rounding, so the cells are not used.
-const FILLED: f64 = 1.0 - 1e-6;
-const WHOLE: f64 = 1.0 - 1e-9;
+const FILLED_FRACTION: f64 = 1.0 - 1e-6;
+const REFINED_FILLED_FRACTION: f64 = 1.0 - 1e-9;
 
 /// A surface point far from all points of the cloud.
 #[derive(Clone, Copy)]
 pub(super) struct Hole {
-    pub(super) place: Point3<f64>,
+    pub(super) point: Point3<f64>,
     pub(super) triangle: u32,
     pub(super) distance: f64,
 }
@@ -46,16 +46,16 @@ pub(super) struct Cells {
 }
 
 /// The result of dividing several pieces among the points.
-struct Divided {
+struct DividedPieces {
     /// Areas of the cells in the pieces that were divided completely, by point.
     shares: Vec<(u32, f64)>,
     /// An upper bound on the distance between each piece and its nearest points; infinite if unknown.
-    reaches: Vec<f64>,
+    distances: Vec<f64>,
     /// The pieces that were not divided completely, with the cell areas found.
-    crowded: Vec<(usize, Vec<(u32, f64)>)>,
+    incomplete: Vec<(usize, Vec<(u32, f64)>)>,
 }
 
-fn add(areas: &mut [CompensatedSum], shares: Vec<(u32, f64)>) {
+fn add_shares(areas: &mut [CompensatedSum], shares: Vec<(u32, f64)>) {
     shares.into_iter().for_each(|(site, share)| areas[site as usize].add(share));
 }
 
@@ -66,76 +66,89 @@ impl Surface {
     pub(super) fn cells(&self, sites: &VoronoiSites<'_>) -> Cells {
         let mut areas = vec![CompensatedSum::default(); sites.points.len()];
         let mut farthest = vec![0.0; self.pieces.len()];
-        let mut crowded = vec![];
-        let mut note = |some: &[usize], most: usize, crowded: &mut Vec<_>| {
-            let mut order = some.iter();
-            for divided in self.shares(sites, some, most) {
-                add(&mut areas, divided.shares);
-                let reaches = divided.reaches.into_iter().zip(&mut order);
-                reaches.for_each(|(reach, piece)| farthest[*piece] = reach);
-                crowded.extend(divided.crowded);
+        let mut incomplete = vec![];
+        let mut divide_all = |indices: &[usize], max_tests: usize, incomplete: &mut Vec<_>| {
+            let mut order = indices.iter();
+            for divided in self.shares(sites, indices, max_tests) {
+                add_shares(&mut areas, divided.shares);
+                let distances = divided.distances.into_iter().zip(&mut order);
+                distances.for_each(|(distance, piece)| farthest[*piece] = distance);
+                incomplete.extend(divided.incomplete);
             }
         };
-        let all: Vec<usize> = (0..self.pieces.len()).collect();
-        note(&all, self.crowd(), &mut crowded);
+        let all_pieces: Vec<usize> = (0..self.pieces.len()).collect();
+        divide_all(&all_pieces, self.initial_max_tests(), &mut incomplete);
         // Divide the incomplete pieces once more with all the work allowed; there are usually few of
         // them.
-        let most = self.work(sites) / crowded.len().max(1);
-        if most > self.crowd() {
-            let some: Vec<usize> = crowded.drain(..).map(|(piece, _)| piece).collect();
-            note(&some, most, &mut crowded);
+        let max_tests = self.max_extra_tests(sites) / incomplete.len().max(1);
+        if max_tests > self.initial_max_tests() {
+            let indices: Vec<usize> = incomplete.drain(..).map(|(piece, _)| piece).collect();
+            divide_all(&indices, max_tests, &mut incomplete);
         }
-        crowded.into_iter().for_each(|(_, shares)| add(&mut areas, shares));
+        incomplete.into_iter().for_each(|(_, shares)| add_shares(&mut areas, shares));
         let areas = areas.into_iter().map(CompensatedSum::value).collect();
         Cells { areas, radius: self.radius(sites, &farthest) }
     }
 
     /// Returns the number of points that may be tested against cells in addition to the usual ones.
-    fn work(&self, sites: &VoronoiSites<'_>) -> usize {
-        let any = if self.coarse() { 1 << 22 } else { 1 << 26 };
+    fn max_extra_tests(&self, sites: &VoronoiSites<'_>) -> usize {
+        let any = if self.is_coarse() { 1 << 22 } else { 1 << 26 };
         256 * (sites.points.len() + self.pieces.len()) + any
     }
 
     /// Returns the initial limit on the number of points tested against the cells of a piece. The usual
     /// number is some hundred, or some thousand where pieces are long.
-    fn crowd(&self) -> usize {
-        if self.coarse() {
-            return 2 * LEAST_CROWD;
+    fn initial_max_tests(&self) -> usize {
+        if self.is_coarse() {
+            return 2 * MIN_TESTS_PER_PIECE;
         }
-        (MOST_CROWDS / self.pieces.len().max(1)).clamp(LEAST_CROWD, MOST_CROWD)
+        (MAX_TESTS_TOTAL / self.pieces.len().max(1)).clamp(MIN_TESTS_PER_PIECE, MAX_TESTS_PER_PIECE)
     }
 
-    /// Divides the pieces `some`, testing at most about `most` points against the cells of each.
-    fn shares(&self, sites: &VoronoiSites<'_>, some: &[usize], most: usize) -> Vec<Divided> {
-        let turned = TURNED * self.spacing * self.spacing;
-        parallel::ranges(some.len(), TOGETHER, |range| {
-            let mut room = ClipBuffers::default();
-            let (mut shares, mut crowded) = (vec![], vec![]);
-            let mut reaches = Vec::with_capacity(range.len());
+    /// Divides the pieces `indices`, testing at most about `max_tests` points against the cells of each.
+    fn shares(
+        &self,
+        sites: &VoronoiSites<'_>,
+        indices: &[usize],
+        max_tests: usize,
+    ) -> Vec<DividedPieces> {
+        let normal_weight = NORMAL_WEIGHT * self.spacing * self.spacing;
+        parallel::ranges(indices.len(), PIECES_PER_TASK, |range| {
+            let mut buffers = ClipBuffers::default();
+            let (mut shares, mut incomplete) = (vec![], vec![]);
+            let mut distances = Vec::with_capacity(range.len());
             for index in range {
-                let piece = &self.pieces[some[index]];
+                let piece = &self.pieces[indices[index]];
                 let from = shares.len();
-                let mut reach = 0f64;
-                let whole = self.divide(piece, sites, turned, most, &mut room, |site, cell| {
-                    shares.push((site, area(cell, &piece.normal)));
-                    reach = cell.iter().map(|(v, _)| v.norm_squared()).fold(reach, f64::max);
-                });
+                let mut max_squared = 0f64;
+                let is_complete = self.divide(
+                    piece,
+                    sites,
+                    normal_weight,
+                    max_tests,
+                    &mut buffers,
+                    |site, cell| {
+                        shares.push((site, area(cell, &piece.normal)));
+                        max_squared =
+                            cell.iter().map(|(v, _)| v.norm_squared()).fold(max_squared, f64::max);
+                    },
+                );
                 // Distribute the area that rounding left over or out.
                 let sum: f64 = shares[from..].iter().map(|(_, share)| share).sum();
-                let all = f64::from(piece.copies) * piece.area;
+                let total = f64::from(piece.copies) * piece.area;
                 if sum > 0.0 {
-                    shares[from..].iter_mut().for_each(|(_, share)| *share *= all / sum);
+                    shares[from..].iter_mut().for_each(|(_, share)| *share *= total / sum);
                 } else {
-                    shares.push((room.met[0], all));
+                    shares.push((buffers.visited[0], total));
                 }
                 // Cells that do not fill the piece give no bound for the rest.
-                let fills = whole && sum >= FILLED * piece.area;
-                reaches.push(if fills { reach.sqrt() } else { f64::INFINITY });
-                if !whole {
-                    crowded.push((some[index], shares.split_off(from)));
+                let fills = is_complete && sum >= FILLED_FRACTION * piece.area;
+                distances.push(if fills { max_squared.sqrt() } else { f64::INFINITY });
+                if !is_complete {
+                    incomplete.push((indices[index], shares.split_off(from)));
                 }
             }
-            Divided { shares, reaches, crowded }
+            DividedPieces { shares, distances, incomplete }
         })
     }
 
@@ -144,32 +157,34 @@ impl Surface {
         let mut order: Vec<usize> = (0..self.pieces.len()).collect();
         order.sort_unstable_by(|a, b| farthest[*b].total_cmp(&farthest[*a]));
         let mut radius = 0f64;
-        let mut room = ClipBuffers::default();
-        let mut work = self.work(sites);
+        let mut buffers = ClipBuffers::default();
+        let mut remaining_tests = self.max_extra_tests(sites);
         for index in order {
             if farthest[index] <= radius {
                 break;
             }
             let piece = &self.pieces[index];
-            let (mut filled, mut most) = (0.0, 0f64);
-            let whole = self.divide(piece, sites, 0.0, work, &mut room, |_, cell| {
-                filled += area(cell, &piece.normal);
-                most = cell.iter().map(|(v, _)| v.norm()).fold(most, f64::max);
-            });
-            work = work.saturating_sub(room.held);
-            if !whole || filled < WHOLE * piece.area {
+            let (mut filled, mut max_distance) = (0.0, 0f64);
+            let is_complete =
+                self.divide(piece, sites, 0.0, remaining_tests, &mut buffers, |_, cell| {
+                    filled += area(cell, &piece.normal);
+                    max_distance = cell.iter().map(|(v, _)| v.norm()).fold(max_distance, f64::max);
+                });
+            remaining_tests = remaining_tests.saturating_sub(buffers.tests);
+            if !is_complete || filled < REFINED_FILLED_FRACTION * piece.area {
                 // The nearest point is at most as far from any surface point as this one is.
-                let one = sites.points[room.met[0] as usize];
-                most = self.corners(piece).iter().map(|c| (c - one).norm()).fold(0.0, f64::max);
+                let site = sites.points[buffers.visited[0] as usize];
+                max_distance =
+                    self.corners(piece).iter().map(|c| (c - site).norm()).fold(0.0, f64::max);
             }
-            radius = radius.max(most);
+            radius = radius.max(max_distance);
         }
-        radius * (1.0 + ROUNDED) + self.rounded()
+        radius * (1.0 + POSITION_ERROR) + self.position_error()
     }
 
     /// Returns a bound on the distance between a surface point and its computed position.
-    pub(super) fn rounded(&self) -> f64 {
-        self.size * ROUNDED
+    pub(super) fn position_error(&self) -> f64 {
+        self.size * POSITION_ERROR
     }
 
     /// Returns the upper bound on the distance of each piece before there are any points: infinity.
@@ -179,43 +194,54 @@ impl Surface {
 
     /// Returns the corners of cells where the surface is farther than `distance` from all points; each
     /// hole appears more than once. `farthest` holds the distance of each piece from an earlier, smaller
-    /// set of points and is updated where it exceeds `distance`. `work` is the number of points that may
+    /// set of points and is updated where it exceeds `distance`. `remaining_tests` is the number of points that may
     /// still be tested against cells, and is decreased.
     pub(super) fn holes(
         &self,
         sites: &VoronoiSites<'_>,
         distance: f64,
         farthest: &mut [f64],
-        work: &mut usize,
+        remaining_tests: &mut usize,
     ) -> Vec<Hole> {
-        let may: Vec<usize> = (0..farthest.len()).filter(|i| farthest[*i] > distance).collect();
-        let found = parallel::ranges(may.len(), TOGETHER, |range| {
-            let mut room = ClipBuffers::default();
-            let (mut holes, mut farthest, mut held) = (vec![], vec![], 0);
+        let open: Vec<usize> = (0..farthest.len()).filter(|i| farthest[*i] > distance).collect();
+        let found = parallel::ranges(open.len(), PIECES_PER_TASK, |range| {
+            let mut buffers = ClipBuffers::default();
+            let (mut holes, mut farthest, mut tests) = (vec![], vec![], 0);
             for index in range {
-                let piece = &self.pieces[may[index]];
-                let mut most = 0f64;
-                self.divide(piece, sites, 0.0, self.crowd(), &mut room, |site, cell| {
-                    for (corner, _) in cell {
-                        let away = corner.norm();
-                        most = most.max(away);
-                        if away > distance {
-                            let place = sites.points[site as usize] + corner;
-                            holes.push(Hole { place, triangle: piece.triangle, distance: away });
+                let piece = &self.pieces[open[index]];
+                let mut max_distance = 0f64;
+                self.divide(
+                    piece,
+                    sites,
+                    0.0,
+                    self.initial_max_tests(),
+                    &mut buffers,
+                    |site, cell| {
+                        for (corner, _) in cell {
+                            let distance_to_point = corner.norm();
+                            max_distance = max_distance.max(distance_to_point);
+                            if distance_to_point > distance {
+                                let point = sites.points[site as usize] + corner;
+                                holes.push(Hole {
+                                    point,
+                                    triangle: piece.triangle,
+                                    distance: distance_to_point,
+                                });
+                            }
                         }
-                    }
-                });
-                farthest.push(most);
-                held += room.held;
+                    },
+                );
+                farthest.push(max_distance);
+                tests += buffers.tests;
             }
-            (holes, farthest, held)
+            (holes, farthest, tests)
         });
-        let mut at = may.into_iter();
+        let mut piece_indices = open.into_iter();
         let mut holes = vec![];
-        for (some, distances, held) in found {
-            holes.extend(some);
-            *work = work.saturating_sub(held);
-            for (distance, piece) in distances.into_iter().zip(&mut at) {
+        for (new_holes, distances, tests) in found {
+            holes.extend(new_holes);
+            *remaining_tests = remaining_tests.saturating_sub(tests);
+            for (distance, piece) in distances.into_iter().zip(&mut piece_indices) {
                 farthest[piece] = distance;
             }
         }

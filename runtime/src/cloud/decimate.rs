@@ -17,16 +17,16 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Crowding by a coincident neighbour: 40 bits, with room for 2^24 of them.
-const MOST: f32 = (1u64 << 40) as f32;
+const MAX_CROWDING: f32 = (1u64 << 40) as f32;
 /// Cells along an axis before cell numbers repeat.
-const CELLS: u64 = 1 << 20;
+const CELLS_PER_AXIS: u64 = 1 << 20;
 /// Largest mean number of points examined around each. On a surface whose extent agrees with its area
 /// there are some fifty.
-const MOST_ABOUT: u64 = 512;
+const MAX_MEAN_NEIGHBOURS: u64 = 512;
 /// Maximum number of halvings of the neighbourhood radius if there are more.
-const HALVINGS: usize = 32;
+const MAX_HALVINGS: usize = 32;
 /// Points per parallel task.
-const TOGETHER: usize = 1 << 14;
+const POINTS_PER_TASK: usize = 1 << 14;
 
 /// Returns the ascending indices of the `count` points to keep, on a surface of the given area.
 pub(super) fn decimate(
@@ -40,50 +40,50 @@ pub(super) fn decimate(
         return (0..points.len() as u32).collect();
     }
     // The radius of `count` discs that would cover that area in the densest packing.
-    let mut largest = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
-    let mut crowd = CrowdedPoints::new(points, normals, largest, count);
-    for _ in 0..HALVINGS {
-        if crowd.is_none() {
-            largest /= 2.0;
-            crowd = CrowdedPoints::new(points, normals, largest, count);
+    let mut radius = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+    let mut crowded_points = CrowdedPoints::new(points, normals, radius, count);
+    for _ in 0..MAX_HALVINGS {
+        if crowded_points.is_none() {
+            radius /= 2.0;
+            crowded_points = CrowdedPoints::new(points, normals, radius, count);
         }
     }
-    let Some(mut crowd) = crowd else { return distinct(points, count) };
-    let mut gone = crowd.leave();
+    let Some(mut crowded_points) = crowded_points else { return distinct(points, count) };
+    let mut removed = crowded_points.remove_crowded();
     // The most crowded first; among equals the last.
-    parallel::sort(&mut gone);
-    let gone = gone.into_iter().rev().take(excess);
-    let mut left = vec![true; points.len()];
-    let mut still = points.len();
-    for (_, place) in gone {
-        left[crowd.index[place as usize] as usize] = false;
-        still -= 1;
+    parallel::sort(&mut removed);
+    let removed = removed.into_iter().rev().take(excess);
+    let mut is_kept = vec![true; points.len()];
+    let mut remaining = points.len();
+    for (_, slot) in removed {
+        is_kept[crowded_points.index[slot as usize] as usize] = false;
+        remaining -= 1;
     }
     // Points without neighbours are equally crowded, so remove the last of them.
-    let kept = left.iter_mut().rev().filter(|kept| **kept);
-    kept.take(still - count).for_each(|kept| *kept = false);
-    (0..).zip(left).filter(|(_, kept)| *kept).map(|(index, _)| index).collect()
+    let kept = is_kept.iter_mut().rev().filter(|kept| **kept);
+    kept.take(remaining - count).for_each(|kept| *kept = false);
+    (0..).zip(is_kept).filter(|(_, kept)| *kept).map(|(index, _)| index).collect()
 }
 
 /// Returns the ascending indices of `count` points to keep where many coincide, preferring one point per
 /// position.
 fn distinct(points: &[Point3<f64>], count: usize) -> Vec<u32> {
-    let place = |index: &u32| <[f64; 3]>::from(points[*index as usize]).map(f64::to_bits);
+    let position_key = |index: &u32| <[f64; 3]>::from(points[*index as usize]).map(f64::to_bits);
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_unstable_by_key(|index| (place(index), *index));
-    let (mut left, mut repeated) = (vec![], vec![]);
-    for same in order.chunk_by(|a, b| place(a) == place(b)) {
-        left.push(same[0]);
-        repeated.extend(&same[1..]);
+    order.sort_unstable_by_key(|index| (position_key(index), *index));
+    let (mut kept, mut repeated) = (vec![], vec![]);
+    for coincident in order.chunk_by(|a, b| position_key(a) == position_key(b)) {
+        kept.push(coincident[0]);
+        repeated.extend(&coincident[1..]);
     }
-    left.sort_unstable();
-    if left.len() > count {
-        return (0..count).map(|k| left[k * left.len() / count]).collect();
+    kept.sort_unstable();
+    if kept.len() > count {
+        return (0..count).map(|k| kept[k * kept.len() / count]).collect();
     }
     repeated.sort_unstable();
-    left.extend(&repeated[..count - left.len()]);
-    left.sort_unstable();
-    left
+    kept.extend(&repeated[..count - kept.len()]);
+    kept.sort_unstable();
+    kept
 }
 
 /// Points in the order of their grid cells, with their crowding.
@@ -91,60 +91,62 @@ struct CrowdedPoints {
     /// The original index of each point.
     index: Vec<u32>,
     /// Coordinates, in units of the largest distance at which points crowd each other.
-    place: [Vec<f32>; 3],
+    positions: [Vec<f32>; 3],
     normal: Vec<[f32; 3]>,
     /// The crowding of each point plus one; 0 for removed points.
-    crowded: Vec<AtomicU64>,
+    crowding: Vec<AtomicU64>,
     neighbours: Lists,
     /// Lower bound on the distance in the crowding formula; shorter distances count as this one.
-    least: f32,
+    min_distance: f32,
 }
 
 impl CrowdedPoints {
-    /// Computes the crowding of points whose neighbourhood radius is twice `largest`. Returns `None` if
+    /// Computes the crowding of points whose neighbourhood radius is twice `radius`. Returns `None` if
     /// too many points are that near, as where many triangles nearly coincide.
     fn new(
         points: &[Point3<f64>],
         normals: &[Vector3<f64>],
-        largest: f64,
+        radius: f64,
         count: usize,
     ) -> Option<CrowdedPoints> {
         let share = count as f64 / points.len() as f64;
-        let least = (0.65 * (1.0 - share * share.sqrt())) as f32;
+        let min_distance = (0.65 * (1.0 - share * share.sqrt())) as f32;
         let (mut low, mut high) = (points[0], points[0]);
         for point in points {
             (low, high) = (low.inf(point), high.sup(point));
         }
-        let unit = 2.0 * largest;
+        let unit = 2.0 * radius;
         // Cells with equal numbers are far apart, so their points are not neighbours.
         let key = |point: &Point3<f64>| {
-            let [x, y, z] =
-                [0, 1, 2].map(|axis| ((point[axis] - low[axis]) / unit) as u64 % CELLS + 1);
+            let [x, y, z] = [0, 1, 2]
+                .map(|axis| ((point[axis] - low[axis]) / unit) as u64 % CELLS_PER_AXIS + 1);
             x << 42 | y << 21 | z
         };
-        let mut keyed: Vec<(u64, u32)> = parallel::ranges(points.len(), TOGETHER, |range| {
+        let mut keyed: Vec<(u64, u32)> = parallel::ranges(points.len(), POINTS_PER_TASK, |range| {
             let start = range.start as u32;
             points[range].iter().zip(start..).map(|(p, i)| (key(p), i)).collect::<Vec<_>>()
         })
         .concat();
         parallel::sort(&mut keyed);
         let (mut keys, mut starts, mut cell) = (vec![], vec![], Vec::with_capacity(keyed.len()));
-        for (place, (key, _)) in (0u32..).zip(&keyed) {
+        for (slot, (key, _)) in (0u32..).zip(&keyed) {
             if keys.last() != Some(key) {
                 keys.push(*key);
-                starts.push(place);
+                starts.push(slot);
             }
             cell.push(keys.len() as u32 - 1);
         }
         starts.push(keyed.len() as u32);
         let rows =
-            parallel::ranges(keys.len(), TOGETHER, |range| rows(&keys, &starts, range)).concat();
-        let about = |row: &[[u32; 2]; 9]| row.iter().map(|[a, b]| u64::from(b - a)).sum::<u64>();
-        let sum: u64 = cell.iter().map(|cell| about(&rows[*cell as usize])).sum();
-        if sum > MOST_ABOUT * points.len() as u64 {
+            parallel::ranges(keys.len(), POINTS_PER_TASK, |range| rows(&keys, &starts, range))
+                .concat();
+        let neighbour_count =
+            |row: &[[u32; 2]; 9]| row.iter().map(|[a, b]| u64::from(b - a)).sum::<u64>();
+        let sum: u64 = cell.iter().map(|cell| neighbour_count(&rows[*cell as usize])).sum();
+        if sum > MAX_MEAN_NEIGHBOURS * points.len() as u64 {
             return None;
         }
-        let of = |axis: usize| {
+        let coordinates = |axis: usize| {
             let places = keyed.iter().map(|(_, i)| points[*i as usize][axis] - low[axis]);
             places.map(|from| (from / unit) as f32).collect()
         };
@@ -152,106 +154,107 @@ impl CrowdedPoints {
             let normal = normals[*i as usize];
             [normal.x as f32, normal.y as f32, normal.z as f32]
         });
-        let mut crowd = CrowdedPoints {
-            place: [of(0), of(1), of(2)],
+        let mut crowded_points = CrowdedPoints {
+            positions: [coordinates(0), coordinates(1), coordinates(2)],
             normal: normal.collect(),
-            crowded: Vec::with_capacity(keyed.len()),
+            crowding: Vec::with_capacity(keyed.len()),
             neighbours: Lists::default(),
-            least,
+            min_distance,
             index: keyed.iter().map(|(_, index)| *index).collect(),
         };
-        let met = parallel::ranges(points.len(), TOGETHER, |range| {
+        let results = parallel::ranges(points.len(), POINTS_PER_TASK, |range| {
             let (mut neighbours, mut sums) = (Lists::default(), Vec::with_capacity(range.len()));
-            for place in range {
-                let mut crowded = 1;
-                for [first, last] in &rows[cell[place] as usize] {
+            for slot in range {
+                let mut crowding = 1;
+                for [first, last] in &rows[cell[slot] as usize] {
                     for other in *first..*last {
-                        if let Some(share) = crowd.share(place as u32, other) {
+                        if let Some(share) = crowded_points.share(slot as u32, other) {
                             neighbours.push(other);
-                            crowded += share;
+                            crowding += share;
                         }
                     }
                 }
                 neighbours.end();
-                sums.push(crowded);
+                sums.push(crowding);
             }
             (neighbours, sums)
         });
-        let (neighbours, sums): (Vec<Lists>, Vec<Vec<u64>>) = met.into_iter().unzip();
-        crowd.neighbours = Lists::joined(neighbours);
-        crowd.crowded.extend(sums.into_iter().flatten().map(AtomicU64::new));
-        Some(crowd)
+        let (neighbours, sums): (Vec<Lists>, Vec<Vec<u64>>) = results.into_iter().unzip();
+        crowded_points.neighbours = Lists::joined(neighbours);
+        crowded_points.crowding.extend(sums.into_iter().flatten().map(AtomicU64::new));
+        Some(crowded_points)
     }
 
     /// Returns the crowding that two points cause each other, or `None` if they are not neighbours.
     #[inline(always)]
     fn share(&self, one: u32, other: u32) -> Option<u64> {
         let (i, j) = (one as usize, other as usize);
-        let [dx, dy, dz] = self.place.each_ref().map(|list| list[j] - list[i]);
+        let [dx, dy, dz] = self.positions.each_ref().map(|list| list[j] - list[i]);
         let squared = dx * dx + dy * dy + dz * dz;
         if squared >= 1.0 || one == other {
             return None;
         }
         let ([a, b, c], [x, y, z]) = (self.normal[i], self.normal[j]);
         (a * x + b * y + c * z > SAME_SIDE as f32).then(|| {
-            let near = 1.0 - squared.sqrt().max(self.least);
+            let near = 1.0 - squared.sqrt().max(self.min_distance);
             let fourth = (near * near) * (near * near);
-            (fourth * fourth * MOST) as u64
+            (fourth * fourth * MAX_CROWDING) as u64
         })
     }
 
     /// Removes all points that have neighbours, those first that are more crowded than all their
     /// neighbours. Returns the crowding of each at its removal, with its index.
-    fn leave(&mut self) -> Vec<(u64, u32)> {
-        let now = |place: u32| (self.crowded[place as usize].load(Relaxed), place);
-        let mut gone = Vec::with_capacity(self.index.len());
+    fn remove_crowded(&mut self) -> Vec<(u64, u32)> {
+        let current = |slot: u32| (self.crowding[slot as usize].load(Relaxed), slot);
+        let mut removed = Vec::with_capacity(self.index.len());
         // Points that wait, each with a neighbour that was more crowded when last examined.
         let mut waiting: Vec<[u32; 2]> =
-            (0..self.index.len() as u32).map(|place| [place, place]).collect();
+            (0..self.index.len() as u32).map(|slot| [slot, slot]).collect();
         while !waiting.is_empty() {
-            let looked = parallel::ranges(waiting.len(), TOGETHER, |range| {
-                let (mut going, mut staying) = (vec![], Vec::with_capacity(range.len()));
-                for &[place, before] in &waiting[range] {
-                    let mine = now(place);
-                    if mine.0 <= 1 {
+            let decisions = parallel::ranges(waiting.len(), POINTS_PER_TASK, |range| {
+                let (mut removed_now, mut still_waiting) =
+                    (vec![], Vec::with_capacity(range.len()));
+                for &[slot, blocker] in &waiting[range] {
+                    let own = current(slot);
+                    if own.0 <= 1 {
                         continue;
                     }
-                    if now(before) > mine {
-                        staying.push([place, before]);
+                    if current(blocker) > own {
+                        still_waiting.push([slot, blocker]);
                         continue;
                     }
                     // Wait for the least of the more crowded neighbours: it stays the longest.
-                    let others = self.neighbours.of(place).iter().map(|other| now(*other));
-                    let above = others.filter(|other| *other > mine).min();
-                    match above {
-                        None => going.push(mine),
-                        Some((_, above)) => staying.push([place, above]),
+                    let others = self.neighbours.of(slot).iter().map(|other| current(*other));
+                    let more_crowded = others.filter(|other| *other > own).min();
+                    match more_crowded {
+                        None => removed_now.push(own),
+                        Some((_, more_crowded)) => still_waiting.push([slot, more_crowded]),
                     }
                 }
-                (going, staying)
+                (removed_now, still_waiting)
             });
-            let from = gone.len();
+            let from = removed.len();
             waiting.clear();
-            for (going, staying) in looked {
-                gone.extend(going);
-                waiting.extend(staying);
+            for (removed_now, still_waiting) in decisions {
+                removed.extend(removed_now);
+                waiting.extend(still_waiting);
             }
-            let going: &[(u64, u32)] = &gone[from..];
-            parallel::ranges(going.len(), TOGETHER, |range| {
-                for (_, place) in &going[range] {
-                    self.crowded[*place as usize].store(0, Relaxed);
-                    for other in self.neighbours.of(*place) {
-                        let crowded = &self.crowded[*other as usize];
+            let removed_now: &[(u64, u32)] = &removed[from..];
+            parallel::ranges(removed_now.len(), POINTS_PER_TASK, |range| {
+                for (_, slot) in &removed_now[range] {
+                    self.crowding[*slot as usize].store(0, Relaxed);
+                    for other in self.neighbours.of(*slot) {
+                        let crowding = &self.crowding[*other as usize];
                         // Points removed in the same round are not neighbours, so no other thread sets
                         // this value to 0 meanwhile.
-                        if crowded.load(Relaxed) != 0 {
-                            crowded.fetch_sub(self.share(*place, *other).unwrap_or(0), Relaxed);
+                        if crowding.load(Relaxed) != 0 {
+                            crowding.fetch_sub(self.share(*slot, *other).unwrap_or(0), Relaxed);
                         }
                     }
                 }
             });
         }
-        gone
+        removed
     }
 }
 

@@ -20,23 +20,24 @@ impl Lists {
     }
 
     /// Concatenates several collections of lists, in order.
-    pub(super) fn joined(some: Vec<Lists>) -> Lists {
-        let [items, lists] = some.iter().fold([0; 2], |[items, lists], some| {
-            [items + some.items.len(), lists + some.ends.len()]
+    pub(super) fn joined(parts: Vec<Lists>) -> Lists {
+        let [items, lists] = parts.iter().fold([0; 2], |[items, lists], part| {
+            [items + part.items.len(), lists + part.ends.len()]
         });
-        let mut all = Lists { items: Vec::with_capacity(items), ends: Vec::with_capacity(lists) };
-        for Lists { items, ends } in some {
-            let before = all.items.len();
-            all.items.extend(items);
-            all.ends.extend(ends.into_iter().map(|end| before + end));
+        let mut combined =
+            Lists { items: Vec::with_capacity(items), ends: Vec::with_capacity(lists) };
+        for Lists { items, ends } in parts {
+            let offset = combined.items.len();
+            combined.items.extend(items);
+            combined.ends.extend(ends.into_iter().map(|end| offset + end));
         }
-        all
+        combined
     }
 
-    /// Returns the list at index `place`.
-    pub(super) fn of(&self, place: u32) -> &[u32] {
-        let place = place as usize;
-        let start = if place == 0 { 0 } else { self.ends[place - 1] };
-        &self.items[start..self.ends[place]]
+    /// Returns the list at index `index`.
+    pub(super) fn of(&self, index: u32) -> &[u32] {
+        let index = index as usize;
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        &self.items[start..self.ends[index]]
     }
 }

@@ -49,7 +49,7 @@ pub struct Cloud {
     triangles: Vec<u32>,
     weights: Vec<f64>,
     unit: Unit,
-    cover: Option<CoveringRadius>,
+    covering_radius: Option<CoveringRadius>,
 }
 
 /// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during
@@ -83,7 +83,7 @@ impl Cloud {
             }
             SamplingMethod::BlueNoise => {
                 let surface = Surface::new(mesh, &sampler, count);
-                let cloud = blue_noise::blue(mesh, &sampler, &surface, count, seed);
+                let cloud = blue_noise::sample_blue_noise(mesh, &sampler, &surface, count, seed);
                 Ok(cloud.weighted_on(&surface))
             }
             SamplingMethod::Uniform => {
@@ -104,32 +104,37 @@ impl Cloud {
         radius: f64,
         sampling: Sampling,
     ) -> Result<Cloud, CloudError> {
-        let most = sampling.count.min(MAX_BLUE_NOISE_POINTS);
+        let max_count = sampling.count.min(MAX_BLUE_NOISE_POINTS);
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(CloudError::Radius { radius });
         }
-        let area = AreaSampler::of(mesh).spread;
+        let area = AreaSampler::of(mesh).distinct_area;
         // Typical covering radius, divided by the square root of the area per point.
-        let mut usual = match sampling.method {
+        let mut ratio = match sampling.method {
             SamplingMethod::BlueNoise => 0.91,
             SamplingMethod::Uniform | SamplingMethod::MonteCarlo => 2.1,
         };
         loop {
-            let needed = area * (usual / radius).powi(2);
-            if needed > most as f64 {
-                let instead = usual * (area / most as f64).sqrt();
-                return Err(CloudError::TooFine { radius, needed, most, instead });
+            let required_count = area * (ratio / radius).powi(2);
+            if required_count > max_count as f64 {
+                let attainable = ratio * (area / max_count as f64).sqrt();
+                return Err(CloudError::TooFine {
+                    radius,
+                    needed: required_count,
+                    most: max_count,
+                    instead: attainable,
+                });
             }
-            let count = (needed.ceil() as usize).max(1);
+            let count = (required_count.ceil() as usize).max(1);
             let mut cloud = Cloud::sample(mesh, Sampling { count, ..sampling })?;
-            if cloud.cover.is_none() {
-                cloud.cover = cloud.clone().with_voronoi_weights(mesh).cover;
+            if cloud.covering_radius.is_none() {
+                cloud.covering_radius = cloud.clone().with_voronoi_weights(mesh).covering_radius;
             }
-            match cloud.cover {
-                Some(cover) if cover.radius > radius => {
-                    let here = cover.radius * (count as f64 / area).sqrt();
+            match cloud.covering_radius {
+                Some(covering_radius) if covering_radius.radius > radius => {
+                    let measured = covering_radius.radius * (count as f64 / area).sqrt();
                     // Where few points are far apart, more of them soon do better than that.
-                    usual *= (1.005 * here / usual).clamp(1.005, 2.0);
+                    ratio *= (1.005 * measured / ratio).clamp(1.005, 2.0);
                 }
                 _ => return Ok(cloud),
             }
@@ -151,7 +156,7 @@ impl Cloud {
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
         let mut cloud = Cloud::new(places, normals, faces, weights, unit)?;
         let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
-        cloud.cover = radius.map(|radius| CoveringRadius { radius, proved: false });
+        cloud.covering_radius = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {
             cloud.weights = areas;
         }
@@ -172,7 +177,7 @@ impl Cloud {
         let Cells { areas, radius } =
             surface.cells(&VoronoiSites::new(surface, &self.points, &self.normals));
         self.weights = areas;
-        self.cover = Some(CoveringRadius { radius, proved: true });
+        self.covering_radius = Some(CoveringRadius { radius, proved: true });
         self
     }
 
@@ -180,13 +185,15 @@ impl Cloud {
     /// computes new weights ([`Cloud::with_voronoi_weights`]).
     #[must_use]
     pub fn decimated(&self, mesh: &Mesh, count: usize) -> Cloud {
-        let facets = AreaSampler::of(mesh);
+        let sampler = AreaSampler::of(mesh);
         let mut cloud = Cloud::with_capacity(count.min(self.len()), self.unit);
-        for index in decimate::decimate(&self.points, &self.normals, facets.spread, count.max(1)) {
+        for index in
+            decimate::decimate(&self.points, &self.normals, sampler.distinct_area, count.max(1))
+        {
             let index = index as usize;
             cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
         }
-        let surface = Surface::new(mesh, &facets, cloud.len());
+        let surface = Surface::new(mesh, &sampler, cloud.len());
         cloud.weighted_on(&surface)
     }
 
@@ -231,8 +238,8 @@ impl Cloud {
             });
         }
         check_count(count)?;
-        for (point, place) in points.iter().enumerate() {
-            check_place(point, place)?;
+        for (point, position) in points.iter().enumerate() {
+            check_position(point, position)?;
         }
         for (point, normal) in normals.iter_mut().enumerate() {
             *normal = unit_normal(point, *normal)?;
@@ -242,7 +249,7 @@ impl Cloud {
                 return Err(CloudError::Weight { point, weight });
             }
         }
-        Ok(Cloud { points, normals, triangles, weights, unit, cover: None })
+        Ok(Cloud { points, normals, triangles, weights, unit, covering_radius: None })
     }
 
     fn with_capacity(count: usize, unit: Unit) -> Cloud {
@@ -252,7 +259,7 @@ impl Cloud {
             triangles: Vec::with_capacity(count),
             weights: Vec::with_capacity(count),
             unit,
-            cover: None,
+            covering_radius: None,
         }
     }
 
@@ -285,7 +292,7 @@ impl Cloud {
 
     /// Returns the covering radius, or `None` if it is unknown.
     pub fn covering_radius(&self) -> Option<CoveringRadius> {
-        self.cover
+        self.covering_radius
     }
 
     /// Returns the unit of length.
@@ -310,8 +317,8 @@ fn check_count(count: usize) -> Result<(), CloudError> {
 }
 
 /// Fails unless all coordinates of a point are valid.
-pub(crate) fn check_place(point: usize, place: &Point3<f64>) -> Result<(), CloudError> {
-    match place.iter().find(|&&c| !is_valid_coordinate(c)) {
+pub(crate) fn check_position(point: usize, position: &Point3<f64>) -> Result<(), CloudError> {
+    match position.iter().find(|&&c| !is_valid_coordinate(c)) {
         Some(&coordinate) => Err(CloudError::Coordinate { point, coordinate }),
         None => Ok(()),
     }

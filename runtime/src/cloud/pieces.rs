@@ -1,12 +1,12 @@
 //! Division of a surface into pieces of a convenient size for the Voronoi diagram.
 //!
 //! **Number of pieces.** A triangle whose box is `l` by `w` meets about `(l/s + 1)(w/s + 1)` cells of
-//! points at a spacing `s`, and is cut until that is at most [`MET`]. Each cut halves the longer side,
+//! points at a spacing `s`, and is cut until that is at most [`MAX_POINTS_PER_PIECE`]. Each cut halves the longer side,
 //! so a piece that was cut has more than `MET / 2`, and the cuts add at most two thirds to the sum over
 //! all pieces. A sum `E` over the triangles therefore makes at most `E / 16` pieces in addition to one
 //! per triangle. For parts with an ordinary shape, `E` is a few times the number of points and
-//! triangles. If it is more than [`MOST_MET`] times that and [`ANY_MET`], triangles are long compared
-//! with the spacing. They are then cut by a coarser grain, at which `E` is [`COARSE_MET`] times the
+//! triangles. If it is more than [`MAX_MEAN_PIECES`] times that and [`FREE_PIECES`], triangles are long compared
+//! with the spacing. They are then cut by a coarser grain, at which `E` is [`COARSE_MEAN_PIECES`] times the
 //! number of points and triangles. There are therefore never more than `5 triangles + 4 points + 2^20`
 //! pieces. Results computed from the pieces hold for pieces of any size.
 
@@ -17,13 +17,13 @@ use nalgebra::{Point3, Vector3};
 use std::ops::Range;
 
 /// Triangles are cut until about as many points have a cell in each piece.
-pub(super) const MET: f64 = 64.0;
+pub(super) const MAX_POINTS_PER_PIECE: f64 = 64.0;
 /// Cells that triangles meet, per point and per triangle, before a coarser grain is used.
-const MOST_MET: f64 = 64.0;
+const MAX_MEAN_PIECES: f64 = 64.0;
 /// Number of cells that is always allowed.
-const ANY_MET: f64 = (1 << 24) as f64;
+const FREE_PIECES: f64 = (1 << 24) as f64;
 /// Cells that triangles meet at the coarser grain, per point and per triangle.
-const COARSE_MET: f64 = 16.0;
+const COARSE_MEAN_PIECES: f64 = 16.0;
 
 /// Triangles cut into pieces. Triangles without area are included: they are edges, and a tool may be
 /// just as deep there.
@@ -54,7 +54,7 @@ struct TrianglePieces {
     triangle: u32,
     copies: u32,
     /// The corner that other corners are given relative to.
-    from: Point3<f64>,
+    origin: Point3<f64>,
     normal: Vector3<f64>,
     /// Directions along the longest side, and across it in the triangle's plane.
     axes: [Vector3<f64>; 2],
@@ -62,26 +62,26 @@ struct TrianglePieces {
 
 impl Surface {
     /// Divides a mesh for `count` points.
-    pub(super) fn new(mesh: &Mesh, facets: &AreaSampler, count: usize) -> Surface {
-        let spacing = (facets.spread / count as f64).sqrt();
+    pub(super) fn new(mesh: &Mesh, sampler: &AreaSampler, count: usize) -> Surface {
+        let spacing = (sampler.distinct_area / count as f64).sqrt();
         let [low, high] = mesh.bounds();
         let size = low.coords.amax().max(high.coords.amax());
-        let grain = grain(mesh, facets, spacing, count);
+        let grain = grain(mesh, sampler, spacing, count);
         let mut surface = Surface { pieces: vec![], corners: vec![], spacing, grain, size };
         for (triangle, corners) in (0..).zip(mesh.corners()) {
-            let copies = facets.copies.count(triangle);
+            let copies = sampler.copies.count(triangle);
             if copies > 0 {
                 let (area, normal) = area_and_normal(&corners).unwrap_or_default();
-                let from = corners[0];
-                let whole = corners.map(|corner| (corner - from, EDGE)).to_vec();
-                let of = TrianglePieces {
+                let origin = corners[0];
+                let polygon = corners.map(|corner| (corner - origin, EDGE)).to_vec();
+                let triangle_pieces = TrianglePieces {
                     triangle,
                     copies,
-                    from,
+                    origin,
                     normal,
                     axes: axes(&corners, &normal),
                 };
-                surface.add(&of, whole, area);
+                surface.add(&triangle_pieces, polygon, area);
             }
         }
         surface
@@ -89,35 +89,35 @@ impl Surface {
 
     /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in
     /// each piece.
-    fn add(&mut self, of: &TrianglePieces, part: Vec<Corner>, area: f64) {
-        let TrianglePieces { triangle, copies, from, normal, axes } = *of;
+    fn add(&mut self, triangle_pieces: &TrianglePieces, part: Vec<Corner>, area: f64) {
+        let TrianglePieces { triangle, copies, origin, normal, axes } = *triangle_pieces;
         let ends = ends(&part, &axes);
-        if met(&ends, self.grain) <= MET {
+        if expected_points(&ends, self.grain) <= MAX_POINTS_PER_PIECE {
             let start = self.corners.len();
-            self.corners.extend(part.iter().map(|(corner, _)| from + corner));
+            self.corners.extend(part.iter().map(|(corner, _)| origin + corner));
             let corners = start..self.corners.len();
             self.pieces.push(SurfacePiece { triangle, copies, corners, normal, area });
             return;
         }
         let [long, wide] = ends.map(|[low, high]| high - low);
-        let across = usize::from(wide > long);
-        let ([low, high], axis) = (ends[across], axes[across]);
+        let axis_index = usize::from(wide > long);
+        let ([low, high], axis) = (ends[axis_index], axes[axis_index]);
         let middle = low / 2.0 + high / 2.0;
-        let (mut one, mut cut) = (part.clone(), vec![]);
-        let mut other = part;
-        clip(&mut one, &mut cut, axis, middle, EDGE);
-        clip(&mut other, &mut cut, -axis, -middle, EDGE);
-        let sizes = [&one, &other].map(|part| self::area(part, &normal));
-        let all = sizes[0] + sizes[1];
-        for (part, size) in [one, other].into_iter().zip(sizes) {
+        let (mut first, mut cut) = (part.clone(), vec![]);
+        let mut second = part;
+        clip(&mut first, &mut cut, axis, middle, EDGE);
+        clip(&mut second, &mut cut, -axis, -middle, EDGE);
+        let sizes = [&first, &second].map(|part| self::area(part, &normal));
+        let total = sizes[0] + sizes[1];
+        for (part, size) in [first, second].into_iter().zip(sizes) {
             // If rounding leaves no area, the part still has a length, so it is divided evenly.
-            let share = if all > 0.0 { size / all } else { 0.5 };
-            self.add(of, part, share * area);
+            let share = if total > 0.0 { size / total } else { 0.5 };
+            self.add(triangle_pieces, part, share * area);
         }
     }
 
     /// Returns whether triangles are too long to be cut for the points' spacing.
-    pub(super) fn coarse(&self) -> bool {
+    pub(super) fn is_coarse(&self) -> bool {
         self.grain > self.spacing
     }
 
@@ -146,27 +146,27 @@ fn ends(part: &[Corner], axes: &[Vector3<f64>; 2]) -> [[f64; 2]; 2] {
 }
 
 /// Returns the approximate number of cells of points at a spacing that a box meets.
-fn met(ends: &[[f64; 2]; 2], spacing: f64) -> f64 {
+fn expected_points(ends: &[[f64; 2]; 2], spacing: f64) -> f64 {
     let [long, wide] = ends.map(|[low, high]| high - low);
     (long / spacing + 1.0) * (wide / spacing + 1.0)
 }
 
 /// Returns the spacing that a mesh is cut for. It is the points' spacing, or that times the smallest
 /// power of two for which there are not too many pieces.
-fn grain(mesh: &Mesh, facets: &AreaSampler, spacing: f64, count: usize) -> f64 {
-    let triangles = (0..).zip(mesh.corners()).filter(|(id, _)| facets.copies.count(*id) > 0);
+fn grain(mesh: &Mesh, sampler: &AreaSampler, spacing: f64, count: usize) -> f64 {
+    let triangles = (0..).zip(mesh.corners()).filter(|(id, _)| sampler.copies.count(*id) > 0);
     let boxes: Vec<[[f64; 2]; 2]> = triangles
         .map(|(_, corners)| {
             let normal = area_and_normal(&corners).unwrap_or_default().1;
-            let whole = corners.map(|corner| (corner - corners[0], EDGE));
-            ends(&whole, &axes(&corners, &normal))
+            let polygon = corners.map(|corner| (corner - corners[0], EDGE));
+            ends(&polygon, &axes(&corners, &normal))
         })
         .collect();
-    let all = |grain: f64| boxes.iter().map(|ends| met(ends, grain)).sum::<f64>();
+    let total = |grain: f64| boxes.iter().map(|ends| expected_points(ends, grain)).sum::<f64>();
     let size = (count + boxes.len()) as f64;
     let mut grain = spacing;
-    if all(grain) > MOST_MET * size + ANY_MET {
-        while all(grain) > COARSE_MET * size {
+    if total(grain) > MAX_MEAN_PIECES * size + FREE_PIECES {
+        while total(grain) > COARSE_MEAN_PIECES * size {
             grain *= 2.0;
         }
     }

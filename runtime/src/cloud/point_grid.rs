@@ -29,45 +29,45 @@ impl NeighbourBvh {
 
     /// Puts the points within a distance of a position into `found`, as squared distance and index. The
     /// nearest come first, equally near ones by index.
-    pub(super) fn within(&self, at: [f64; 3], distance: f64, found: &mut Vec<(f64, u32)>) {
-        self.some_within(at, distance, usize::MAX, found);
+    pub(super) fn within(&self, point: [f64; 3], distance: f64, found: &mut Vec<(f64, u32)>) {
+        self.nearest_within(point, distance, usize::MAX, found);
     }
 
-    /// Like [`PointGrid::within`], but returns only the `most` nearest points. `most` must be at least
+    /// Like [`PointGrid::within`], but returns only the `max_count` nearest points. `max_count` must be at least
     /// 1.
-    pub(super) fn some_within(
+    pub(super) fn nearest_within(
         &self,
-        at: [f64; 3],
+        point: [f64; 3],
         distance: f64,
-        most: usize,
+        max_count: usize,
         found: &mut Vec<(f64, u32)>,
     ) {
         found.clear();
-        let mut squared = distance * distance;
-        self.visit(at, squared, self.levels.len() - 1, 0, &mut |items| {
+        let mut max_squared = distance * distance;
+        self.visit(point, max_squared, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
-                let away = away(item.at, at);
-                if away <= squared {
-                    found.push((away, item.index));
+                let squared_distance = squared_distance(item.at, point);
+                if squared_distance <= max_squared {
+                    found.push((squared_distance, item.index));
                 }
             }
-            if found.len() / 2 >= most {
-                squared = found.select_nth_unstable_by(most - 1, nearer).1.0;
-                found.truncate(most);
+            if found.len() / 2 >= max_count {
+                max_squared = found.select_nth_unstable_by(max_count - 1, nearer).1.0;
+                found.truncate(max_count);
             }
-            squared
+            max_squared
         });
         found.sort_unstable_by(nearer);
-        found.truncate(most);
+        found.truncate(max_count);
     }
 
-    /// Returns the point with the least sum of its squared distance and `added`; among equals, the one
+    /// Returns the point with the least sum of its squared distance and `offset`; among equals, the one
     /// with the lower index.
-    pub(super) fn least(&self, at: [f64; 3], added: impl Fn(u32) -> f64) -> u32 {
+    pub(super) fn min_sum(&self, point: [f64; 3], offset: impl Fn(u32) -> f64) -> u32 {
         let mut best = (f64::INFINITY, u32::MAX);
-        self.visit(at, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
+        self.visit(point, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
-                let sum = (away(item.at, at) + added(item.index), item.index);
+                let sum = (squared_distance(item.at, point) + offset(item.index), item.index);
                 if nearer(&sum, &best).is_lt() {
                     best = sum;
                 }
@@ -77,30 +77,32 @@ impl NeighbourBvh {
         best.1
     }
 
-    /// Returns the squared distance within which the points' weights add up to `wanted`, or that of the
+    /// Returns the squared distance within which the points' weights add up to `min_weight`, or that of the
     /// farthest point if the total weight is less.
-    pub(super) fn weighing(
+    pub(super) fn distance_to_weight(
         &self,
-        at: [f64; 3],
-        wanted: usize,
+        point: [f64; 3],
+        min_weight: usize,
         weight: impl Fn(u32) -> usize,
     ) -> f64 {
         let mut sum = 0;
         let mut nearest: BinaryHeap<(Squared, usize)> = BinaryHeap::new();
-        self.visit(at, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
+        self.visit(point, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
-                let away = Squared(away(item.at, at));
-                if sum < wanted || nearest.peek().is_some_and(|farthest| away < farthest.0) {
+                let squared_distance = Squared(squared_distance(item.at, point));
+                if sum < min_weight
+                    || nearest.peek().is_some_and(|farthest| squared_distance < farthest.0)
+                {
                     let weight = weight(item.index);
                     sum += weight;
-                    nearest.push((away, weight));
-                    while let Some(farthest) = nearest.peek().filter(|f| sum - f.1 >= wanted) {
+                    nearest.push((squared_distance, weight));
+                    while let Some(farthest) = nearest.peek().filter(|f| sum - f.1 >= min_weight) {
                         sum -= farthest.1;
                         nearest.pop();
                     }
                 }
             }
-            let farthest = nearest.peek().filter(|_| sum >= wanted);
+            let farthest = nearest.peek().filter(|_| sum >= min_weight);
             farthest.map_or(f64::INFINITY, |farthest| farthest.0.0)
         });
         nearest.peek().map_or(0.0, |farthest| farthest.0.0)
@@ -110,33 +112,33 @@ impl NeighbourBvh {
     /// the new squared distance. Returns the final one.
     fn visit(
         &self,
-        at: [f64; 3],
-        mut squared: f64,
+        point: [f64; 3],
+        mut max_squared: f64,
         level: usize,
         node: usize,
-        look: &mut impl FnMut(&[BuildItem]) -> f64,
+        visit_leaf: &mut impl FnMut(&[BuildItem]) -> f64,
     ) -> f64 {
         let range = |list: usize| node * WIDTH..((node + 1) * WIDTH).min(list);
         if level == 0 {
-            return look(&self.items[range(self.items.len())]);
+            return visit_leaf(&self.items[range(self.items.len())]);
         }
         let below = &self.levels[level - 1];
-        let mut near = [(0.0, 0); WIDTH];
+        let mut children = [(0.0, 0); WIDTH];
         let mut count = 0;
         for child in range(below.len()) {
-            let away = below[child].away(at);
-            if away <= squared {
-                near[count] = (away, child);
+            let squared_distance = below[child].squared_distance(point);
+            if squared_distance <= max_squared {
+                children[count] = (squared_distance, child);
                 count += 1;
             }
         }
-        near[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for (away, child) in &near[..count] {
-            if *away <= squared {
-                squared = self.visit(at, squared, level - 1, *child, look);
+        children[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (squared_distance, child) in &children[..count] {
+            if *squared_distance <= max_squared {
+                max_squared = self.visit(point, max_squared, level - 1, *child, visit_leaf);
             }
         }
-        squared
+        max_squared
     }
 }
 
@@ -170,7 +172,7 @@ pub(super) fn nearer(a: &(f64, u32), b: &(f64, u32)) -> Ordering {
 }
 
 /// Returns the squared distance of two positions.
-pub(super) fn away(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     x * x + y * y + z * z
 }

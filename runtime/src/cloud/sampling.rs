@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use std::ops::Range;
 
 /// Points per parallel task.
-const TOGETHER: usize = 1 << 12;
+const POINTS_PER_TASK: usize = 1 << 12;
 
 /// The triangles that have an area, with cumulative areas for sampling.
 pub(super) struct AreaSampler {
@@ -21,35 +21,35 @@ pub(super) struct AreaSampler {
     areas_up_to: Vec<f64>,
     pub(super) copies: Copies,
     /// The total area with coincident triangles counted once: the area that points spread over.
-    pub(super) spread: f64,
+    pub(super) distinct_area: f64,
 }
 
 impl AreaSampler {
     pub(super) fn of(mesh: &Mesh) -> AreaSampler {
-        let mut facets = AreaSampler {
+        let mut sampler = AreaSampler {
             ids: Vec::new(),
             normals: Vec::new(),
             areas_up_to: Vec::new(),
             copies: Copies::of(mesh),
-            spread: 0.0,
+            distinct_area: 0.0,
         };
         let (mut sum, mut distinct) = (CompensatedSum::default(), CompensatedSum::default());
-        let mut highest = 0f64;
+        let mut max_so_far = 0f64;
         for (id, corners) in (0..).zip(mesh.corners()) {
             if let Some((area, normal)) = area_and_normal(&corners) {
                 sum.add(area);
                 // The search needs an ascending list; a compensated sum may step back by an ulp.
-                highest = highest.max(sum.value());
-                facets.ids.push(id);
-                facets.normals.push(normal);
-                facets.areas_up_to.push(highest);
-                if facets.copies.count(id) > 0 {
+                max_so_far = max_so_far.max(sum.value());
+                sampler.ids.push(id);
+                sampler.normals.push(normal);
+                sampler.areas_up_to.push(max_so_far);
+                if sampler.copies.count(id) > 0 {
                     distinct.add(area);
-                    facets.spread = facets.spread.max(distinct.value());
+                    sampler.distinct_area = sampler.distinct_area.max(distinct.value());
                 }
             }
         }
-        facets
+        sampler
     }
 
     /// Returns the total area, which is positive for a mesh.
@@ -64,45 +64,50 @@ impl AreaSampler {
         let area = self.area();
         for _ in 0..count {
             let target = fraction(&mut random) * area;
-            let facet = self.at(target);
-            let point = self.point(mesh, facet, &mut random);
-            cloud.push(point, self.normals[facet], self.ids[facet], area / count as f64);
+            let sample_index = self.index_at(target);
+            let point = self.point(mesh, sample_index, &mut random);
+            cloud.push(
+                point,
+                self.normals[sample_index],
+                self.ids[sample_index],
+                area / count as f64,
+            );
         }
         cloud
     }
 
     /// Draws one point from each of `count` equal shares of the area (stratified sampling). The weights
     /// are 0: the points are candidates for decimation.
-    pub(super) fn even(&self, mesh: &Mesh, count: usize, seed: u64) -> Cloud {
+    pub(super) fn stratified(&self, mesh: &Mesh, count: usize, seed: u64) -> Cloud {
         let share = self.area() / count as f64;
-        let draw = |range: Range<usize>| {
+        let sample_range = |range: Range<usize>| {
             let mut random = Pcg64::new(seed.into(), range.start as u128);
-            let mut drawn = Cloud::with_capacity(range.len(), mesh.unit());
+            let mut samples = Cloud::with_capacity(range.len(), mesh.unit());
             for index in range {
-                let facet = self.at((index as f64 + fraction(&mut random)) * share);
-                let point = self.point(mesh, facet, &mut random);
-                drawn.push(point, self.normals[facet], self.ids[facet], 0.0);
+                let sample_index = self.index_at((index as f64 + fraction(&mut random)) * share);
+                let point = self.point(mesh, sample_index, &mut random);
+                samples.push(point, self.normals[sample_index], self.ids[sample_index], 0.0);
             }
-            drawn
+            samples
         };
         let mut cloud = Cloud::with_capacity(count, mesh.unit());
-        for drawn in parallel::ranges(count, TOGETHER, draw) {
-            cloud.points.extend(drawn.points);
-            cloud.normals.extend(drawn.normals);
-            cloud.triangles.extend(drawn.triangles);
-            cloud.weights.extend(drawn.weights);
+        for samples in parallel::ranges(count, POINTS_PER_TASK, sample_range) {
+            cloud.points.extend(samples.points);
+            cloud.normals.extend(samples.normals);
+            cloud.triangles.extend(samples.triangles);
+            cloud.weights.extend(samples.weights);
         }
         cloud
     }
 
     /// Returns the index of the triangle at which the cumulative area exceeds `target`.
-    fn at(&self, target: f64) -> usize {
+    fn index_at(&self, target: f64) -> usize {
         self.areas_up_to.partition_point(|&up_to| up_to <= target).min(self.ids.len() - 1)
     }
 
     /// Draws a point of a triangle, uniformly by area.
-    fn point(&self, mesh: &Mesh, facet: usize, random: &mut Pcg64) -> Point3<f64> {
-        let [a, b, c] = mesh.triangle(TriangleId(self.ids[facet]));
+    fn point(&self, mesh: &Mesh, sample_index: usize, random: &mut Pcg64) -> Point3<f64> {
+        let [a, b, c] = mesh.triangle(TriangleId(self.ids[sample_index]));
         let (u, v) = (fraction(random), fraction(random));
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         a + u * (b - a) + v * (c - a)

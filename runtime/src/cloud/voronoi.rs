@@ -36,18 +36,18 @@ use nalgebra::{Point3, Vector3};
 use std::collections::HashSet;
 
 /// Radius, in spacings, that contains most of the points that cut a cell.
-const BESIDE: f64 = 2.5;
+const NEIGHBOUR_RADIUS: f64 = 2.5;
 /// Maximum number of these points that are kept. Where a part's extent agrees with its area, there are
 /// some twenty.
-const MOST_BESIDE: usize = 128;
+const MAX_NEIGHBOURS: usize = 128;
 /// Fixed cost of a cell, in units of one point tested against a cell.
-const CELL: usize = 16;
+const CELL_COST: usize = 16;
 /// Cost of finding and sorting one of the nearest points, in the same unit.
-const FOUND: usize = 4;
+const NEIGHBOUR_COST: usize = 4;
 /// Maximum number of points met that are searched linearly.
-const FEW: usize = 64;
+const MAX_LINEAR_SEARCH: usize = 64;
 /// Points per parallel task.
-const TOGETHER: usize = 1 << 10;
+const POINTS_PER_TASK: usize = 1 << 10;
 /// Returns the error bound of a corner's signed distance from a line, relative to the sum of the
 /// magnitudes of its terms, after `cuts` cuts of the cell (see above). It is constant up to twelve cuts,
 /// which most cells do not exceed.
@@ -59,10 +59,10 @@ fn rounding(cuts: u32) -> f64 {
 pub(super) struct VoronoiSites<'a> {
     pub(super) points: &'a [Point3<f64>],
     normals: &'a [Vector3<f64>],
-    near: NeighbourBvh,
-    /// The points within `near_by` of each, the nearest first, at most [`MOST_BESIDE`].
-    beside: Lists,
-    near_by: f64,
+    tree: NeighbourBvh,
+    /// The points within `neighbour_radius` of each, the nearest first, at most [`MAX_NEIGHBOURS`].
+    neighbours: Lists,
+    neighbour_radius: f64,
 }
 
 /// A corner of a cell relative to its point, and the point whose line the next edge lies on.
@@ -81,11 +81,11 @@ pub(super) struct ClipBuffers {
     /// of their error bounds.
     touched: Vec<(u32, Vector3<f64>, f64, f64)>,
     /// Points whose cells are or will be computed; the first owns the piece's centre.
-    pub(super) met: Vec<u32>,
+    pub(super) visited: Vec<u32>,
     /// The same points as a set, if there are many.
-    known: HashSet<u32>,
+    visited_set: HashSet<u32>,
     /// The number of points tested against cells, plus the other costs of the cells.
-    pub(super) held: usize,
+    pub(super) tests: usize,
 }
 
 impl<'a> VoronoiSites<'a> {
@@ -94,172 +94,186 @@ impl<'a> VoronoiSites<'a> {
         points: &'a [Point3<f64>],
         normals: &'a [Vector3<f64>],
     ) -> VoronoiSites<'a> {
-        let near = NeighbourBvh::new(points);
+        let tree = NeighbourBvh::new(points);
         // Where the area does not predict the distances between points, the nearest ones are taken.
-        let near_by = if surface.coarse() { f64::INFINITY } else { BESIDE * surface.spacing };
-        let lists = parallel::ranges(points.len(), TOGETHER, |range| {
-            let (mut found, mut beside) = (vec![], Lists::default());
+        let neighbour_radius =
+            if surface.is_coarse() { f64::INFINITY } else { NEIGHBOUR_RADIUS * surface.spacing };
+        let lists = parallel::ranges(points.len(), POINTS_PER_TASK, |range| {
+            let (mut found, mut neighbours) = (vec![], Lists::default());
             for site in range {
-                near.some_within(points[site].into(), near_by, MOST_BESIDE, &mut found);
-                found.iter().for_each(|(_, other)| beside.push(*other));
-                beside.end();
+                tree.nearest_within(
+                    points[site].into(),
+                    neighbour_radius,
+                    MAX_NEIGHBOURS,
+                    &mut found,
+                );
+                found.iter().for_each(|(_, other)| neighbours.push(*other));
+                neighbours.end();
             }
-            beside
+            neighbours
         });
-        let beside = Lists::joined(lists);
-        VoronoiSites { points, normals, near, beside, near_by }
+        let neighbours = Lists::joined(lists);
+        VoronoiSites { points, normals, tree, neighbours, neighbour_radius }
     }
 }
 
 impl Surface {
-    /// Calls `with` for each point that has a cell in a piece, with the cell's corners relative to the
-    /// point. `turned` is σ². Returns whether the division is complete: it ends after about `most` tests
+    /// Calls `on_cell` for each point that has a cell in a piece, with the cell's corners relative to the
+    /// point. `normal_weight` is σ². Returns whether the division is complete: it ends after about `max_tests` tests
     /// of points against cells.
     pub(super) fn divide(
         &self,
         piece: &SurfacePiece,
         sites: &VoronoiSites<'_>,
-        turned: f64,
-        most: usize,
-        room: &mut ClipBuffers,
-        mut with: impl FnMut(u32, &[Corner]),
+        normal_weight: f64,
+        max_tests: usize,
+        buffers: &mut ClipBuffers,
+        mut on_cell: impl FnMut(u32, &[Corner]),
     ) -> bool {
-        let ClipBuffers { found, farther, cell, cut, touched, met, known, held } = room;
-        let apart =
-            |site: u32| turned * (sites.normals[site as usize] - piece.normal).norm_squared();
-        met.clear();
-        *held = 0;
-        if !known.is_empty() {
-            known.clear();
+        let ClipBuffers { found, farther, cell, cut, touched, visited, visited_set, tests } =
+            buffers;
+        let power_weight = |site: u32| {
+            normal_weight * (sites.normals[site as usize] - piece.normal).norm_squared()
+        };
+        visited.clear();
+        *tests = 0;
+        if !visited_set.is_empty() {
+            visited_set.clear();
         }
-        met.push(self.first(piece, sites, apart));
+        visited.push(self.site_at_centre(piece, sites, power_weight));
         let mut next = 0;
-        while let Some(&site) = met.get(next) {
-            if next > 0 && *held >= most {
+        while let Some(&site) = visited.get(next) {
+            if next > 0 && *tests >= max_tests {
                 return false;
             }
             next += 1;
-            *held += CELL;
-            let (at, mine) = (sites.points[site as usize], apart(site));
+            *tests += CELL_COST;
+            let (site_point, own_weight) = (sites.points[site as usize], power_weight(site));
             cell.clear();
-            cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
+            cell.extend(self.corners(piece).iter().map(|corner| (corner - site_point, EDGE)));
             touched.clear();
             let mut cuts = 0;
-            let mut reach = reach_of(cell, mine);
-            let beside = sites.beside.of(site);
-            let mut list = beside;
+            let mut reach = reach_of(cell, own_weight);
+            let neighbours = sites.neighbours.of(site);
+            let mut list = neighbours;
             // The number of nearest points that may have been examined.
-            let mut many = MOST_BESIDE;
-            let mut last = beside.last().copied().filter(|_| beside.len() == many);
-            let mut within = sites.near_by;
+            let mut max_neighbours = MAX_NEIGHBOURS;
+            let mut last =
+                neighbours.last().copied().filter(|_| neighbours.len() == max_neighbours);
+            let mut searched_radius = sites.neighbour_radius;
             'cut: loop {
                 for &other in list.iter().filter(|other| **other != site) {
-                    *held += 1;
-                    let toward = sites.points[other as usize] - at;
-                    let squared = toward.norm_squared();
+                    *tests += 1;
+                    let to_other = sites.points[other as usize] - site_point;
+                    let squared = to_other.norm_squared();
                     if squared > reach * reach {
                         break 'cut;
                     }
-                    let beyond = apart(other);
-                    let half = (squared + beyond - mine) / 2.0;
-                    let terms = reach * squared.sqrt() + squared + beyond + mine;
+                    let other_weight = power_weight(other);
+                    let half = (squared + other_weight - own_weight) / 2.0;
+                    let terms = reach * squared.sqrt() + squared + other_weight + own_weight;
                     let slack = rounding(cuts) * terms;
-                    let [least, most] = over(cell, &toward, half);
-                    if most < -slack {
+                    let [min_value, max_value] = signed_distances(cell, &to_other, half);
+                    if max_value < -slack {
                         continue;
                     }
-                    touched.push((other, toward, half, terms));
-                    if most <= slack {
-                        if least >= -slack && other < site {
+                    touched.push((other, to_other, half, terms));
+                    if max_value <= slack {
+                        if min_value >= -slack && other < site {
                             cell.clear();
-                            meet(met, known, other);
+                            add_visited(visited, visited_set, other);
                             break 'cut;
                         }
-                    } else if clip(cell, cut, toward, half + slack, other) {
+                    } else if clip(cell, cut, to_other, half + slack, other) {
                         if cell.is_empty() {
                             break 'cut;
                         }
                         cuts += 1;
-                        reach = reach_of(cell, mine);
+                        reach = reach_of(cell, own_weight);
                     }
                 }
-                if reach <= within && last.is_none() {
+                if reach <= searched_radius && last.is_none() {
                     break;
                 }
-                let left = most.saturating_sub(*held);
-                if left <= many {
+                let remaining = max_tests.saturating_sub(*tests);
+                if remaining <= max_neighbours {
                     return false;
                 }
-                let from =
-                    |other: u32| point_grid::away(sites.points[other as usize].into(), at.into());
-                let known = last.map(|last| (from(last), last));
-                let is_new = |one: &&(f64, u32)| match known {
-                    None => one.0 > within * within,
+                let from = |other: u32| {
+                    point_grid::squared_distance(
+                        sites.points[other as usize].into(),
+                        site_point.into(),
+                    )
+                };
+                let last_key = last.map(|last| (from(last), last));
+                let is_new = |one: &&(f64, u32)| match last_key {
+                    None => one.0 > searched_radius * searched_radius,
                     Some(last) => point_grid::nearer(&last, one).is_lt(),
                 };
-                many = (8 * many).min(left);
-                sites.near.some_within(at.into(), reach, many, found);
-                *held += FOUND * found.len();
+                max_neighbours = (8 * max_neighbours).min(remaining);
+                sites.tree.nearest_within(site_point.into(), reach, max_neighbours, found);
+                *tests += NEIGHBOUR_COST * found.len();
                 farther.clear();
                 farther.extend(found.iter().filter(is_new).map(|(_, other)| *other));
                 list = farther;
-                last = found.last().map(|(_, last)| *last).filter(|_| found.len() == many);
-                within = reach;
+                last =
+                    found.last().map(|(_, last)| *last).filter(|_| found.len() == max_neighbours);
+                searched_radius = reach;
             }
             if !cell.is_empty() {
-                with(site, cell);
-                let off = rounding(cuts);
-                let still = touched.iter().filter(|(_, toward, half, terms)| {
-                    over(cell, toward, *half)[1] >= -off * terms
+                on_cell(site, cell);
+                let error = rounding(cuts);
+                let touching = touched.iter().filter(|(_, to_other, half, terms)| {
+                    signed_distances(cell, to_other, *half)[1] >= -error * terms
                 });
-                still.for_each(|(other, ..)| meet(met, known, *other));
+                touching.for_each(|(other, ..)| add_visited(visited, visited_set, *other));
             }
         }
         true
     }
 
     /// Returns the point whose cell contains a piece's centre.
-    fn first(
+    fn site_at_centre(
         &self,
         piece: &SurfacePiece,
         sites: &VoronoiSites<'_>,
-        apart: impl Fn(u32) -> f64,
+        power_weight: impl Fn(u32) -> f64,
     ) -> u32 {
         let corners = self.corners(piece);
         let sum: Vector3<f64> = corners.iter().map(|corner| corner - corners[0]).sum();
         let middle = corners[0] + sum / corners.len() as f64;
-        sites.near.least(middle.into(), apart)
+        sites.tree.min_sum(middle.into(), power_weight)
     }
 }
 
 /// Adds a point whose cell must be computed, unless it is already known.
-fn meet(met: &mut Vec<u32>, known: &mut HashSet<u32>, other: u32) {
-    let is_new = if met.len() <= FEW {
-        !met.iter().rev().any(|one| *one == other)
+fn add_visited(visited: &mut Vec<u32>, visited_set: &mut HashSet<u32>, other: u32) {
+    let is_new = if visited.len() <= MAX_LINEAR_SEARCH {
+        !visited.iter().rev().any(|one| *one == other)
     } else {
-        if known.is_empty() {
-            known.extend(met.iter().copied());
+        if visited_set.is_empty() {
+            visited_set.extend(visited.iter().copied());
         }
-        known.insert(other)
+        visited_set.insert(other)
     };
     if is_new {
-        met.push(other);
+        visited.push(other);
     }
 }
 
 /// Returns an upper bound on the distance from a cell's point to other points that cut the cell. Each
 /// length errs by 3u below its root and two more, and a corner by 2.5u per line that cut the cell; 1e-12
 /// is 9000u.
-fn reach_of(cell: &[Corner], mine: f64) -> f64 {
-    let most = cell.iter().map(|(v, _)| v.norm_squared()).fold(0.0, f64::max);
-    (most.sqrt() + (most + mine).sqrt()) * (1.0 + 1e-12)
+fn reach_of(cell: &[Corner], own_weight: f64) -> f64 {
+    let max_squared = cell.iter().map(|(v, _)| v.norm_squared()).fold(0.0, f64::max);
+    (max_squared.sqrt() + (max_squared + own_weight).sqrt()) * (1.0 + 1e-12)
 }
 
 /// Returns the smallest and the largest value of `v · toward - half` over the corners of a cell.
-fn over(cell: &[Corner], toward: &Vector3<f64>, half: f64) -> [f64; 2] {
-    cell.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], (v, _)| {
-        let over = v.dot(toward) - half;
-        [least.min(over), most.max(over)]
+fn signed_distances(cell: &[Corner], to_other: &Vector3<f64>, half: f64) -> [f64; 2] {
+    cell.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[min_value, max_value], (v, _)| {
+        let distance = v.dot(to_other) - half;
+        [min_value.min(distance), max_value.max(distance)]
     })
 }
 
@@ -267,26 +281,26 @@ fn over(cell: &[Corner], toward: &Vector3<f64>, half: f64) -> [f64; 2] {
 pub(super) fn clip(
     cell: &mut Vec<Corner>,
     cut: &mut Vec<Corner>,
-    toward: Vector3<f64>,
+    to_other: Vector3<f64>,
     half: f64,
     other: u32,
 ) -> bool {
-    let over = |(v, _): &Corner| v.dot(&toward) - half;
-    if cell.iter().all(|corner| over(corner) <= 0.0) {
+    let signed_distance = |(v, _): &Corner| v.dot(&to_other) - half;
+    if cell.iter().all(|corner| signed_distance(corner) <= 0.0) {
         return false;
     }
     cut.clear();
-    for (place, corner) in cell.iter().enumerate() {
-        let next = &cell[(place + 1) % cell.len()];
-        let (here, there) = (over(corner), over(next));
-        let between = || corner.0 + (next.0 - corner.0) * (here / (here - there));
-        if here <= 0.0 {
+    for (index, corner) in cell.iter().enumerate() {
+        let next = &cell[(index + 1) % cell.len()];
+        let (distance, next_distance) = (signed_distance(corner), signed_distance(next));
+        let crossing = || corner.0 + (next.0 - corner.0) * (distance / (distance - next_distance));
+        if distance <= 0.0 {
             cut.push(*corner);
-            if there > 0.0 {
-                cut.push((between(), other));
+            if next_distance > 0.0 {
+                cut.push((crossing(), other));
             }
-        } else if there <= 0.0 {
-            cut.push((between(), corner.1));
+        } else if next_distance <= 0.0 {
+            cut.push((crossing(), corner.1));
         }
     }
     std::mem::swap(cell, cut);

@@ -1,7 +1,7 @@
 //! Candidates: points that may be inside, transformed to the tool's frame.
 
 use super::LeafAttributes;
-use crate::bvh::{LANE, PoseTransform, Triple, WIDTH};
+use crate::bvh::{LANE_INDICES, PoseTransform, Triple, WIDTH};
 use crate::tool::{LANES, PointBatch, reserve};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
@@ -42,16 +42,16 @@ impl Candidates {
     }
 
     /// Makes room for the points of `leaves` leaves.
-    pub(super) fn room(&mut self, leaves: usize, attributes: bool) {
-        let more = (leaves + 1) * WIDTH;
-        self.points.room(more);
-        let wanted = self.points.len() + more;
-        if self.indices.len() < wanted {
-            self.indices.resize(wanted, 0);
+    pub(super) fn make_room(&mut self, leaves: usize, attributes: bool) {
+        let additional = (leaves + 1) * WIDTH;
+        self.points.room(additional);
+        let required = self.points.len() + additional;
+        if self.indices.len() < required {
+            self.indices.resize(required, 0);
         }
-        if attributes && self.weights.len() < wanted {
-            self.weights.resize(wanted, 0.0);
-            self.normals.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+        if attributes && self.weights.len() < required {
+            self.weights.resize(required, 0.0);
+            self.normals.iter_mut().for_each(|list| list.resize(required, 0.0));
         }
     }
 
@@ -68,10 +68,10 @@ impl Candidates {
         offset: &Triple<S>,
         hits: u32,
     ) {
-        let lanes = u32x16::from_slice(simd, &LANE) + leaf * WIDTH as u32;
+        let lanes = u32x16::from_slice(simd, &LANE_INDICES) + leaf * WIDTH as u32;
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
-        let at = self.points.len();
-        lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
+        let start = self.points.len();
+        lanes.compress(mask).store_slice(&mut self.indices[start..start + WIDTH]);
         let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
         let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
         let mut count = 0;
@@ -82,10 +82,10 @@ impl Candidates {
                 half[2] * view.scale + base[2],
             ];
             let mask = mask64x8::from_bitmask(simd, u64::from(bits));
-            let places = self.points.next(count, LANES);
-            for (row, place) in view.carry.iter().zip(places) {
-                let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
-                carried.compress(mask).store_slice(place);
+            let outputs = self.points.next(count, LANES);
+            for (row, output) in view.exact_rows.iter().zip(outputs) {
+                let transformed: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
+                transformed.compress(mask).store_slice(output);
             }
             count += bits.count_ones() as usize;
         }
@@ -93,18 +93,25 @@ impl Candidates {
 
     /// Appends the normals and weights of the same points.
     #[inline(always)]
-    pub(super) fn take_attributes<S: Simd>(&mut self, simd: S, skin: &LeafAttributes, hits: u32) {
+    pub(super) fn take_attributes<S: Simd>(
+        &mut self,
+        simd: S,
+        attributes: &LeafAttributes,
+        hits: u32,
+    ) {
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
-        let place = self.points.len()..self.points.len() + WIDTH;
-        for (list, of) in self.normals.iter_mut().zip(&skin.normal) {
-            f32x16::from_slice(simd, of).compress(mask).store_slice(&mut list[place.clone()]);
+        let output = self.points.len()..self.points.len() + WIDTH;
+        for (list, of) in self.normals.iter_mut().zip(&attributes.normal) {
+            f32x16::from_slice(simd, of).compress(mask).store_slice(&mut list[output.clone()]);
         }
-        f32x16::from_slice(simd, &skin.weight).compress(mask).store_slice(&mut self.weights[place]);
+        f32x16::from_slice(simd, &attributes.weight)
+            .compress(mask)
+            .store_slice(&mut self.weights[output]);
     }
 
     /// Records that `count` points were appended.
     #[inline(always)]
-    pub(super) fn took(&mut self, count: usize) {
+    pub(super) fn advance(&mut self, count: usize) {
         self.points.took(count);
     }
 }

@@ -1,22 +1,22 @@
 //! Removing and moving points without building a new tree: leaves keep their points, and boxes are refitted.
 
 use super::PointBvh;
-use super::build::{lay, leaf_bounds};
+use super::build::{build_leaf, leaf_bounds};
 use crate::bvh::{Bounds, BuildItem, WIDTH, around, outward};
 use nalgebra::{Point3, Vector3};
 
 impl PointBvh {
     /// Removes points, by their tree indices. The other points do not change by a single bit.
-    pub(crate) fn remove(&mut self, places: impl IntoIterator<Item = usize>) {
-        let (leaves, skins) = (&mut self.leaves, &mut self.skins);
+    pub(crate) fn remove(&mut self, slots: impl IntoIterator<Item = usize>) {
+        let (leaves, attributes) = (&mut self.leaves, &mut self.attributes);
         let mut touched = Vec::new();
-        for place in places {
-            let (leaf, lane) = (place / WIDTH, place % WIDTH);
+        for slot in slots {
+            let (leaf, lane) = (slot / WIDTH, slot % WIDTH);
             let offset = &mut leaves[leaf].offset;
             if !offset[0][lane].is_nan() {
                 offset.iter_mut().for_each(|list| list[lane] = f32::NAN);
-                skins[leaf].weight[lane] = 0.0;
-                self.gone += 1;
+                attributes[leaf].weight[lane] = 0.0;
+                self.removed += 1;
                 touched.push(leaf);
             }
         }
@@ -40,50 +40,50 @@ impl PointBvh {
 
     /// Returns the points that were not removed, with their tree indices and normals.
     pub(crate) fn all(&self) -> impl Iterator<Item = (usize, Point3<f64>, Vector3<f64>)> {
-        let all = (0..self.slots()).map(|place| (place, self.point(place)));
-        let there = all.filter(|(_, point)| !point.x.is_nan());
-        there.map(|(place, point)| (place, point, self.normal(place).into()))
+        let all = (0..self.slots()).map(|slot| (slot, self.point(slot)));
+        let present = all.filter(|(_, point)| !point.x.is_nan());
+        present.map(|(slot, point)| (slot, point, self.normal(slot).into()))
     }
 
     /// Moves points. `moved` has their indices in ascending order, their new positions and their unit normals. Returns
     /// the largest displacement of all points, in the part's unit.
-    pub(crate) fn put(&mut self, moved: &[(usize, Point3<f64>, Vector3<f64>)]) -> f64 {
+    pub(crate) fn replace(&mut self, moved: &[(usize, Point3<f64>, Vector3<f64>)]) -> f64 {
         let mut farthest = 0f64;
         let mut touched = Vec::new();
         let bottom = self.levels.len() - 1;
-        let (leaves, skins) = (&mut self.leaves, &mut self.skins);
+        let (leaves, attributes) = (&mut self.leaves, &mut self.attributes);
         let boxes = &mut self.levels[bottom];
-        for some in moved.chunk_by(|a, b| a.0 / WIDTH == b.0 / WIDTH) {
-            let leaf = some[0].0 / WIDTH;
+        for moved_in_leaf in moved.chunk_by(|a, b| a.0 / WIDTH == b.0 / WIDTH) {
+            let leaf = moved_in_leaf[0].0 / WIDTH;
             let (all, offset) = (&mut boxes[leaf / WIDTH], leaves[leaf].offset);
-            let before: [[f64; 3]; WIDTH] = std::array::from_fn(|lane| {
+            let previous: [[f64; 3]; WIDTH] = std::array::from_fn(|lane| {
                 let part = |axis: usize| {
                     f64::from(all.centre[axis][leaf % WIDTH]) + f64::from(offset[axis][lane])
                 };
                 [part(0), part(1), part(2)]
             });
-            let mut items = before.map(|at| BuildItem { at, index: 0 });
-            for (place, point, normal) in some {
-                items[place % WIDTH].at = self.frame.inside((*point).into());
-                let skin = &mut skins[leaf].normal;
-                (0..3).for_each(|axis| skin[axis][place % WIDTH] = normal[axis] as f32);
+            let mut items = previous.map(|at| BuildItem { at, index: 0 });
+            for (slot, point, normal) in moved_in_leaf {
+                items[slot % WIDTH].at = self.frame.inside((*point).into());
+                let normals = &mut attributes[leaf].normal;
+                (0..3).for_each(|axis| normals[axis][slot % WIDTH] = normal[axis] as f32);
             }
-            let (laid, bounds) = lay(&items);
-            leaves[leaf] = laid;
-            all.put(leaf % WIDTH, &bounds);
+            let (leaf_points, bounds) = build_leaf(&items);
+            leaves[leaf] = leaf_points;
+            all.set_lane(leaf % WIDTH, &bounds);
             self.leaf_size = self.leaf_size.max(outward(bounds.size() / 2.0));
             touched.push(leaf);
             // The points that stay are rounded again, since the leaf's centre changed.
-            for (lane, before) in before.iter().enumerate() {
-                let away: f64 = (0..3)
+            for (lane, previous) in previous.iter().enumerate() {
+                let distance: f64 = (0..3)
                     .map(|axis| {
                         let centre = f64::from(all.centre[axis][leaf % WIDTH]);
-                        let now = centre + f64::from(leaves[leaf].offset[axis][lane]);
-                        (now - before[axis]).powi(2)
+                        let current = centre + f64::from(leaves[leaf].offset[axis][lane]);
+                        (current - previous[axis]).powi(2)
                     })
                     .sum();
                 // NaN in slots without a point.
-                farthest = farthest.max(away.sqrt());
+                farthest = farthest.max(distance.sqrt());
             }
         }
         self.fit_above(touched);
@@ -102,7 +102,7 @@ impl PointBvh {
             let above = &mut above[level - 1];
             for node in &touched {
                 let bounds = around(&below[0][*node]);
-                above[node / WIDTH].put(node % WIDTH, &bounds);
+                above[node / WIDTH].set_lane(node % WIDTH, &bounds);
             }
         }
     }

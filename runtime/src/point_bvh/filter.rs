@@ -2,20 +2,20 @@
 
 use super::traverse::{Nodes, TraversalInput, within};
 use super::{Candidates, Leaf, LeafAttributes};
-use crate::bvh::{Triple, load, seen};
+use crate::bvh::{Triple, load, transform};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// Replaces the candidates by the points of some leaves that the tool's envelope reaches; with `attributes`, their
 /// normals and weights too.
 pub(crate) fn filter(
     level: Level,
-    seen: TraversalInput<'_>,
+    input: TraversalInput<'_>,
     leaves: &Nodes,
     attributes: bool,
     candidates: &mut Candidates,
 ) {
     candidates.clear();
-    dispatch!(level, simd => filter_on(simd, seen, leaves, attributes, candidates));
+    dispatch!(level, simd => filter_on(simd, input, leaves, attributes, candidates));
 }
 
 #[inline(always)]
@@ -26,34 +26,35 @@ fn filter_on<S: Simd>(
     attributes: bool,
     candidates: &mut Candidates,
 ) {
-    let (offsets, skins): (&[Leaf], &[LeafAttributes]) = (&tree.leaves, &tree.skins);
-    let mut some = std::mem::take(&mut candidates.leaves);
-    some.resize(leaves.len() + 1, (0, 0));
+    let (offsets, attribute_blocks): (&[Leaf], &[LeafAttributes]) =
+        (&tree.leaves, &tree.attributes);
+    let mut hit_leaves = std::mem::take(&mut candidates.leaves);
+    hit_leaves.resize(leaves.len() + 1, (0, 0));
     let point: Triple<S> = [f32x16::splat(simd, 0.0); 3];
     // The first pass finds the leaves with such points. A branch at each leaf would be mispredicted at every other one.
     let mut count = 0;
-    for at in 0..leaves.len() {
-        let leaf = leaves.get(at);
+    for position in 0..leaves.len() {
+        let leaf = leaves.get(position);
         let offset = &offsets[leaf.index as usize].offset;
         let hits = if setup.fits {
-            let p = seen(&load(simd, offset), &view.rows, leaf.middle);
+            let p = transform(&load(simd, offset), &view.rows, leaf.middle);
             within(simd, &setup.reach, leaf.slabs, &p, &point).0
         } else {
             f32x16::from_slice(simd, &offset[0]).simd_le(f32::INFINITY).to_bitmask() as u32
         };
-        some[count] = (leaf.index, hits);
+        hit_leaves[count] = (leaf.index, hits);
         count += usize::from(hits != 0);
     }
-    candidates.room(count, attributes);
-    for (leaf, hits) in &some[..count] {
+    candidates.make_room(count, attributes);
+    for (leaf, hits) in &hit_leaves[..count] {
         let index = *leaf as usize;
         let base = view.leaf_from_tip(tree.centre(index));
         let offset = load(simd, &offsets[index].offset);
         candidates.take(simd, view, (*leaf, base), &offset, *hits);
         if attributes {
-            candidates.take_attributes(simd, &skins[index], *hits);
+            candidates.take_attributes(simd, &attribute_blocks[index], *hits);
         }
-        candidates.took(hits.count_ones() as usize);
+        candidates.advance(hits.count_ones() as usize);
     }
-    candidates.leaves = some;
+    candidates.leaves = hit_leaves;
 }

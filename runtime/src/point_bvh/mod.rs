@@ -51,14 +51,14 @@ pub struct PointBvh {
     /// The largest half extent of a leaf's box, in the tree's unit.
     pub(crate) leaf_size: f32,
     /// Attributes of each leaf.
-    pub(crate) skins: Vec<LeafAttributes>,
+    pub(crate) attributes: Vec<LeafAttributes>,
     /// The largest weight; the leaves' weights are fractions of it.
     pub(crate) weight: f64,
     /// Triangle id of each point, in the tree's order.
     pub(crate) triangles: Vec<u32>,
-    pub(crate) cover: Option<CoveringRadius>,
+    pub(crate) covering_radius: Option<CoveringRadius>,
     /// Number of points that were removed.
-    pub(crate) gone: usize,
+    pub(crate) removed: usize,
 }
 
 impl PointBvh {
@@ -72,8 +72,10 @@ impl PointBvh {
         self.frame.origin *= factor;
         self.frame.scale *= factor;
         self.weight *= factor * factor;
-        self.cover =
-            self.cover.map(|cover| CoveringRadius { radius: factor * cover.radius, ..cover });
+        self.covering_radius = self.covering_radius.map(|covering_radius| CoveringRadius {
+            radius: factor * covering_radius.radius,
+            ..covering_radius
+        });
     }
 
     /// Returns the number of nodes and leaves.
@@ -83,7 +85,7 @@ impl PointBvh {
 
     /// Returns the number of points, without those that were removed.
     pub fn len(&self) -> usize {
-        self.slots() - self.gone
+        self.slots() - self.removed
     }
 
     /// Returns the number of slots for points, including those of removed points.
@@ -98,7 +100,7 @@ impl PointBvh {
 
     /// Returns the largest distance of the surface from the given points; `None` if it is not known.
     pub fn covering_radius(&self) -> Option<CoveringRadius> {
-        self.cover
+        self.covering_radius
     }
 
     /// Returns a point as it is stored, by its index in the tree's order, rounded to `f64` in the world's frame.
@@ -128,13 +130,13 @@ impl PointBvh {
 
     /// Returns a point's outward normal as it is stored: each component is within 2^-24 of the given one.
     pub fn normal(&self, index: usize) -> [f64; 3] {
-        let normal = &self.skins[index / WIDTH].normal;
+        let normal = &self.attributes[index / WIDTH].normal;
         std::array::from_fn(|axis| f64::from(normal[axis][index % WIDTH]))
     }
 
     /// Returns a point's share of the surface as it is stored: within 2^-24 of the largest weight.
     pub fn weight(&self, index: usize) -> f64 {
-        self.weight * f64::from(self.skins[index / WIDTH].weight[index % WIDTH])
+        self.weight * f64::from(self.attributes[index / WIDTH].weight[index % WIDTH])
     }
 
     /// Returns the id of the triangle on which a point lies.

@@ -2,7 +2,8 @@
 
 use super::PointBvh;
 use crate::bvh::{
-    Boxes, LANE, PoseTransform, QuerySetup, ReachBounds, SLABS, Triple, WIDTH, extent, load, seen,
+    Boxes, LANE_INDICES, PoseTransform, QuerySetup, ReachBounds, SLABS, Triple, WIDTH, extent,
+    load, transform,
 };
 use crate::tool::reserve;
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16, u32x16};
@@ -43,36 +44,36 @@ impl Nodes {
     }
 
     #[inline(always)]
-    pub(super) fn get(&self, at: usize) -> ReachableNode {
-        let middle = [self.middle[0][at], self.middle[1][at], self.middle[2][at]];
-        ReachableNode { index: self.index[at], slabs: self.slabs[at], middle }
+    pub(super) fn get(&self, position: usize) -> ReachableNode {
+        let middle = [self.middle[0][position], self.middle[1][position], self.middle[2][position]];
+        ReachableNode { index: self.index[position], slabs: self.slabs[position], middle }
     }
 
     /// Selects the first `count` nodes, without slabs and centres.
-    fn all(&mut self, count: usize) {
-        self.room(count);
+    fn set_all(&mut self, count: usize) {
+        self.make_room(count);
         self.count = count;
-        for (place, index) in self.index[..count].iter_mut().zip(0..) {
-            *place = index;
+        for (slot, index) in self.index[..count].iter_mut().zip(0..) {
+            *slot = index;
         }
     }
 
     /// Makes room for `count` nodes and one more block.
-    fn room(&mut self, count: usize) {
-        let wanted = count + WIDTH;
-        if self.index.len() < wanted {
-            self.index.resize(wanted, 0);
-            self.slabs.resize(wanted, 0);
-            self.middle.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+    fn make_room(&mut self, count: usize) {
+        let required = count + WIDTH;
+        if self.index.len() < required {
+            self.index.resize(required, 0);
+            self.slabs.resize(required, 0);
+            self.middle.iter_mut().for_each(|list| list.resize(required, 0.0));
         }
     }
 
     /// Reserves memory for `count` nodes and one more block, without touching it.
     fn reserve(&mut self, count: usize) {
-        let wanted = count + WIDTH;
-        reserve(&mut self.index, wanted);
-        reserve(&mut self.slabs, wanted);
-        self.middle.iter_mut().for_each(|list| reserve(list, wanted));
+        let required = count + WIDTH;
+        reserve(&mut self.index, required);
+        reserve(&mut self.slabs, required);
+        self.middle.iter_mut().for_each(|list| reserve(list, required));
     }
 }
 
@@ -86,39 +87,45 @@ impl Traversal {
         }
     }
 
-    /// Finds the leaves that the tool may reach, visiting at most `most` nodes and leaves. Returns the number visited;
+    /// Finds the leaves that the tool may reach, visiting at most `max_nodes` nodes and leaves. Returns the number visited;
     /// `None` if that limit does not suffice.
     pub(crate) fn leaves(
         &mut self,
         level: Level,
-        seen: TraversalInput<'_>,
-        most: usize,
+        input: TraversalInput<'_>,
+        max_nodes: usize,
     ) -> Option<usize> {
-        self.down(level, seen, seen.0.levels.len(), most)
+        self.down(level, input, input.0.levels.len(), max_nodes)
     }
 
     /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
-    pub(crate) fn nodes(&mut self, level: Level, seen: TraversalInput<'_>) -> usize {
-        self.down(level, seen, seen.0.levels.len() - 1, usize::MAX);
+    pub(crate) fn nodes(&mut self, level: Level, input: TraversalInput<'_>) -> usize {
+        self.down(level, input, input.0.levels.len() - 1, usize::MAX);
         self.nodes[1 - self.leaves].count
     }
 
-    /// Descends `levels` levels. Returns the number of nodes visited; `None` if it exceeds `most`.
+    /// Descends `levels` levels. Returns the number of nodes visited; `None` if it exceeds `max_nodes`.
     fn down(
         &mut self,
         level: Level,
         (tree, setup, view): TraversalInput<'_>,
         levels: usize,
-        most: usize,
+        max_nodes: usize,
     ) -> Option<usize> {
         self.leaves = tree.levels.len() % 2;
         if setup.fits {
-            return descend(level, &mut self.nodes, &tree.levels[..levels], (setup, view), most);
+            return descend(
+                level,
+                &mut self.nodes,
+                &tree.levels[..levels],
+                (setup, view),
+                max_nodes,
+            );
         }
-        let all = tree.levels.get(levels).map_or(tree.leaves.len(), |boxes| boxes.len());
-        (all <= most).then(|| {
-            self.nodes[levels % 2].all(all);
-            all
+        let count = tree.levels.get(levels).map_or(tree.leaves.len(), |boxes| boxes.len());
+        (count <= max_nodes).then(|| {
+            self.nodes[levels % 2].set_all(count);
+            count
         })
     }
 
@@ -135,19 +142,19 @@ impl Traversal {
             let boxes = &tree.levels[tree.levels.len() - 1];
             below(level, boxes, (setup, view), (nodes, node..node + 1), leaves);
         } else {
-            leaves.all(tree.leaves.len());
+            leaves.set_all(tree.leaves.len());
         }
     }
 
     /// Selects a single leaf.
     pub(crate) fn only(&mut self, leaf: u32, (tree, setup, view): TraversalInput<'_>) {
         let leaves = &mut self.nodes[self.leaves];
-        leaves.room(1);
+        leaves.make_room(1);
         leaves.count = 1;
         leaves.index[0] = leaf;
         leaves.slabs[0] = setup.reach.all;
         let centre = tree.centre(leaf as usize);
-        let middle = view.seen(centre.map(|part| part as f32));
+        let middle = view.transform(centre.map(|part| part as f32));
         for (list, part) in leaves.middle.iter_mut().zip(middle) {
             list[0] = part;
         }
@@ -196,16 +203,16 @@ pub(super) fn within<S: Simd>(
     (hit.to_bitmask() as u32, by)
 }
 
-/// Descends some levels from the root, visiting at most `most` nodes and children. Returns the number visited; `None`
+/// Descends some levels from the root, visiting at most `max_nodes` nodes and children. Returns the number visited; `None`
 /// if that limit does not suffice.
 fn descend(
     level: Level,
     nodes: &mut [Nodes; 2],
     levels: &[Vec<Boxes>],
-    seen: (&QuerySetup, &PoseTransform),
-    most: usize,
+    input: (&QuerySetup, &PoseTransform),
+    max_nodes: usize,
 ) -> Option<usize> {
-    dispatch!(level, simd => descend_on(simd, nodes, levels, seen, most))
+    dispatch!(level, simd => descend_on(simd, nodes, levels, input, max_nodes))
 }
 
 #[inline(always)]
@@ -214,22 +221,22 @@ fn descend_on<S: Simd>(
     nodes: &mut [Nodes; 2],
     levels: &[Vec<Boxes>],
     (setup, view): (&QuerySetup, &PoseTransform),
-    most: usize,
+    max_nodes: usize,
 ) -> Option<usize> {
     let [even, odd] = nodes;
-    even.room(1);
+    even.make_room(1);
     even.count = 1;
     even.index[0] = 0;
     even.slabs[0] = setup.reach.all;
     let mut spent = 1;
-    if spent > most {
+    if spent > max_nodes {
         return None;
     }
     for (level, boxes) in levels.iter().enumerate() {
         let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
         below_on(simd, boxes, (setup, view), (from, 0..from.count), to);
         spent += to.count;
-        if spent > most {
+        if spent > max_nodes {
             return None;
         }
     }
@@ -240,11 +247,11 @@ fn descend_on<S: Simd>(
 fn below(
     level: Level,
     boxes: &[Boxes],
-    seen: (&QuerySetup, &PoseTransform),
+    input: (&QuerySetup, &PoseTransform),
     nodes: (&Nodes, Range<usize>),
     kept: &mut Nodes,
 ) {
-    dispatch!(level, simd => below_on(simd, boxes, seen, nodes, kept));
+    dispatch!(level, simd => below_on(simd, boxes, input, nodes, kept));
 }
 
 #[inline(always)]
@@ -255,25 +262,25 @@ fn below_on<S: Simd>(
     (nodes, some): (&Nodes, Range<usize>),
     kept: &mut Nodes,
 ) {
-    kept.room(some.len() * WIDTH);
+    kept.make_room(some.len() * WIDTH);
     let mut count = 0;
-    for at in some {
-        let node = nodes.index[at];
+    for position in some {
+        let node = nodes.index[position];
         let children = &boxes[node as usize];
         let centre: Triple<S> = load(simd, &children.centre);
         let half: Triple<S> = load(simd, &children.half);
-        let middle = seen(&centre, &view.rows, view.origin);
+        let middle = transform(&centre, &view.rows, view.origin);
         let wide =
             [extent(&half, view.rows[0]), extent(&half, view.rows[1]), extent(&half, view.rows[2])];
-        let (hits, by) = within(simd, &setup.reach, nodes.slabs[at], &middle, &wide);
+        let (hits, by) = within(simd, &setup.reach, nodes.slabs[position], &middle, &wide);
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
-        let index = u32x16::from_slice(simd, &LANE) + node * WIDTH as u32;
+        let index = u32x16::from_slice(simd, &LANE_INDICES) + node * WIDTH as u32;
         // The kept entries are stored first in the block, followed by room for the rest: no branch to mispredict.
-        let place = count..count + WIDTH;
-        index.compress(mask).store_slice(&mut kept.index[place.clone()]);
-        by.compress(mask).store_slice(&mut kept.slabs[place.clone()]);
+        let slot = count..count + WIDTH;
+        index.compress(mask).store_slice(&mut kept.index[slot.clone()]);
+        by.compress(mask).store_slice(&mut kept.slabs[slot.clone()]);
         for (list, middle) in kept.middle.iter_mut().zip(middle) {
-            middle.compress(mask).store_slice(&mut list[place.clone()]);
+            middle.compress(mask).store_slice(&mut list[slot.clone()]);
         }
         count += hits.count_ones() as usize;
     }

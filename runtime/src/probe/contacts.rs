@@ -35,7 +35,7 @@ pub struct Contact {
 }
 
 /// Lists the points inside, from the last evaluation.
-pub(super) fn list(
+pub(super) fn collect(
     state: &QueryState<'_>,
     info: &ToolInfo,
     pose: &Pose,
@@ -43,21 +43,22 @@ pub(super) fn list(
 ) {
     let (evaluations, tree) = (&state.evaluations, state.tree);
     let rotation = pose.rotation();
-    for at in evaluations.inside_indices() {
-        let index = state.candidates.indices()[at] as usize;
-        let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
-        let region = evaluations.region[at] as usize;
+    for candidate in evaluations.inside_indices() {
+        let index = state.candidates.indices()[candidate] as usize;
+        let vector =
+            |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[candidate]));
+        let region = evaluations.region[candidate] as usize;
         contacts.push(Contact {
             point: pose.tip() + tree.relative_to_tip(&state.view, index),
             normal: tree.normal(index).into(),
             triangle: TriangleId(tree.triangle(index)),
             region,
             surface: info.regions[region].surface,
-            depth: evaluations.depth[at] * state.length,
-            magnitude: evaluations.magnitude[at],
+            depth: evaluations.depth[candidate] * state.length,
+            magnitude: evaluations.magnitude[candidate],
             direction: rotation * vector(&evaluations.direction),
             gradient: rotation * vector(&evaluations.gradient),
-            niceness: evaluations.niceness[at],
+            niceness: evaluations.niceness[candidate],
             weight: match state.weights {
                 Weights::Area => tree.weight(index),
                 Weights::Unit => 1.0,
@@ -89,11 +90,11 @@ pub struct Summary {
 pub fn summary(contacts: &[Contact], of: impl Fn(&Contact) -> f64) -> Option<Summary> {
     let first = of(contacts.first()?);
     let start = Summary { sum: 0.0, mean: 0.0, min: first, max: first };
-    let all = contacts.iter().map(of).fold(start, |all, value| Summary {
-        sum: all.sum + value,
-        min: all.min.min(value),
-        max: all.max.max(value),
-        ..all
+    let totals = contacts.iter().map(of).fold(start, |totals, value| Summary {
+        sum: totals.sum + value,
+        min: totals.min.min(value),
+        max: totals.max.max(value),
+        ..totals
     });
-    Some(Summary { mean: all.sum / contacts.len() as f64, ..all })
+    Some(Summary { mean: totals.sum / contacts.len() as f64, ..totals })
 }

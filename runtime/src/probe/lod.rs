@@ -9,7 +9,7 @@ use crate::unit::Unit;
 use nalgebra::Vector3;
 
 /// Number of queries over which a change of level is blended: a thirtieth of a second at 1 kHz.
-const FADE: u32 = 32;
+const BLEND_QUERIES: u32 = 32;
 
 /// A tool paired with a part that has [levels of detail](crate::Part::with_lods), queried within a budget. No query
 /// visits more than `budget` nodes of the trees, each with sixteen boxes or points. The cost of a query is therefore
@@ -31,10 +31,10 @@ debug!([T: ?Sized] LodProbe<'_, T>, "LodProbe", |this| { levels: this.probes.len
 struct LastContact {
     level: usize,
     /// Force and torque as returned, with the blend.
-    pushed: [Vector3<f64>; 2],
-    /// Offset added to force and torque at the last change of level. It fades out over the `left` queries that remain.
+    applied: [Vector3<f64>; 2],
+    /// Offset added to force and torque at the last change of level. It fades out over the remaining queries.
     step: [Vector3<f64>; 2],
-    left: u32,
+    remaining: u32,
 }
 
 /// A wrench computed within a budget.
@@ -89,31 +89,37 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
         let last = self.last.take();
         let (mut nodes, mut finest, mut in_reach) = (0, 0, false);
         let coarsest = self.probes.len() - 1;
-        for (place, probe) in self.probes.iter_mut().enumerate() {
-            if last.as_ref().is_some_and(|last| last.left > 0 && coarsest - place < last.level) {
+        for (index, probe) in self.probes.iter_mut().enumerate() {
+            if last.as_ref().is_some_and(|last| last.remaining > 0 && coarsest - index < last.level)
+            {
                 break;
             }
             match probe.traverse_within(pose, self.budget - nodes) {
-                Some(more) => (nodes, finest, in_reach) = (nodes + more, place, more > 0),
+                Some(visited) => (nodes, finest, in_reach) = (nodes + visited, index, visited > 0),
                 None => break,
             }
         }
         let level = coarsest - finest;
         let probe = &mut self.probes[finest];
-        let mut wrench = if in_reach { probe.reduce(pose) } else { probe.nothing() };
+        let mut wrench = if in_reach { probe.reduce(pose) } else { probe.zero_wrench() };
         if wrench.colliding > 0 {
-            let (step, left) = match &last {
-                Some(last) if last.level == level => (last.step, last.left.saturating_sub(1)),
-                Some(last) => {
-                    ([last.pushed[0] - wrench.force, last.pushed[1] - wrench.torque], FADE)
-                }
+            let (step, remaining) = match &last {
+                Some(last) if last.level == level => (last.step, last.remaining.saturating_sub(1)),
+                Some(last) => (
+                    [last.applied[0] - wrench.force, last.applied[1] - wrench.torque],
+                    BLEND_QUERIES,
+                ),
                 None => ([Vector3::zeros(); 2], 0),
             };
-            let share = f64::from(left) / f64::from(FADE);
-            wrench.force += share * step[0];
-            wrench.torque += share * step[1];
-            self.last =
-                Some(LastContact { level, pushed: [wrench.force, wrench.torque], step, left });
+            let weight = f64::from(remaining) / f64::from(BLEND_QUERIES);
+            wrench.force += weight * step[0];
+            wrench.torque += weight * step[1];
+            self.last = Some(LastContact {
+                level,
+                applied: [wrench.force, wrench.torque],
+                step,
+                remaining,
+            });
         }
         LodWrench { wrench, level, nodes, sampling_error_bound: probe.sampling_error_bound() }
     }

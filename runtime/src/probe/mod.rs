@@ -140,10 +140,10 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Reserves memory for all queries but [`Probe::contacts`]: 127 bytes per point.
     pub(crate) fn reserve(&mut self) {
         self.state.reserve();
-        let QueryState { tree, evaluations, room, .. } = &mut self.state;
+        let QueryState { tree, evaluations, scratch, .. } = &mut self.state;
         evaluations.reserve_for(tree.leaves.len() * WIDTH, Everything::OUTPUTS);
         self.tool.reserve(evaluations);
-        self.tool.reserve(room);
+        self.tool.reserve(scratch);
     }
 
     /// Returns the compliance centre in the tool's frame, and the length of the part's unit in mm.
@@ -159,18 +159,20 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// rounding in the depth itself. It does not cover the surface between points. `None` if no Lipschitz constant of
     /// the depth is proved for the tool ([`crate::tool::DepthBounds::lipschitz`]).
     pub fn rounding_error_bound(&self) -> Option<f64> {
-        const HALF: f64 = f64::EPSILON / 2.0;
+        const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
         let (info, tree, length) = (self.tool.info(), self.state.tree, self.state.length);
         let tool = length * info.size();
         let frame = &tree.frame;
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
         // Storage error per coordinate: an offset in `f32` from a centre that the origin is subtracted from.
-        let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
+        let storage_error = leaf / 2f64.powi(24) + 4.0 * UNIT_ROUNDOFF * part;
         // A point inside is at most √2 tool sizes from the tip, and the origin at most that plus the part's size. Two
         // sums, a sum of three products and a change of unit err by 2√2, 3√2 and √2 of a size: 8.5 of the 10 counted.
-        let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
-        let own = length * info.depth.rounding + HALF * tool;
-        info.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
+        let transform_error = UNIT_ROUNDOFF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
+        let tool_error = length * info.depth.rounding + UNIT_ROUNDOFF * tool;
+        info.depth.lipschitz.map(|lipschitz| {
+            lipschitz * 3f64.sqrt() * (storage_error + transform_error) + tool_error
+        })
     }
 
     /// Returns an upper bound on how much deeper the part's surface can be than its deepest point, in the part's unit.
@@ -187,8 +189,8 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// without contact, plus the [sampling error bound](Probe::sampling_error_bound). `None` if that bound is not
     /// known.
     pub fn depth_bound(&mut self, pose: &Pose) -> Option<f64> {
-        let unseen = self.sampling_error_bound()?;
-        Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + unseen)
+        let error_bound = self.sampling_error_bound()?;
+        Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + error_bound)
     }
 
     /// Returns whether any point of the part is inside the tool or on its surface. Stops at the first such point, and
@@ -198,7 +200,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
             return false;
         }
         self.state.traverse_to_last_hit();
-        let any = self.filter_and_evaluate::<Inside>() || {
+        let is_inside = self.filter_and_evaluate::<Inside>() || {
             // Each node has sixteen leaves.
             let nodes = self.state.traverse_to_nodes();
             (0..nodes).any(|node| {
@@ -206,10 +208,10 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
                 self.filter_and_evaluate::<Inside>()
             })
         };
-        if any {
+        if is_inside {
             self.state.remember_hit();
         }
-        any
+        is_inside
     }
 
     /// Returns the deepest point; `None` without contact.
@@ -229,7 +231,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Returns force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
         if self.traverse_within(pose, usize::MAX) == Some(0) {
-            return self.nothing();
+            return self.zero_wrench();
         }
         self.reduce(pose)
     }
@@ -241,18 +243,18 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     }
 
     /// Returns the wrench without contact.
-    fn nothing(&self) -> Wrench {
+    fn zero_wrench(&self) -> Wrench {
         Wrench::nothing(self.state.law, self.state.weights)
     }
 
     /// Returns the wrench of the points in the leaves found last.
     fn reduce(&mut self, pose: &Pose) -> Wrench {
         self.state.filter(true);
-        let any = match self.state.law {
+        let is_inside = match self.state.law {
             Law::Gradient => self.state.evaluate::<AlongGradients, T>(self.tool),
             Law::Thesis | Law::Facing => self.state.evaluate::<AlongDirections, T>(self.tool),
         };
-        if any { self.state.reduce(pose) } else { self.nothing() }
+        if is_inside { self.state.reduce(pose) } else { self.zero_wrench() }
     }
 
     /// Returns every point of the part inside the tool, with all outputs there.
@@ -260,7 +262,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         let mut contacts = std::mem::take(&mut self.state.contacts);
         contacts.clear();
         if self.query::<Everything>(pose) {
-            contacts::list(&self.state, self.tool.info(), pose, &mut contacts);
+            contacts::collect(&self.state, self.tool.info(), pose, &mut contacts);
         }
         self.state.contacts = contacts;
         &self.state.contacts
@@ -272,9 +274,10 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
             return vec![];
         }
         let QueryState { evaluations, candidates, length, .. } = &self.state;
-        let deep =
-            evaluations.inside_indices().filter(|at| evaluations.depth[*at] * length > depth);
-        deep.map(|at| candidates.indices()[at] as usize).collect()
+        let deeper_candidates = evaluations
+            .inside_indices()
+            .filter(|candidate| evaluations.depth[*candidate] * length > depth);
+        deeper_candidates.map(|candidate| candidates.indices()[candidate] as usize).collect()
     }
 
     /// Runs the same query at many poses, on all cores. Each result is computed independently of the others, so the
@@ -290,16 +293,16 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     pub fn par_map<R: Send>(
         &self,
         poses: &[Pose],
-        ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
+        query: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
         // Enough poses that cloning the probe costs nothing in comparison.
-        const TOGETHER: usize = 256;
+        const POSES_PER_TASK: usize = 256;
         poses
-            .par_chunks(TOGETHER)
+            .par_chunks(POSES_PER_TASK)
             .map_init(
                 || self.clone(),
-                |probe, poses| poses.iter().map(|pose| ask(probe, pose)).collect::<Vec<R>>(),
+                |probe, poses| poses.iter().map(|pose| query(probe, pose)).collect::<Vec<R>>(),
             )
             .flatten_iter()
             .collect()

@@ -33,49 +33,49 @@ pub struct Posture {
 
 /// Returns the deepest point of the last evaluation, the first one if several are equally deep.
 pub(super) fn deepest(state: &QueryState<'_>, pose: &Pose) -> Option<DeepestPoint> {
-    let mut most = None;
+    let mut deepest = None;
     for candidate in state.evaluations.inside_indices() {
         let depth = state.evaluations.depth[candidate];
-        if most.is_none_or(|(most, _)| depth > most) {
-            most = Some((depth, candidate));
+        if deepest.is_none_or(|(deepest, _)| depth > deepest) {
+            deepest = Some((depth, candidate));
         }
     }
-    most.map(|(depth, candidate)| at(state, pose, candidate, depth))
+    deepest.map(|(depth, candidate)| deepest_point(state, pose, candidate, depth))
 }
 
 /// Returns a candidate as a [`DeepestPoint`]; `depth` is in the tool's unit.
-pub(super) fn at(
+pub(super) fn deepest_point(
     state: &QueryState<'_>,
     pose: &Pose,
     candidate: usize,
     depth: f64,
 ) -> DeepestPoint {
-    let place = state.candidates.indices()[candidate] as usize;
+    let index = state.candidates.indices()[candidate] as usize;
     let tree = state.tree;
-    let point = pose.tip() + tree.relative_to_tip(&state.view, place);
-    DeepestPoint { depth: depth * state.length, point, triangle: TriangleId(tree.triangle(place)) }
+    let point = pose.tip() + tree.relative_to_tip(&state.view, index);
+    DeepestPoint { depth: depth * state.length, point, triangle: TriangleId(tree.triangle(index)) }
 }
 
 /// Returns the posture of the last evaluation.
 pub(super) fn posture(state: &QueryState<'_>, info: &ToolInfo, pose: &Pose) -> Posture {
     let evaluations = &state.evaluations;
-    let (mut colliding, mut most, mut niceness) = (0, None, f64::INFINITY);
-    let mut body: Option<f64> = None;
+    let (mut colliding, mut deepest, mut niceness) = (0, None, f64::INFINITY);
+    let mut non_cutting_depth: Option<f64> = None;
     for candidate in evaluations.inside_indices() {
         colliding += 1;
         let depth = evaluations.depth[candidate];
-        if most.is_none_or(|(most, _)| depth > most) {
-            most = Some((depth, candidate));
+        if deepest.is_none_or(|(deepest, _)| depth > deepest) {
+            deepest = Some((depth, candidate));
         }
         niceness = niceness.min(evaluations.niceness[candidate]);
         if !info.surface_of(evaluations.region[candidate] as usize).cutting {
-            body = Some(body.map_or(depth, |most| most.max(depth)));
+            non_cutting_depth = Some(non_cutting_depth.map_or(depth, |deepest| deepest.max(depth)));
         }
     }
     Posture {
         colliding,
-        deepest: most.map(|(depth, candidate)| at(state, pose, candidate, depth)),
+        deepest: deepest.map(|(depth, candidate)| deepest_point(state, pose, candidate, depth)),
         niceness: (colliding > 0).then_some(niceness),
-        non_cutting_depth: body.map(|depth| depth * state.length),
+        non_cutting_depth: non_cutting_depth.map(|depth| depth * state.length),
     }
 }

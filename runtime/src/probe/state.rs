@@ -26,7 +26,7 @@ pub(super) struct QueryState<'a> {
     /// The length of the tool's unit in the part's unit.
     pub(super) length: f64,
     /// The tool's size: its largest reach from the tip along the axis, or its radius, in the tool's unit.
-    pub(super) reach: f64,
+    pub(super) tool_size: f64,
     pub(super) law: Law,
     pub(super) weights: Weights,
     pub(super) centre: Point3<f64>,
@@ -39,7 +39,7 @@ pub(super) struct QueryState<'a> {
     hit: u32,
     pub(super) evaluations: Evaluations,
     /// Memory that tools keep between evaluations of single points.
-    pub(super) room: Evaluations,
+    pub(super) scratch: Evaluations,
     pub(super) contacts: Vec<Contact>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> QueryState<'a> {
             tree,
             unit,
             length,
-            reach: info.size(),
+            tool_size: info.size(),
             law: Law::Thesis,
             weights: Weights::Area,
             centre: Point3::origin(),
@@ -62,7 +62,7 @@ impl<'a> QueryState<'a> {
             candidates: Candidates::default(),
             hit: 0,
             evaluations: Evaluations::default(),
-            room: Evaluations::default(),
+            scratch: Evaluations::default(),
             contacts: Vec::new(),
         }
     }
@@ -79,11 +79,11 @@ impl<'a> QueryState<'a> {
         self.setup.set_pose(&self.tree.frame, pose, &mut self.view)
     }
 
-    /// Finds the leaves that the tool may reach, visiting at most `most` nodes and leaves. Returns the number visited;
+    /// Finds the leaves that the tool may reach, visiting at most `max_nodes` nodes and leaves. Returns their number;
     /// `None` if that limit does not suffice.
-    pub(super) fn traverse(&mut self, most: usize) -> Option<usize> {
-        let seen = (self.tree, &self.setup, &self.view);
-        self.traversal.leaves(self.level, seen, most)
+    pub(super) fn traverse(&mut self, max_nodes: usize) -> Option<usize> {
+        let input = (self.tree, &self.setup, &self.view);
+        self.traversal.leaves(self.level, input, max_nodes)
     }
 
     /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
@@ -104,8 +104,8 @@ impl<'a> QueryState<'a> {
     /// Finds the points that may be inside among those of the leaves found last; with `attributes`, their normals and
     /// weights too.
     pub(super) fn filter(&mut self, attributes: bool) {
-        let seen = (self.tree, &self.setup, &self.view);
-        filter(self.level, seen, self.traversal.found(), attributes, &mut self.candidates);
+        let input = (self.tree, &self.setup, &self.view);
+        filter(self.level, input, self.traversal.found(), attributes, &mut self.candidates);
     }
 
     /// Evaluates the tool at these points. Returns whether any point is inside.
@@ -132,8 +132,8 @@ impl<'a> QueryState<'a> {
 
     /// Records the leaf of the first point inside.
     pub(super) fn remember_hit(&mut self) {
-        if let Some(place) = self.evaluations.inside_indices().next() {
-            self.hit = self.candidates.indices()[place] / WIDTH as u32;
+        if let Some(candidate) = self.evaluations.inside_indices().next() {
+            self.hit = self.candidates.indices()[candidate] / WIDTH as u32;
         }
     }
 }

@@ -28,20 +28,20 @@ impl<T: BatchEvaluator + ?Sized> Probe<'_, T> {
     /// on borders between regions.
     pub fn stiffness(&mut self, pose: &Pose) -> Stiffness {
         if !self.state.set_pose(pose) {
-            return self.loose();
+            return self.zero_stiffness();
         }
         self.state.traverse(usize::MAX);
         self.state.filter(true);
         if !self.state.evaluate::<Everything, T>(self.tool) {
-            return self.loose();
+            return self.zero_stiffness();
         }
         let wrench = self.state.reduce(pose);
         Stiffness { wrench, matrix: self.state.matrix(self.tool, pose) }
     }
 
     /// Returns the stiffness without contact.
-    fn loose(&self) -> Stiffness {
-        Stiffness { wrench: self.nothing(), matrix: Matrix6::zeros() }
+    fn zero_stiffness(&self) -> Stiffness {
+        Stiffness { wrench: self.zero_wrench(), matrix: Matrix6::zeros() }
     }
 }
 
@@ -54,76 +54,78 @@ impl QueryState<'_> {
     /// not rotate with the tool, the first term is `θ × f'` instead, where `f'` is the tool's share of the force. The
     /// arm changes by `-u`.
     fn matrix<T: Tool + ?Sized>(&mut self, tool: &T, pose: &Pose) -> Matrix6<f64> {
-        let turn = pose.rotation();
-        let mut room = std::mem::take(&mut self.room);
-        let mut sum = Sum::default();
-        for at in self.evaluations.inside_indices() {
-            let index = self.candidates.indices()[at] as usize;
+        let rotation = pose.rotation();
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut sum = StiffnessSum::default();
+        for candidate in self.evaluations.inside_indices() {
+            let index = self.candidates.indices()[candidate] as usize;
             let weight = match self.weights {
                 Weights::Area => self.tree.weight(index),
                 Weights::Unit => 1.0,
             };
             let vector =
-                |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
-            let own = vector(self.candidates.points.lists());
-            let arm = own * self.length - self.centre.coords;
-            let magnitude = self.evaluations.magnitude[at];
+                |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[candidate]));
+            let position = vector(self.candidates.points.lists());
+            let arm = position * self.length - self.centre.coords;
+            let magnitude = self.evaluations.magnitude[candidate];
             let gradient = vector(&self.evaluations.gradient);
-            let slopes = tool.derivatives(own.into(), self.length, &mut room);
+            let derivatives = tool.derivatives(position.into(), self.length, &mut scratch);
             let rows = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|row, column| rows[row][column]);
-            let steep = gradient.transpose();
+            let gradient_row = gradient.transpose();
             if self.law == Law::Gradient {
-                let own = weight * (gradient * steep + magnitude * rows(slopes.gradient));
+                let block =
+                    weight * (gradient * gradient_row + magnitude * rows(derivatives.gradient));
                 let force = weight * magnitude * gradient;
-                sum.add(own, arm, force, force);
+                sum.add(block, arm, force, force);
                 continue;
             }
             let direction = vector(&self.evaluations.direction);
-            let normal = turn.tr_mul(&Vector3::from(self.tree.normal(index)));
+            let normal = rotation.tr_mul(&Vector3::from(self.tree.normal(index)));
             if self.law == Law::Facing && normal.dot(&direction) > 0.0 {
                 continue;
             }
-            let way = normal - direction;
-            let own = weight * (way * steep - magnitude * rows(slopes.direction));
-            let push = weight * magnitude;
-            sum.add(own, arm, push * way, -push * direction);
+            let relative = normal - direction;
+            let block =
+                weight * (relative * gradient_row - magnitude * rows(derivatives.direction));
+            let weighted_magnitude = weight * magnitude;
+            sum.add(block, arm, weighted_magnitude * relative, -weighted_magnitude * direction);
         }
-        self.room = room;
-        sum.turned(turn)
+        self.scratch = scratch;
+        sum.rotated(rotation)
     }
 }
 
 /// The four blocks of the matrix, in the tool's frame.
 #[derive(Default)]
-struct Sum {
+struct StiffnessSum {
     force: [Matrix3<f64>; 2],
     torque: [Matrix3<f64>; 2],
 }
 
-impl Sum {
-    /// Adds a force at an arm, given its derivative `own` with respect to the position and the share `turns` of it that
+impl StiffnessSum {
+    /// Adds a force at an arm, given its derivative `block` with respect to the position and the share `moment` of it that
     /// rotates with the tool.
     fn add(
         &mut self,
-        own: Matrix3<f64>,
+        block: Matrix3<f64>,
         arm: Vector3<f64>,
         force: Vector3<f64>,
-        turns: Vector3<f64>,
+        moment: Vector3<f64>,
     ) {
-        let (arm, turns) = (arm.cross_matrix(), turns.cross_matrix());
-        let by_turn = turns - own * arm;
-        self.force[0] += own;
-        self.force[1] += by_turn;
-        self.torque[0] += arm * own - force.cross_matrix();
-        self.torque[1] += arm * by_turn;
+        let (arm, moment) = (arm.cross_matrix(), moment.cross_matrix());
+        let by_rotation = moment - block * arm;
+        self.force[0] += block;
+        self.force[1] += by_rotation;
+        self.torque[0] += arm * block - force.cross_matrix();
+        self.torque[1] += arm * by_rotation;
     }
 
-    fn turned(&self, turn: &Matrix3<f64>) -> Matrix6<f64> {
+    fn rotated(&self, rotation: &Matrix3<f64>) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
         for (row, blocks) in [&self.force, &self.torque].into_iter().enumerate() {
             for (column, block) in blocks.iter().enumerate() {
-                let turned = turn * block * turn.transpose();
-                matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column).copy_from(&turned);
+                let rotated = rotation * block * rotation.transpose();
+                matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column).copy_from(&rotated);
             }
         }
         matrix

@@ -82,23 +82,26 @@ impl Wrench {
         };
         self.integral += other.integral;
         self.energy += other.energy;
-        let one = |mine: f64, theirs: f64, sum: Vector3<f64>| mine + theirs + UNIT * sum.norm();
+        let sum_error =
+            |mine: f64, theirs: f64, sum: Vector3<f64>| mine + theirs + UNIT_ROUNDOFF * sum.norm();
         self.rounding = WrenchRounding {
-            force: one(self.rounding.force, other.rounding.force, self.force),
-            torque: one(self.rounding.torque, other.rounding.torque, self.torque),
+            force: sum_error(self.rounding.force, other.rounding.force, self.force),
+            torque: sum_error(self.rounding.torque, other.rounding.torque, self.torque),
         };
     }
 
-    /// Transforms the wrench from its own frame to the frame in which its own is at `place`.
-    pub(crate) fn turned(mut self, place: &Pose) -> Wrench {
-        if self.colliding > 0 && *place != Pose::default() {
-            let turned = |v: Vector3<f64>| (place.rotation() * v, TURNED * UNIT * v.norm());
+    /// Transforms the wrench from its own frame to the frame in which its own is at `frame`.
+    pub(crate) fn turned(mut self, frame: &Pose) -> Wrench {
+        if self.colliding > 0 && *frame != Pose::default() {
+            let turned = |v: Vector3<f64>| {
+                (frame.rotation() * v, ROTATION_ERROR_FACTOR * UNIT_ROUNDOFF * v.norm())
+            };
             let (force, torque) = (turned(self.force), turned(self.torque));
             (self.force, self.torque) = (force.0, torque.0);
             self.rounding.force += force.1;
             self.rounding.torque += torque.1;
             if let Some(deepest) = &mut self.deepest {
-                deepest.point = place.tip() + place.rotation() * deepest.point.coords;
+                deepest.point = frame.tip() + frame.rotation() * deepest.point.coords;
             }
         }
         self
@@ -111,19 +114,19 @@ impl Wrench {
 }
 
 /// The unit roundoff, slightly enlarged to cover products of errors.
-const UNIT: f64 = f64::EPSILON / 2.0 * (1.0 + 1e-6);
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0 * (1.0 + 1e-6);
 /// The error of a rotated vector, in units of roundoff of its length: each component is the sum of three products,
 /// whose sizes are the row's entries times the vector's components.
-const TURNED: f64 = 3.0 * 1.733;
+const ROTATION_ERROR_FACTOR: f64 = 3.0 * 1.733;
 
 /// Sums in eight lanes: each lane adds its points in order; the lanes are added at the end.
 struct Sums<S: Simd> {
     /// `Σ w m` and `Σ w m²`.
-    pushes: [f64x8<S>; 2],
+    weighted_sums: [f64x8<S>; 2],
     /// Force and torque about the tip, in the tool's frame.
     tool: [f64x8<S>; 6],
     /// The sum of the absolute values of all force components.
-    size: f64x8<S>,
+    abs_sum: f64x8<S>,
     niceness: f64x8<S>,
     depth: f64x8<S>,
     deepest: f64x8<S>,
@@ -131,9 +134,9 @@ struct Sums<S: Simd> {
 
 /// The same sums, with the lanes added.
 struct Totals {
-    pushes: [f64; 2],
+    weighted_sums: [f64; 2],
     tool: [f64; 6],
-    size: f64,
+    abs_sum: f64,
     /// Number of blocks with a point inside.
     blocks: usize,
     niceness: f64,
@@ -147,24 +150,24 @@ pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
     let colliding = state.evaluations.count();
     let totals = dispatch!(state.level, simd => totals(simd, state, pose));
     let rotation = pose.rotation();
-    let half =
+    let vector =
         |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
     // In the tool's frame, lengths are in the tool's unit.
-    let force = rotation * half(&totals.tool, 0);
-    let about_tip = rotation * (half(&totals.tool, 3) * state.length);
+    let force = rotation * vector(&totals.tool, 0);
+    let torque_about_tip = rotation * (vector(&totals.tool, 3) * state.length);
     let arm = rotation * state.centre.coords;
-    let torque = about_tip - arm.cross(&force);
+    let torque = torque_about_tip - arm.cross(&force);
     Wrench {
         law: state.law,
         weights: state.weights,
         colliding,
         deepest: (totals.depth >= 0.0)
-            .then(|| posture::at(state, pose, totals.deepest as usize, totals.depth)),
+            .then(|| posture::deepest_point(state, pose, totals.deepest as usize, totals.depth)),
         force,
         torque,
         niceness: (colliding > 0).then_some(totals.niceness),
-        integral: totals.pushes[0],
-        energy: totals.pushes[1] / 2.0,
+        integral: totals.weighted_sums[0],
+        energy: totals.weighted_sums[1] / 2.0,
         rounding: rounding(state, &totals, torque),
     }
 }
@@ -172,18 +175,19 @@ pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
 /// Returns bounds on the rounding errors of force and torque.
 ///
 /// Each lane adds one term per block, and at most seven additions join the lanes (Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, eq. 4.4). The factor `push` of a force is made of two products. Its vector is the
+/// Numerical Algorithms*, 2002, eq. 4.4). The weighted magnitude of a force is made of two products. Its vector is the
 /// difference of a direction and a rotated normal, each component of which errs by at most five units of roundoff where
 /// the two cancel. A moment is the difference of two products of lengths, up to the tool's size, and such forces.
 fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> WrenchRounding {
     let additions = totals.blocks as f64 + 7.0;
-    let terms = 3.0 * totals.size + 9.0 * totals.pushes[0];
-    let force = UNIT * ((additions + TURNED) * totals.size + terms);
-    let moments = UNIT * ((additions + TURNED + 5.0) * totals.size + terms);
+    let terms = 3.0 * totals.abs_sum + 9.0 * totals.weighted_sums[0];
+    let force = UNIT_ROUNDOFF * ((additions + ROTATION_ERROR_FACTOR) * totals.abs_sum + terms);
+    let moments =
+        UNIT_ROUNDOFF * ((additions + ROTATION_ERROR_FACTOR + 5.0) * totals.abs_sum + terms);
     let arm = state.centre.coords.norm();
-    let torque = 2.0 * state.reach * state.length * moments
-        + arm * (force + UNIT * 12.0 * totals.size)
-        + UNIT * torque.norm();
+    let torque = 2.0 * state.tool_size * state.length * moments
+        + arm * (force + UNIT_ROUNDOFF * 12.0 * totals.abs_sum)
+        + UNIT_ROUNDOFF * torque.norm();
     WrenchRounding { force, torque }
 }
 
@@ -196,9 +200,9 @@ type Triple<S> = [f64x8<S>; 3];
 fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
     let mut sums = Sums {
-        pushes: [zero; 2],
+        weighted_sums: [zero; 2],
         tool: [zero; 6],
-        size: zero,
+        abs_sum: zero,
         niceness: f64x8::splat(simd, f64::INFINITY),
         depth: f64x8::splat(simd, -1.0),
         deepest: zero,
@@ -214,9 +218,9 @@ fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
     let last = f64x8::splat(simd, f64::INFINITY);
     let deepest = sums.depth.simd_ge(depth).select(sums.deepest, last);
     Totals {
-        pushes: [sums.pushes[0].reduce_sum(), sums.pushes[1].reduce_sum()],
-        tool: six(&sums.tool),
-        size: sums.size.reduce_sum(),
+        weighted_sums: [sums.weighted_sums[0].reduce_sum(), sums.weighted_sums[1].reduce_sum()],
+        tool: reduce_six(&sums.tool),
+        abs_sum: sums.abs_sum.reduce_sum(),
         blocks,
         niceness: sums.niceness.reduce_min(),
         depth,
@@ -225,7 +229,7 @@ fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
 }
 
 #[inline(always)]
-fn six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
+fn reduce_six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
     let mut totals = [0.0; 6];
     for (total, sum) in totals.iter_mut().zip(sums) {
         *total = sum.reduce_sum();
@@ -275,29 +279,29 @@ fn add<S: Simd>(
     inside: u8,
     sums: &mut Sums<S>,
 ) {
-    const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+    const LANE_INDICES: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
     let (evaluations, candidates) = (&state.evaluations, &state.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
     let magnitude = in_solid.select(load(simd, &evaluations.magnitude, block), zero);
-    let push = match state.weights {
+    let weighted_magnitude = match state.weights {
         Weights::Area => widen(simd, &candidates.weights, block) * state.tree.weight * magnitude,
         Weights::Unit => magnitude,
     };
-    sums.pushes[0] += push;
-    sums.pushes[1] += push * magnitude;
+    sums.weighted_sums[0] += weighted_magnitude;
+    sums.weighted_sums[1] += weighted_magnitude * magnitude;
     let niceness = sums.niceness.min(load(simd, &evaluations.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
     let depth = load(simd, &evaluations.depth, block);
     let deeper = in_solid & depth.simd_gt(sums.depth);
-    let indices = f64x8::from_slice(simd, &COUNT) + (block * LANES) as f64;
+    let indices = f64x8::from_slice(simd, &LANE_INDICES) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
     sums.deepest = deeper.select(indices, sums.deepest);
 
     let p = load_vector(simd, candidates.points.lists(), block, in_solid);
     if state.law == Law::Gradient {
         let slope = load_vector(simd, &evaluations.gradient, block, in_solid);
-        accumulate(sums, push, p, slope);
+        accumulate(sums, weighted_magnitude, p, slope);
         return;
     }
     let direction = load_vector(simd, &evaluations.direction, block, in_solid);
@@ -307,26 +311,35 @@ fn add<S: Simd>(
         widen(simd, &candidates.normals[2], block),
     ];
     // The normal is transformed to the tool's frame, in which the direction is given.
-    let mut way = direction;
-    let mut along = zero;
-    for (axis, part) in way.iter_mut().enumerate() {
+    let mut direction_sum = direction;
+    let mut facing = zero;
+    for (axis, part) in direction_sum.iter_mut().enumerate() {
         let column = pose.rotation().column(axis);
         let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
-        along += turned * *part;
+        facing += turned * *part;
         *part = turned - *part;
     }
     let force = match state.law {
-        Law::Facing => along.simd_le(zero).select(push, zero),
-        _ => push,
+        Law::Facing => facing.simd_le(zero).select(weighted_magnitude, zero),
+        _ => weighted_magnitude,
     };
-    accumulate(sums, force, p, way);
+    accumulate(sums, force, p, direction_sum);
 }
 
 /// Adds the force `push · way` and its moment about the origin.
 #[inline(always)]
-fn accumulate<S: Simd>(sums: &mut Sums<S>, push: f64x8<S>, p: Triple<S>, way: Triple<S>) {
-    let f = [push * way[0], push * way[1], push * way[2]];
-    sums.size += f[0].abs() + f[1].abs() + f[2].abs();
+fn accumulate<S: Simd>(
+    sums: &mut Sums<S>,
+    weighted_magnitude: f64x8<S>,
+    p: Triple<S>,
+    direction_sum: Triple<S>,
+) {
+    let f = [
+        weighted_magnitude * direction_sum[0],
+        weighted_magnitude * direction_sum[1],
+        weighted_magnitude * direction_sum[2],
+    ];
+    sums.abs_sum += f[0].abs() + f[1].abs() + f[2].abs();
     let sums = &mut sums.tool;
     sums[0] += f[0];
     sums[1] += f[1];

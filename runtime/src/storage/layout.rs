@@ -132,7 +132,7 @@ impl List {
         match self {
             List::Boxes(level) => bytemuck::cast_slice(&tree.levels[level]),
             List::Leaves => bytemuck::cast_slice(&tree.leaves),
-            List::Skins => bytemuck::cast_slice(&tree.skins),
+            List::Skins => bytemuck::cast_slice(&tree.attributes),
             List::Triangles => bytemuck::cast_slice(&tree.triangles),
         }
     }
@@ -184,7 +184,7 @@ impl Surveyed {
 
 impl FileHeader {
     fn of(tree: &PointBvh) -> FileHeader {
-        let (cover, radius) = match tree.cover {
+        let (cover, radius) = match tree.covering_radius {
             None => (0, 0.0),
             Some(CoveringRadius { radius, proved }) => (1 + u32::from(proved), radius),
         };
@@ -197,7 +197,7 @@ impl FileHeader {
             size: tree.frame.size,
             leaf_size: tree.leaf_size,
             cover,
-            gone: tree.gone as u32,
+            gone: tree.removed as u32,
         }
     }
 }

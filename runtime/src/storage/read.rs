@@ -148,16 +148,17 @@ impl FileContext<'_> {
             return Err(unsound("a tree lacks more points than it has"));
         }
         let mut levels = Vec::new();
-        let (mut leaves, mut skins, mut triangles) = (None, None, None);
+        let (mut leaves, mut attributes, mut triangles) = (None, None, None);
         for place in lists {
             match place.list {
                 List::Boxes(_) => levels.push(self.list(number, place, source)?),
                 List::Leaves => leaves = Some(self.list(number, place, source)?),
-                List::Skins => skins = Some(self.list(number, place, source)?),
+                List::Skins => attributes = Some(self.list(number, place, source)?),
                 List::Triangles => triangles = Some(self.list(number, place, source)?),
             }
         }
-        let (Some(leaves), Some(skins), Some(triangles)) = (leaves, skins, triangles) else {
+        let (Some(leaves), Some(attributes), Some(triangles)) = (leaves, attributes, triangles)
+        else {
             return Err(unsound("a tree lacks a list"));
         };
         let tree = PointBvh {
@@ -165,16 +166,16 @@ impl FileContext<'_> {
             levels,
             leaves,
             leaf_size: stem.leaf_size,
-            skins,
+            attributes,
             weight: stem.weight,
             triangles,
-            cover: match stem.cover {
+            covering_radius: match stem.cover {
                 0 => None,
                 1 => Some(CoveringRadius { radius: stem.radius, proved: false }),
                 2 => Some(CoveringRadius { radius: stem.radius, proved: true }),
                 _ => return Err(unsound("a tree has an unknown kind of cover")),
             },
-            gone: stem.gone as usize,
+            removed: stem.gone as usize,
         };
         if ends(&tree) { Ok(tree) } else { Err(unsound("a tree has boxes or points of nothing")) }
     }

@@ -78,7 +78,7 @@ impl Batch {
         for corner in &mut self.corners {
             let p = *corner;
             for lane in 0..LANES {
-                for (axis, row) in view.carry.iter().enumerate() {
+                for (axis, row) in view.exact_rows.iter().enumerate() {
                     corner[axis][lane] =
                         p[0][lane] * row[0] + p[1][lane] * row[1] + p[2][lane] * row[2];
                 }

@@ -1,6 +1,6 @@
 //! The depth-first traversal of the triangle tree, deepest children first.
 
-use crate::bvh::{Boxes, PoseTransform, WIDTH, extent, load, seen};
+use crate::bvh::{Boxes, PoseTransform, WIDTH, extent, load, transform};
 use crate::certify::bounds::nearest::LaneVector;
 use crate::certify::part::NodeRing;
 use crate::certify::part::{Corners, TriangleBvh};
@@ -59,12 +59,12 @@ impl Node {
         let boxes = &bvh.levels[self.level as usize - 1][index / WIDTH];
         let lane = index % WIDTH;
         let centre = [boxes.centre[0][lane], boxes.centre[1][lane], boxes.centre[2][lane]];
-        let middle = view.seen(centre);
+        let middle = view.transform(centre);
         let Corners([a, b, c]) = &bvh.leaves[index];
         [
-            seen(&load(simd, a), &view.rows, middle),
-            seen(&load(simd, b), &view.rows, middle),
-            seen(&load(simd, c), &view.rows, middle),
+            transform(&load(simd, a), &view.rows, middle),
+            transform(&load(simd, b), &view.rows, middle),
+            transform(&load(simd, c), &view.rows, middle),
         ]
     }
 
@@ -152,7 +152,7 @@ pub(crate) fn rings<S: Simd>(
 ) -> BoxRings<f32x16<S>> {
     let centre = load(simd, &boxes.centre);
     let half = load(simd, &boxes.half);
-    let [x, y, z] = seen(&centre, &view.rows, view.origin);
+    let [x, y, z] = transform(&centre, &view.rows, view.origin);
     let zero = f32x16::splat(simd, 0.0);
     let (x, y) = (x.abs(), y.abs());
     let rows = &view.rows;

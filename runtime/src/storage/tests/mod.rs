@@ -57,7 +57,7 @@ fn bits(part: &Part) -> Vec<u8> {
     for tree in &part.levels {
         tree.levels.iter().for_each(|boxes| all.extend(bytemuck::cast_slice::<_, u8>(boxes)));
         all.extend(bytemuck::cast_slice::<_, u8>(&tree.leaves));
-        all.extend(bytemuck::cast_slice::<_, u8>(&tree.skins));
+        all.extend(bytemuck::cast_slice::<_, u8>(&tree.attributes));
         all.extend(bytemuck::cast_slice::<_, u8>(&tree.triangles));
     }
     all
@@ -115,7 +115,7 @@ fn what_is_cut_stays_cut() {
     for pose in &poses {
         assert_eq!(part.cut(&Ball, pose), opened.cut(&Ball, pose));
     }
-    assert!(part.tree().gone > 0 && bits(&part) == bits(&opened));
+    assert!(part.tree().removed > 0 && bits(&part) == bits(&opened));
     let again = open(&saved(&part)).expect("opened");
     assert_eq!(again.tree().len(), part.tree().len());
     assert!(evaluations(&part, &poses) == evaluations(&opened, &poses));
@@ -135,7 +135,7 @@ fn every_tree_is_saved() {
         let mut tree = PointBvh::new(
             &Cloud::sample(&cuboid(), Sampling::monte_carlo(points)).expect("a cloud"),
         );
-        tree.cover = Some(CoveringRadius { radius: 0.1 + 0.2, proved });
+        tree.covering_radius = Some(CoveringRadius { radius: 0.1 + 0.2, proved });
         part.levels.push(tree);
     }
     let opened = open(&saved(&part)).expect("opened");
@@ -143,7 +143,7 @@ fn every_tree_is_saved() {
     assert!(bits(&part) == bits(&opened));
     let rest = |part: &Part| {
         let of = |tree: &PointBvh| format!("{:?}{}{}", tree.frame, tree.leaf_size, tree.weight);
-        part.levels.iter().map(|tree| (of(tree), tree.cover)).collect::<Vec<_>>()
+        part.levels.iter().map(|tree| (of(tree), tree.covering_radius)).collect::<Vec<_>>()
     };
     assert_eq!(rest(&part), rest(&opened));
     assert!(saved(&part) == saved(&opened), "the same part, the same bytes");
@@ -185,7 +185,7 @@ fn lists_lie_at_multiples_of_64() {
     let lists: [&[u8]; 4] = [
         bytemuck::cast_slice(&tree.levels[0]),
         bytemuck::cast_slice(&tree.leaves),
-        bytemuck::cast_slice(&tree.skins),
+        bytemuck::cast_slice(&tree.attributes),
         bytemuck::cast_slice(&tree.triangles),
     ];
     for list in lists {
@@ -208,7 +208,7 @@ fn lists_have_the_lengths_that_trees_have() {
                     tree.levels[level].len()
                 }
                 List::Leaves => tree.leaves.len(),
-                List::Skins => tree.skins.len(),
+                List::Skins => tree.attributes.len(),
                 List::Triangles => tree.triangles.len(),
             };
             assert_eq!(found as u64, count, "{list} of {points}");
