@@ -144,7 +144,7 @@ impl Pose {
     pub fn then(&self, motion: &Pose) -> Pose {
         let tip = motion.tip + motion.rotation * self.tip.coords;
         let rotation = orthonormal(motion.rotation * self.rotation);
-        Pose { rotation, tip: near(tip), full: self.full && motion.full }
+        Pose { rotation, tip: check_range(tip), full: self.full && motion.full }
     }
 
     /// Returns the pose translated by a displacement in the world frame.
@@ -152,8 +152,8 @@ impl Pose {
     /// # Errors
     /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one
     /// allowed.
-    pub fn translated(&self, way: Vector3<f64>) -> Result<Pose, PoseError> {
-        Pose::finite(self.rotation, self.tip + way, self.full)
+    pub fn translated(&self, displacement: Vector3<f64>) -> Result<Pose, PoseError> {
+        Pose::finite(self.rotation, self.tip + displacement, self.full)
     }
 
     /// Returns the pose rotated by `turn`, with its tip at `tip`.
@@ -168,23 +168,27 @@ impl Pose {
     ) -> Result<Pose, PoseError> {
         let rotation = orthonormal(turn * self.rotation);
         match orthonormality_error(&rotation) {
-            off if off <= ORTHONORMAL => Pose::finite(rotation, tip, self.full),
+            error if error <= ORTHONORMALITY_TOLERANCE => Pose::finite(rotation, tip, self.full),
             _ => Err(PoseError::NotFinite),
         }
     }
 
-    /// Returns the pose relative to the frame `place`: `place⁻¹ ∘ self`, with the difference of the tips
+    /// Returns the pose relative to the frame `frame`: `frame⁻¹ ∘ self`, with the difference of the tips
     /// taken first. The rotation remains a rotation as in [`Pose::then`].
     ///
     /// # Panics
     /// Panics if the tip leaves [`FARTHEST_TIP`].
-    pub fn relative_to(&self, place: &Pose) -> Pose {
-        if *place == Pose::default() {
+    pub fn relative_to(&self, frame: &Pose) -> Pose {
+        if *frame == Pose::default() {
             return *self;
         }
-        let back = place.rotation.transpose();
-        let tip = Point3::from(back * (self.tip - place.tip));
-        Pose { rotation: orthonormal(back * self.rotation), tip: near(tip), full: self.full }
+        let inverse = frame.rotation.transpose();
+        let tip = Point3::from(inverse * (self.tip - frame.tip));
+        Pose {
+            rotation: orthonormal(inverse * self.rotation),
+            tip: check_range(tip),
+            full: self.full,
+        }
     }
 
     /// Returns the pose as nalgebra's isometry.
@@ -195,7 +199,7 @@ impl Pose {
 }
 
 /// Returns the tip after checking that it is within [`FARTHEST_TIP`].
-fn near(tip: Point3<f64>) -> Point3<f64> {
+fn check_range(tip: Point3<f64>) -> Point3<f64> {
     assert!(
         tip.iter().all(|part| part.abs() <= FARTHEST_TIP),
         "the composed pose has its tip at {tip}, out of {FARTHEST_TIP:e}: compose fewer or smaller motions"
@@ -206,13 +210,15 @@ fn near(tip: Point3<f64>) -> Point3<f64> {
 /// Largest entry of `RᵀR - I` in a valid rotation. A certifier's bounds hold for rotations with rounding
 /// errors; a matrix farther off was not made by this module.
 #[cfg(feature = "haptic")]
-const ORTHONORMAL: f64 = 1e-9;
+const ORTHONORMALITY_TOLERANCE: f64 = 1e-9;
 
 /// Returns the largest magnitude in `RᵀR - I`, or NaN if any entry is NaN.
 #[cfg(any(test, feature = "haptic"))]
 pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
-    let off = rotation.transpose() * rotation - Matrix3::identity();
-    off.iter().fold(0.0, |most, part| if part.abs() <= most { most } else { part.abs() })
+    let error = rotation.transpose() * rotation - Matrix3::identity();
+    error
+        .iter()
+        .fold(0.0, |max_error, part| if part.abs() <= max_error { max_error } else { part.abs() })
 }
 
 /// Corrects the rounding of a matrix `R` that is nearly a rotation. The result `Q` has `QᵀQ` within 6u
@@ -225,8 +231,8 @@ pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
 /// `R E/2` is of second order. Rounding the last sum changes an entry of `Q` by u of its magnitude, and
 /// `QᵀQ` by 2u. The total is 5u, and second-order terms add less than another u.
 pub(crate) fn orthonormal(product: Matrix3<f64>) -> Matrix3<f64> {
-    let off = Matrix3::identity() - product.transpose() * product;
-    product + product * off * 0.5
+    let error = Matrix3::identity() - product.transpose() * product;
+    product + product * error * 0.5
 }
 
 /// Returns the pose at the origin without rotation.

@@ -66,7 +66,7 @@ pub struct SceneError {
 struct SceneTool<'a> {
     tool: &'a dyn Tool,
     pose: Pose,
-    beside: Vec<Pair<'a>>,
+    pairs: Vec<Pair<'a>>,
 }
 
 /// A tool and a part, with the last wrench.
@@ -107,8 +107,8 @@ impl<'a> Scene<'a> {
             return Err(SceneError { part: part.unit(), scene: self.unit });
         }
         self.parts.push((part, place));
-        for held in &mut self.tools {
-            held.beside.push(Pair::new(part, held.tool, self.law, self.weights));
+        for scene_tool in &mut self.tools {
+            scene_tool.pairs.push(Pair::new(part, scene_tool.tool, self.law, self.weights));
         }
         Ok(PartId(self.parts.len() - 1))
     }
@@ -117,14 +117,14 @@ impl<'a> Scene<'a> {
     /// differ from the scene's.
     pub fn add_tool(&mut self, tool: &'a dyn Tool) -> ToolId {
         let pair = |(part, _): &(&'a Part, Pose)| Pair::new(part, tool, self.law, self.weights);
-        let beside = self.parts.iter().map(pair).collect();
-        self.tools.push(SceneTool { tool, pose: Pose::default(), beside });
+        let pairs = self.parts.iter().map(pair).collect();
+        self.tools.push(SceneTool { tool, pose: Pose::default(), pairs });
         ToolId(self.tools.len() - 1)
     }
 
     /// Moves a part as a whole; its tree is unchanged.
-    pub fn move_part(&mut self, part: PartId, place: Pose) {
-        self.parts[part.0].1 = place;
+    pub fn move_part(&mut self, part: PartId, part_pose: Pose) {
+        self.parts[part.0].1 = part_pose;
     }
 
     /// Moves a tool.
@@ -134,42 +134,46 @@ impl<'a> Scene<'a> {
 
     /// Returns the first part that a tool touches.
     pub fn detect(&mut self, tool: ToolId) -> Option<PartId> {
-        let held = &mut self.tools[tool.0];
-        let pairs = held.beside.iter_mut().zip(&self.parts).enumerate();
-        let mut touched = pairs.filter_map(|(index, (pair, (_, place)))| {
-            pair.probe.detect(&held.pose.relative_to(place)).then_some(PartId(index))
+        let scene_tool = &mut self.tools[tool.0];
+        let pairs = scene_tool.pairs.iter_mut().zip(&self.parts).enumerate();
+        let mut touched = pairs.filter_map(|(index, (pair, (_, part_pose)))| {
+            pair.probe.detect(&scene_tool.pose.relative_to(part_pose)).then_some(PartId(index))
         });
         touched.next()
     }
 
     /// Returns the contact wrench between a tool and one part, in the world frame.
     pub fn pair_wrench(&mut self, tool: ToolId, part: PartId) -> Wrench {
-        let held = &mut self.tools[tool.0];
-        held.beside[part.0].wrench(&held.pose, &self.parts[part.0].1)
+        let scene_tool = &mut self.tools[tool.0];
+        scene_tool.pairs[part.0].wrench(&scene_tool.pose, &self.parts[part.0].1)
     }
 
     /// Returns the contact wrench of a tool with all parts together, in the world frame. The triangle id
     /// of its deepest point belongs to the part that [`Scene::deepest`] returns.
     pub fn wrench(&mut self, tool: ToolId) -> Wrench {
-        let held = &mut self.tools[tool.0];
+        let scene_tool = &mut self.tools[tool.0];
         let mut total = Wrench::nothing(self.law, self.weights);
-        for (pair, (_, place)) in held.beside.iter_mut().zip(&self.parts) {
-            total.add(&pair.wrench(&held.pose, place));
+        for (pair, (_, part_pose)) in scene_tool.pairs.iter_mut().zip(&self.parts) {
+            total.add(&pair.wrench(&scene_tool.pose, part_pose));
         }
         total
     }
 
     /// Returns the part that a tool is deepest in, and the deepest point.
     pub fn deepest(&mut self, tool: ToolId) -> Option<(PartId, DeepestPoint)> {
-        let held = &mut self.tools[tool.0];
-        let mut most: Option<(PartId, DeepestPoint)> = None;
-        for (index, (pair, (_, place))) in held.beside.iter_mut().zip(&self.parts).enumerate() {
-            let Some(deepest) = pair.wrench(&held.pose, place).deepest else { continue };
-            if most.is_none_or(|(_, most)| deepest.depth > most.depth) {
-                most = Some((PartId(index), deepest));
+        let scene_tool = &mut self.tools[tool.0];
+        let mut deepest: Option<(PartId, DeepestPoint)> = None;
+        for (index, (pair, (_, part_pose))) in
+            scene_tool.pairs.iter_mut().zip(&self.parts).enumerate()
+        {
+            let Some(candidate) = pair.wrench(&scene_tool.pose, part_pose).deepest else {
+                continue;
+            };
+            if deepest.is_none_or(|(_, deepest)| candidate.depth > deepest.depth) {
+                deepest = Some((PartId(index), candidate));
             }
         }
-        most
+        deepest
     }
 }
 
@@ -181,14 +185,14 @@ impl<'a> Pair<'a> {
         }
     }
 
-    fn wrench(&mut self, pose: &Pose, place: &Pose) -> Wrench {
-        let relative = pose.relative_to(place);
+    fn wrench(&mut self, pose: &Pose, part_pose: &Pose) -> Wrench {
+        let relative = pose.relative_to(part_pose);
         match &self.evaluations {
-            Some((last, evaluations)) if *last == relative => evaluations.turned(place),
+            Some((last, evaluations)) if *last == relative => evaluations.turned(part_pose),
             _ => {
                 let evaluations = self.probe.wrench(&relative);
                 self.evaluations = Some((relative, evaluations));
-                evaluations.turned(place)
+                evaluations.turned(part_pose)
             }
         }
     }

@@ -76,7 +76,7 @@ pub fn apart(gap: f64, k: usize, n: usize) -> Pose {
     let u = fraction(k, n);
     let phi = 10.0 * PI * u;
     let a = -0.4f64.cos() * radial(phi) + 0.4f64.sin() * tangential(phi);
-    stand(at(OUTER + BALL + gap, phi, 1.5 + 10.0 * u), a)
+    pose_at(at(OUTER + BALL + gap, phi, 1.5 + 10.0 * u), a)
 }
 
 /// Returns a pose of the first 60 % of outside. With `v = u/0.6`: `φ = 10πv`, `z = 1.5 + 10v`, tilt `τ =
@@ -89,7 +89,7 @@ fn on_the_wall(u: f64) -> Pose {
     let (sin, cos) = (17.0 * v).sin_cos();
     let t = cos * tangential(phi) + sin * Vector3::z();
     let a = -tilt.cos() * radial(phi) + tilt.sin() * t;
-    stand(at(OUTER + BALL - outside_depth(u), phi, 1.5 + 10.0 * v), a)
+    pose_at(at(OUTER + BALL - outside_depth(u), phi, 1.5 + 10.0 * v), a)
 }
 
 /// Returns a pose of the last 40 % of outside. With `v = (u − 0.6)/0.4`: `φ = 6πv`, `c = ((6 − 0.3δ) n̂,
@@ -100,7 +100,7 @@ fn over_the_edge(u: f64) -> Pose {
     let phi = 6.0 * PI * v;
     let lean = 0.03 * (31.0 * v).sin() * radial(phi) + 0.02 * tangential(phi);
     let z = HEIGHT - 2.0 - 1.5 * (19.0 * v).sin();
-    stand(at(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
+    pose_at(at(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
 }
 
 /// Returns a pose of inside: `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u)
@@ -109,7 +109,7 @@ fn in_the_bore(u: f64) -> Pose {
     let phi = 16.0 * PI * u;
     let lean = 0.002 * (31.0 * u).sin() * radial(phi);
     let z = HEIGHT - 2.3 - 1.4 * (19.0 * u).sin();
-    stand(at(INNER - BALL + depth(0.0124, u), phi, z), lean - Vector3::z())
+    pose_at(at(INNER - BALL + depth(0.0124, u), phi, z), lean - Vector3::z())
 }
 
 /// Returns a pose of hold: `φ = 50πu`, tilt `τ = 12° · sin(35.4πu)`, `c = ((1.2 + 0.9 sin 15.8πu) n̂, H
@@ -119,7 +119,7 @@ fn in_the_rim(u: f64) -> Pose {
     let tilt = 12f64.to_radians() * (35.4 * PI * u).sin();
     let radius = 1.2 + 0.9 * (15.8 * PI * u).sin();
     let z = HEIGHT - 6.5 - 2.5 * (6.6 * PI * u).cos();
-    stand(at(radius, phi, z), tilt.sin() * radial(phi) - tilt.cos() * Vector3::z())
+    pose_at(at(radius, phi, z), tilt.sin() * radial(phi) - tilt.cos() * Vector3::z())
 }
 
 fn outside_depth(u: f64) -> f64 {
@@ -152,7 +152,7 @@ fn at(radius: f64, phi: f64, z: f64) -> Point3<f64> {
 }
 
 /// Returns the pose whose ball is centred at `c` and whose axis runs along `a` from spindle to tip.
-fn stand(c: Point3<f64>, a: Vector3<f64>) -> Pose {
+fn pose_at(c: Point3<f64>, a: Vector3<f64>) -> Pose {
     let a = a.normalize();
     Pose::from_axis(c + BALL * a, -a).expect("a path's points are finite and its axes unit vectors")
 }

@@ -42,7 +42,7 @@ pub const LARGEST_COORDINATE: f64 = 1e60;
 
 /// Noise threshold for coordinates, as a fraction (2^-40) of the part's size. Exporters leave noise of
 /// this size, so smaller coordinates count as 0.
-const NOISE: f64 = 1.0 / (1u64 << 40) as f64;
+const WELD_TOLERANCE_FRACTION: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Smallest sine of a triangle's angle for which the normal is meaningful, some ten times the rounding
 /// error in the cross product of two edges.
@@ -180,9 +180,9 @@ impl Mesh {
     /// # Errors
     /// See [`StlError`].
     pub fn from_stl(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, StlError> {
-        let facets = stl::read(bytes, name)?;
-        match weld(&facets.corners, unit) {
-            Ok(mesh) => Ok(Mesh { opposed_normals: facets.opposed_normals, ..mesh }),
+        let stl = stl::read(bytes, name)?;
+        match weld(&stl.corners, unit) {
+            Ok(mesh) => Ok(Mesh { opposed_normals: stl.opposed_normals, ..mesh }),
             Err(source) => Err(StlError::Mesh { file: name.to_owned(), source }),
         }
     }
@@ -255,13 +255,13 @@ impl Mesh {
 /// coordinates.
 fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
     let [low, high] = bounds(corners.iter().flatten().copied());
-    let noise = (high - low).amax() * NOISE;
-    let mut known = HashMap::new();
+    let noise = (high - low).amax() * WELD_TOLERANCE_FRACTION;
+    let mut indices = HashMap::new();
     let mut vertices = Vec::new();
     let mut triangles = Vec::with_capacity(corners.len());
-    for facet in corners {
+    for corner_triple in corners {
         let mut triangle = [0; 3];
-        for (index, corner) in triangle.iter_mut().zip(facet) {
+        for (index, corner) in triangle.iter_mut().zip(corner_triple) {
             let count = vertices.len();
             let what = "vertices";
             let next = u32::try_from(count).map_err(|_| MeshError::TooMany { what, count })?;
@@ -270,7 +270,7 @@ fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
                 c if c.abs() <= noise => 0,
                 c => c.to_bits(),
             });
-            *index = *known.entry(key).or_insert(next);
+            *index = *indices.entry(key).or_insert(next);
             if *index == next {
                 vertices.push(*corner);
             }
@@ -283,8 +283,8 @@ fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
 /// Returns the smallest axis-aligned box around the points, or an inverted (empty) box if there are
 /// none.
 pub(crate) fn bounds(points: impl IntoIterator<Item = Point3<f64>>) -> [Point3<f64>; 2] {
-    let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(|c| Point3::new(c, c, c));
-    points.into_iter().fold(nothing, |[low, high], p| [low.inf(&p), high.sup(&p)])
+    let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|c| Point3::new(c, c, c));
+    points.into_iter().fold(empty, |[low, high], p| [low.inf(&p), high.sup(&p)])
 }
 
 /// Returns whether a number is a valid coordinate; NaN is not.
@@ -304,8 +304,8 @@ pub(crate) fn area_and_normal([a, b, c]: &[Point3<f64>; 3]) -> Option<(f64, Vect
     let (first, second) = ((longest + 1) % 3, (longest + 2) % 3);
     let cross = edges[first].cross(&edges[second]);
     let square = cross.norm_squared();
-    let least = SMALLEST_SINE * SMALLEST_SINE * squares[first] * squares[second];
-    if square <= least || square < f64::MIN_POSITIVE {
+    let min_square = SMALLEST_SINE * SMALLEST_SINE * squares[first] * squares[second];
+    if square <= min_square || square < f64::MIN_POSITIVE {
         return None;
     }
     let norm = square.sqrt();

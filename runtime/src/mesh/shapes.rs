@@ -113,13 +113,15 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
         return Err(MeshError::Shape { shape: "plane", rule });
     }
     let n = f64::from(divisions);
-    let place = |i: u32| half_width * ((2.0 * f64::from(i) - n) / n);
+    let coordinate = |i: u32| half_width * ((2.0 * f64::from(i) - n) / n);
     let rows = (0..=divisions).flat_map(|j| (0..=divisions).map(move |i| (i, j)));
-    let vertices = rows.map(|(i, j)| Point3::new(place(i), place(j), 0.0)).collect();
-    let at = |i: u32, j: u32| j * (divisions + 1) + i;
+    let vertices = rows.map(|(i, j)| Point3::new(coordinate(i), coordinate(j), 0.0)).collect();
+    let vertex = |i: u32, j: u32| j * (divisions + 1) + i;
     let squares = (0..divisions).flat_map(|j| (0..divisions).map(move |i| (i, j)));
     let triangles = squares
-        .flat_map(|(i, j)| halves([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .flat_map(|(i, j)| {
+            halves([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)])
+        })
         .collect();
     Mesh::new(vertices, triangles, unit)
 }
@@ -138,10 +140,10 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     // The icosahedron: even permutations of (0, ±1, ±golden ratio).
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut directions: Vec<Vector3<f64>> = Vec::new();
-    for [one, far] in [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]] {
-        directions.push(Vector3::new(0.0, one, far).normalize());
-        directions.push(Vector3::new(one, far, 0.0).normalize());
-        directions.push(Vector3::new(far, 0.0, one).normalize());
+    for [one, golden_part] in [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]] {
+        directions.push(Vector3::new(0.0, one, golden_part).normalize());
+        directions.push(Vector3::new(one, golden_part, 0.0).normalize());
+        directions.push(Vector3::new(golden_part, 0.0, one).normalize());
     }
     let mut triangles = icosahedron(&directions);
     for _ in 0..subdivisions {
@@ -166,11 +168,11 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
 /// Returns the faces of the icosahedron: the triples of adjacent corners, oriented outward.
 fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
     // Adjacent corners subtend 63.4 degrees at the centre, others 116.6 degrees or more.
-    let near = |a: usize, b: usize| corners[a].dot(&corners[b]) > 0.0;
+    let are_adjacent = |a: usize, b: usize| corners[a].dot(&corners[b]) > 0.0;
     let mut faces = Vec::new();
     for a in 0..corners.len() {
-        for b in (a + 1..corners.len()).filter(|&b| near(a, b)) {
-            for c in (b + 1..corners.len()).filter(|&c| near(a, c) && near(b, c)) {
+        for b in (a + 1..corners.len()).filter(|&b| are_adjacent(a, b)) {
+            for c in (b + 1..corners.len()).filter(|&c| are_adjacent(a, c) && are_adjacent(b, c)) {
                 let outward = corners[a].dot(&corners[b].cross(&corners[c])) > 0.0;
                 let [b, c] = if outward { [b, c] } else { [c, b] };
                 faces.push([a, b, c].map(|corner| corner as u32));
@@ -244,7 +246,7 @@ mod tests {
 
     const UNIT: Unit = Unit::Millimetre;
 
-    fn near(found: f64, expected: f64) -> bool {
+    fn is_close(found: f64, expected: f64) -> bool {
         (found / expected - 1.0).abs() < 1e-13
     }
 
@@ -258,8 +260,8 @@ mod tests {
             let n = f64::from(segments);
             let base = n / 2.0 * (2.0 * PI / n).sin() * (outer * outer - inner * inner);
             let around = 2.0 * n * (PI / n).sin() * (outer + inner);
-            assert!(near(survey.area, 2.0 * base + around * height), "{survey}");
-            assert!(near(survey.volume, base * height), "{survey}");
+            assert!(is_close(survey.area, 2.0 * base + around * height), "{survey}");
+            assert!(is_close(survey.volume, base * height), "{survey}");
             assert!(survey.is_solid() && survey.findings().len() == 1, "{survey}");
             assert_eq!(survey.triangles as u32, 4 * segments * (layers + 1));
         }
@@ -327,8 +329,8 @@ mod tests {
         );
         assert!(again.diagnostics().is_solid() && again.diagnostics().opposed_normals == 0);
 
-        let far = sphere(1e40, 0, UNIT).expect("a large sphere");
-        let error = far.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
+        let huge = sphere(1e40, 0, UNIT).expect("a large sphere");
+        let error = huge.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
         assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
     }
 }

@@ -44,7 +44,7 @@ impl Candidates {
     /// Makes room for the points of `leaves` leaves.
     pub(super) fn make_room(&mut self, leaves: usize, attributes: bool) {
         let additional = (leaves + 1) * WIDTH;
-        self.points.room(additional);
+        self.points.make_room(additional);
         let required = self.points.len() + additional;
         if self.indices.len() < required {
             self.indices.resize(required, 0);
@@ -112,6 +112,6 @@ impl Candidates {
     /// Records that `count` points were appended.
     #[inline(always)]
     pub(super) fn advance(&mut self, count: usize) {
-        self.points.took(count);
+        self.points.advance(count);
     }
 }

@@ -10,7 +10,7 @@
 //! Words that can neither move the tool nor change the meaning of positions are listed in
 //! [`Program::ignored`](super::Program::ignored). Every other word is refused (`words` has the lists).
 
-use super::words::{is_prose, pass_over, refuse_motions};
+use super::words::{is_prose, refuse_motions, skip_statement};
 use super::{CutterLocation, Located, ProgramFault, Tape, axis_pose, lines, number, shown};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
@@ -18,19 +18,19 @@ use std::mem;
 
 /// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tape, Located> {
-    let (statements, cut) = statements(text);
+    let (statements, unfinished_line) = statements(text);
     let mut reader = Reader::default();
     let mut end = 0;
     for (index, (line, statement)) in statements.iter().enumerate() {
-        let is_last = cut.is_none() && index + 1 == statements.len();
+        let is_last = unfinished_line.is_none() && index + 1 == statements.len();
         reader.statement(*line, statement, is_last).map_err(|fault| (*line, fault))?;
         end = *line;
     }
-    let whole = (reader.finished || reader.path_ended) && cut.is_none();
-    if whole || reader.tape.stops.is_empty() && cut.is_none() {
+    let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
+    if whole || reader.tape.locations.is_empty() && unfinished_line.is_none() {
         Ok(reader.tape)
     } else {
-        Err((cut.unwrap_or(end), ProgramFault::Unfinished))
+        Err((unfinished_line.unwrap_or(end), ProgramFault::Unfinished))
     }
 }
 
@@ -69,7 +69,7 @@ struct Reader {
     axis: Option<[f64; 3]>,
     rapid: bool,
     /// Set once there was a `GOTO`.
-    went: bool,
+    has_moved: bool,
     /// Statements about the tool, by word: the line and the arguments.
     tools: BTreeMap<String, (usize, Vec<String>)>,
     path_ended: bool,
@@ -89,14 +89,14 @@ impl Reader {
                 end: if self.finished { "FINI" } else { "END-OF-PATH" },
             });
         }
-        let cut = |fault| if is_last { ProgramFault::Unfinished } else { fault };
+        let as_unfinished = |fault| if is_last { ProgramFault::Unfinished } else { fault };
         match word.as_str() {
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
-                self.went = true;
-                self.position(line, "GOTO", rest, rapid).map_err(cut)?;
+                self.has_moved = true;
+                self.position(line, "GOTO", rest, rapid).map_err(as_unfinished)?;
             }
-            "FROM" => self.position(line, "FROM", rest, true).map_err(cut)?,
+            "FROM" => self.position(line, "FROM", rest, true).map_err(as_unfinished)?,
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
@@ -135,7 +135,7 @@ impl Reader {
         };
         let pose = axis_pose(tip, axis)?;
         self.axis = Some(axis);
-        self.tape.stops.push(CutterLocation { line, pose, rapid });
+        self.tape.locations.push(CutterLocation { line, pose, rapid });
         Ok(())
     }
 
@@ -144,24 +144,24 @@ impl Reader {
             "" | "ON" => {}
             "OFF" => self.axis = None,
             _ => {
-                return Err(ProgramFault::Multax { argument: bare(argument) });
+                return Err(ProgramFault::Multax { argument: unquoted(argument) });
             }
         }
         Ok(())
     }
 
     fn units(&mut self, line: usize, word: &str) -> Result<(), ProgramFault> {
-        let to = match word.to_ascii_uppercase().as_str() {
+        let unit = match word.to_ascii_uppercase().as_str() {
             "MM" | "MMS" => Unit::Millimetre,
             "IN" | "INCH" | "INCHES" => Unit::Inch,
-            _ => return Err(ProgramFault::UnknownUnit { unit: bare(word) }),
+            _ => return Err(ProgramFault::UnknownUnit { unit: unquoted(word) }),
         };
         match self.tape.unit {
-            Some((from, _)) if from != to => Err(ProgramFault::UnitChanges { from, to }),
+            Some((from, _)) if from != unit => Err(ProgramFault::UnitChanges { from, to: unit }),
             Some(_) => Ok(()),
-            None if !self.tape.stops.is_empty() => Err(ProgramFault::UnitLate),
+            None if !self.tape.locations.is_empty() => Err(ProgramFault::UnitLate),
             None => {
-                self.tape.unit = Some((to, line));
+                self.tape.unit = Some((unit, line));
                 Ok(())
             }
         }
@@ -180,20 +180,22 @@ impl Reader {
             Some((first, known)) if *known != arguments || word == "LOADTL" => {
                 return Err(ProgramFault::SecondTool { first: *first });
             }
-            None if self.went => return Err(ProgramFault::LateTool { word: word.to_owned() }),
+            None if self.has_moved => return Err(ProgramFault::LateTool { word: word.to_owned() }),
             _ => {}
         }
         match (word, &arguments[..]) {
-            ("CUTTER", all) => self.cutter(line, all)?,
+            ("CUTTER", arguments) => self.cutter(line, arguments)?,
             // NX writes a mill as diameter, corner, height, and the angles of side and end.
-            ("TLDATA", [kind, diameter, corner, more @ ..]) if kind == "MILL" => {
+            ("TLDATA", [kind, diameter, corner, rest_arguments @ ..]) if kind == "MILL" => {
                 let values = [diameter, corner].map(String::as_str).map(number);
                 let [diameter, corner] = [values[0].clone()?, values[1].clone()?];
-                let angle = |at: usize| more.get(at).map_or(Ok(0.0), |angle| number(angle));
+                let angle =
+                    |at: usize| rest_arguments.get(at).map_or(Ok(0.0), |angle| number(angle));
                 let (side, end) = (angle(1)?, angle(2)?);
-                let place = [0.5 * diameter - corner, corner];
-                let all = vec![diameter, corner, place[0], place[1], end, side];
-                self.tape.cutters.push((line, all));
+                let corner_centre = [0.5 * diameter - corner, corner];
+                let arguments =
+                    vec![diameter, corner, corner_centre[0], corner_centre[1], end, side];
+                self.tape.cutters.push((line, arguments));
             }
             _ => {}
         }
@@ -222,7 +224,7 @@ impl Reader {
         word: &str,
         rest: &str,
     ) -> Result<(), ProgramFault> {
-        match pass_over(word, rest) {
+        match skip_statement(word, rest) {
             Ok(word) => {
                 self.tape.ignored.push((line, word));
                 Ok(())
@@ -238,7 +240,7 @@ impl Reader {
 }
 
 /// Returns the text as [`shown`] quotes it, without the quotes; empty for empty text.
-fn bare(text: &str) -> String {
+fn unquoted(text: &str) -> String {
     if text.is_empty() { String::new() } else { shown(text).trim_matches('`').to_owned() }
 }
 

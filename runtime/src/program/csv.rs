@@ -25,7 +25,7 @@ pub(super) const END: &str = "# end of program";
 /// Reads the positions of a table.
 pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
     check_end(text)?;
-    let mut stops = Vec::new();
+    let mut locations = Vec::new();
     let mut columns = None;
     for (line, raw) in lines(text) {
         let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
@@ -36,11 +36,11 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
         let names = columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
         if !names {
             let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
-            stops.push(CutterLocation { line, pose, rapid: false });
+            locations.push(CutterLocation { line, pose, rapid: false });
         }
         columns = Some(cells.len());
     }
-    Ok(stops)
+    Ok(locations)
 }
 
 /// Refuses a table that announces an end mark and does not end with it.
@@ -85,18 +85,19 @@ fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, Progr
         Some(_) => "7 (x,y,z,qx,qy,qz,qw)",
         None => "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)",
     };
-    let wrong = || ProgramFault::Columns { found, expected, remedy: columns_remedy(row, found) };
+    let columns_error =
+        || ProgramFault::Columns { found, expected, remedy: columns_remedy(row, found) };
     if columns.is_some_and(|columns| columns != found) {
-        return Err(wrong());
+        return Err(columns_error());
     }
     if !matches!(found, 6 | 7) {
-        return Err(wrong());
+        return Err(columns_error());
     }
     let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, ProgramFault>>();
     match values.map_err(|fault| with_separators(fault, row))?[..] {
         [x, y, z, i, j, k] => axis_pose([x, y, z], [i, j, k]),
         [x, y, z, qx, qy, qz, qw] => quaternion_pose([x, y, z], [qx, qy, qz, qw]),
-        _ => Err(wrong()),
+        _ => Err(columns_error()),
     }
 }
 
@@ -145,7 +146,7 @@ mod tests {
     use nalgebra::{Point3, Vector3};
     use std::path::Path;
 
-    fn stops(text: &str) -> Vec<CutterLocation> {
+    fn locations(text: &str) -> Vec<CutterLocation> {
         Program::parse(text, "part.csv").expect("it is a table").locations
     }
 
@@ -157,9 +158,9 @@ mod tests {
         let mut whole = Vec::new();
         made.expect("poses").write_csv(&mut whole).expect("memory");
         let whole = String::from_utf8(whole).expect("UTF-8");
-        assert_eq!(stops(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [3, 4, 5]);
+        assert_eq!(locations(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [3, 4, 5]);
         let last = whole.trim_end().len();
-        assert_eq!(stops(&whole[..last]).len(), 3);
+        assert_eq!(locations(&whole[..last]).len(), 3);
         for end in 0..last {
             assert!(Program::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
         }
@@ -172,7 +173,7 @@ mod tests {
             .replace('\n', ",,,,,\r\n")
             .replace("k,,,,,", "k")
             .replace("25,0,0,1,,,,,", "25,0,0,1");
-        assert_eq!(stops(&sheet).len(), 3, "{sheet}");
+        assert_eq!(locations(&sheet).len(), 3, "{sheet}");
         let after = format!("{whole}4,5,6,0,0,1\n");
         assert!(Program::parse(after, "part.csv").is_err());
     }
@@ -217,25 +218,26 @@ mod tests {
     fn skips_comments_names_and_marks() {
         let text = "\u{feff}# made by hand\r\n\r\n X , y,Z, i,j,\"k\"\r\n\
                     \t1 , -2,+3.5,0,.6,8e-1 # tip\r\n4,5,6,0,0,-1";
-        let stops = stops(text);
-        assert_eq!(stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [4, 5]);
-        assert_eq!(stops[0].pose.tip(), Point3::new(1.0, -2.0, 3.5));
-        assert!((stops[0].pose.axis() - Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-15);
-        assert_eq!(stops[1].pose.axis(), Vector3::new(0.0, 0.0, -1.0));
+        let locations = locations(text);
+        assert_eq!(locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [4, 5]);
+        assert_eq!(locations[0].pose.tip(), Point3::new(1.0, -2.0, 3.5));
+        assert!((locations[0].pose.axis() - Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-15);
+        assert_eq!(locations[1].pose.axis(), Vector3::new(0.0, 0.0, -1.0));
     }
 
     #[test]
     fn counts_lone_carriage_returns_as_lines() {
-        let stops = stops("# old\r1,2,3,0,0,1\r4,5,6,0,0,1\r");
-        assert_eq!(stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3]);
+        let locations = locations("# old\r1,2,3,0,0,1\r4,5,6,0,0,1\r");
+        assert_eq!(locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3]);
     }
 
     #[test]
     fn reads_quaternions() {
         let half = 0.5f64.sqrt();
-        let stops = stops(&format!("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,{half},0,0,{half}\n"));
-        assert_eq!(stops[0].pose.axis(), Vector3::z());
-        assert!((stops[1].pose.axis() - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-15);
+        let locations =
+            locations(&format!("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,{half},0,0,{half}\n"));
+        assert_eq!(locations[0].pose.axis(), Vector3::z());
+        assert!((locations[1].pose.axis() - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-15);
     }
 
     #[test]

@@ -68,15 +68,15 @@ impl Program {
         unit: Option<Unit>,
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<Program, ProgramError> {
-        let stop = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
-        let stops: Vec<CutterLocation> = (1..).zip(poses).map(stop).collect();
+        let location = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
+        let locations: Vec<CutterLocation> = (1..).zip(poses).map(location).collect();
         let file = name.to_owned();
-        if stops.is_empty() {
+        if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
         Ok(Program {
             unit,
-            locations: stops,
+            locations,
             ignored: Vec::new(),
             file,
             unit_line: None,
@@ -104,11 +104,11 @@ impl Program {
         let file = name.to_owned();
         match assemble(content.as_ref()) {
             Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
-            Ok(tape) if tape.stops.is_empty() => Err(ProgramError::NoPosition { file }),
+            Ok(tape) if tape.locations.is_empty() => Err(ProgramError::NoPosition { file }),
             Ok(tape) => Ok(Program {
                 unit: tape.unit.map(|(unit, _)| unit),
                 unit_line: tape.unit.map(|(_, line)| line),
-                locations: tape.stops,
+                locations: tape.locations,
                 ignored: tape.ignored,
                 cutters: tape.cutters,
                 file,
@@ -139,10 +139,10 @@ impl Program {
     /// # Errors
     /// If the tool is such a solid, and a pose has no spin.
     pub fn check_poses(&self, info: &ToolInfo) -> Result<(), ProgramError> {
-        match (info.symmetry, self.locations.iter().find(|stop| !stop.pose.has_spin())) {
-            (Symmetry::Solid { .. }, Some(stop)) => Err(ProgramError::NoSpin {
+        match (info.symmetry, self.locations.iter().find(|location| !location.pose.has_spin())) {
+            (Symmetry::Solid { .. }, Some(location)) => Err(ProgramError::NoSpin {
                 file: self.file.clone(),
-                line: stop.line,
+                line: location.line,
                 solid: info.name.to_string(),
             }),
             _ => Ok(()),
@@ -169,7 +169,7 @@ type Located = (usize, ProgramFault);
 /// The data read from a file of either format.
 #[derive(Default)]
 struct Tape {
-    stops: Vec<CutterLocation>,
+    locations: Vec<CutterLocation>,
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
     cutters: Vec<(usize, Vec<f64>)>,
@@ -182,8 +182,8 @@ fn assemble(bytes: &[u8]) -> Result<Tape, Located> {
         return Ok(Tape::default());
     };
     if begins_table(first) {
-        let stops = csv::read(text)?;
-        Ok(Tape { stops, ..Tape::default() })
+        let locations = csv::read(text)?;
+        Ok(Tape { locations, ..Tape::default() })
     } else if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
         apt::read(text)
     } else {
@@ -193,23 +193,23 @@ fn assemble(bytes: &[u8]) -> Result<Tape, Located> {
 
 /// Returns the text without its byte-order mark. A NUL is refused, since it reveals UTF-16 without a mark.
 fn decode(bytes: &[u8]) -> Result<&str, Located> {
-    let bad = match std::str::from_utf8(bytes) {
+    let invalid_byte = match std::str::from_utf8(bytes) {
         Ok(text) => match text.find('\0') {
-            None => return plain(text.strip_prefix('\u{feff}').unwrap_or(text)),
+            None => return check_characters(text.strip_prefix('\u{feff}').unwrap_or(text)),
             Some(byte) => byte,
         },
         Err(error) => error.valid_up_to(),
     };
-    let line = lines(&String::from_utf8_lossy(&bytes[..bad])).count();
-    Err((line, ProgramFault::NotText { byte: bad }))
+    let line = lines(&String::from_utf8_lossy(&bytes[..invalid_byte])).count();
+    Err((line, ProgramFault::NotText { byte: invalid_byte }))
 }
 
 /// Returns the text, if no character in it hides a line from a reader or shows a line that is none.
-fn plain(text: &str) -> Result<&str, Located> {
-    let hidden = |c: char| {
+fn check_characters(text: &str) -> Result<&str, Located> {
+    let is_hidden = |c: char| {
         c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
     };
-    match text.find(hidden) {
+    match text.find(is_hidden) {
         None => Ok(text),
         Some(byte) => {
             let line = lines(&text[..byte]).count();
@@ -264,13 +264,13 @@ fn axis_pose(tip: [f64; 3], axis: [f64; 3]) -> Result<Pose, ProgramFault> {
 
 /// Quotes text of the file for a message: short, in one line, without characters that a terminal would obey.
 fn shown(text: &str) -> String {
-    const LONGEST: usize = 40;
+    const MAX_CHARACTERS: usize = 40;
     if text.is_empty() {
         return "an empty cell".to_owned();
     }
     let mut quoted = String::from("`");
-    quoted.extend(text.chars().take(LONGEST).flat_map(char::escape_debug));
-    if text.chars().nth(LONGEST).is_some() {
+    quoted.extend(text.chars().take(MAX_CHARACTERS).flat_map(char::escape_debug));
+    if text.chars().nth(MAX_CHARACTERS).is_some() {
         quoted.push('…');
     }
     quoted.push('`');

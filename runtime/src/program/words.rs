@@ -6,16 +6,16 @@
 use super::{ProgramFault, number};
 
 /// Words whose line is prose to its end: neither `$` nor `;` has a meaning in it.
-const PROSE: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
+const PROSE_WORDS: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
 
 /// Words that write text to the control verbatim, to the end of the line. The text may contain any motion.
-const VERBATIM: [&str; 2] = ["INSERT", "LETTER"];
+const VERBATIM_WORDS: [&str; 2] = ["INSERT", "LETTER"];
 
 /// Words that can neither move the tool nor change the meaning of positions: names and messages, tolerances
 /// that were used in computing the positions, speeds and feeds, coolant, stops and waits, the block numbers and
 /// the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
-const INERT: [&str; 35] = [
+const IGNORED_WORDS: [&str; 35] = [
     "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
     "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
     "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
@@ -25,7 +25,7 @@ const INERT: [&str; 35] = [
 
 /// Words that move the tool, or decide whether and how often it moves.
 #[rustfmt::skip]
-const MOVES: [&str; 49] = [
+const MOTION_WORDS: [&str; 49] = [
     "GODLTA", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "GOHOME", "GOCLER",
     "GOABS", "INDIRP", "INDIRV", "LINEAR", "MOVE", "MOVETO", "ARC", "CIRC", "ARCDAT", "DRILL",
     "TLON", "TLLFT", "TLRGT", "CIRCLE", "MOVARC", "HELIX", "NURBS", "SPLINE", "THREAD", "TAP",
@@ -36,20 +36,20 @@ const MOVES: [&str; 49] = [
 /// Words that change the meaning of positions: their frame, the point of the tool that they refer to, absolute
 /// or incremental mode, or the tool and the spindle in use.
 #[rustfmt::skip]
-const FRAMES: [&str; 21] = [
+const FRAME_WORDS: [&str; 21] = [
     "MSYS", "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
     "PLANE", "SCALE", "MIRROR", "CUTCOM", "OFSTNO", "FIXOFF", "THICK", "OFFSET", "MODE", "HEAD",
     "TURRET",
 ];
 
 /// Words of motions that are read. No argument may be one of them, or a motion that begins with `GO`.
-const MOTIONS: [&str; 3] = ["GOTO", "FROM", "RAPID"];
+const POSITION_WORDS: [&str; 3] = ["GOTO", "FROM", "RAPID"];
 
 /// Returns whether a line is prose to its end.
 pub(super) fn is_prose(line: &str) -> bool {
-    PROSE
+    PROSE_WORDS
         .iter()
-        .chain(&VERBATIM)
+        .chain(&VERBATIM_WORDS)
         .any(|prose| line.get(..prose.len()).is_some_and(|word| word.eq_ignore_ascii_case(prose)))
 }
 
@@ -59,17 +59,17 @@ pub(super) fn is_prose(line: &str) -> bool {
 /// # Errors
 /// If the word moves the tool, changes the meaning of positions, or is not known to do neither; if its
 /// arguments contain another statement.
-pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, ProgramFault> {
+pub(super) fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     // Prose need not have a `/`.
-    if let Some(prose) = PROSE.iter().find(|prose| word.starts_with(**prose)) {
+    if let Some(prose) = PROSE_WORDS.iter().find(|prose| word.starts_with(**prose)) {
         return Ok((*prose).to_owned());
     }
-    if let Some(verbatim) = VERBATIM.iter().find(|verbatim| word.starts_with(**verbatim)) {
+    if let Some(verbatim) = VERBATIM_WORDS.iter().find(|verbatim| word.starts_with(**verbatim)) {
         return Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() });
     }
-    if INERT.contains(&word) || is_inert_with(word, arguments) {
+    if IGNORED_WORDS.contains(&word) || is_inert_with(word, arguments) {
         refuse_motions(word, arguments)?;
-        let moves = |part: &str| MOVES.contains(&part) || FRAMES.contains(&part);
+        let moves = |part: &str| MOTION_WORDS.contains(&part) || FRAME_WORDS.contains(&part);
         return match parts(&arguments.to_ascii_uppercase()).any(moves) {
             true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
             false => Ok(word.to_owned()),
@@ -82,10 +82,10 @@ pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, ProgramFa
     let known = |list: &[&str]| {
         word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
     };
-    if let Some(word) = known(&FRAMES) {
+    if let Some(word) = known(&FRAME_WORDS) {
         return Err(ProgramFault::Frame { word });
     }
-    match known(&MOVES) {
+    match known(&MOTION_WORDS) {
         Some(word) => Err(ProgramFault::Moves { word }),
         None => Err(ProgramFault::UnknownWord { word: super::shown(word) }),
     }
@@ -102,8 +102,9 @@ fn parts(arguments: &str) -> impl Iterator<Item = &str> {
 /// If there is a motion.
 pub(super) fn refuse_motions(word: &str, arguments: &str) -> Result<(), ProgramFault> {
     let upper = arguments.to_ascii_uppercase();
-    let moves =
-        |part: &str| MOTIONS.contains(&part) || part.starts_with("GO") && MOVES.contains(&part);
+    let moves = |part: &str| {
+        POSITION_WORDS.contains(&part) || part.starts_with("GO") && MOTION_WORDS.contains(&part)
+    };
     match upper.contains('/') || parts(&upper).any(moves) {
         true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
         false => Ok(()),

@@ -58,38 +58,42 @@ impl Cutter {
     /// this order. Above the first surface that does not cut it may have any shape. A tool without a profile
     /// has no cutter.
     pub fn of(info: &ToolInfo, unit: Unit) -> Option<Cutter> {
-        let cutting = |piece: &&ProfileSegment| info.surface(piece.surface).cutting;
-        let mut pieces = info.outline.iter().take_while(cutting).peekable();
-        let (mut at, mut corner) = ([0.0; 2], 0.0);
-        pieces.peek().filter(|piece| piece.from == at)?;
-        if let Some(face) = pieces.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
-            at = face.to;
+        let cutting = |segment: &&ProfileSegment| info.surface(segment.surface).cutting;
+        let mut segments = info.outline.iter().take_while(cutting).peekable();
+        let (mut corner_end, mut corner) = ([0.0; 2], 0.0);
+        segments.peek().filter(|segment| segment.from == corner_end)?;
+        if let Some(face) = segments.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
+            corner_end = face.to;
         }
-        if let Some(piece) = pieces.next_if(|piece| piece.circle.is_some()) {
-            let circle = piece.circle?;
+        if let Some(segment) = segments.next_if(|segment| segment.circle.is_some()) {
+            let circle = segment.circle?;
             let round = circle.convex
-                && near(circle.centre, [at[0], at[1] + circle.radius])
-                && near(piece.to, [at[0] + circle.radius, at[1] + circle.radius]);
-            (at, corner) = round.then_some((piece.to, circle.radius))?;
+                && points_agree(circle.centre, [corner_end[0], corner_end[1] + circle.radius])
+                && points_agree(
+                    segment.to,
+                    [corner_end[0] + circle.radius, corner_end[1] + circle.radius],
+                );
+            (corner_end, corner) = round.then_some((segment.to, circle.radius))?;
         }
-        let straight = pieces.all(|piece| piece.circle.is_none() && near_by(piece.to[0], at[0]));
+        let straight = segments
+            .all(|segment| segment.circle.is_none() && agrees(segment.to[0], corner_end[0]));
         let length = info.unit.factor_to(unit);
-        let is_one = straight && at[0] > 0.0;
-        is_one.then_some(Cutter { diameter: 2.0 * at[0] * length, corner: corner * length })
+        let is_one = straight && corner_end[0] > 0.0;
+        is_one.then_some(Cutter { diameter: 2.0 * corner_end[0] * length, corner: corner * length })
     }
 }
 
-fn near(one: [f64; 2], other: [f64; 2]) -> bool {
-    near_by(one[0], other[0]) && near_by(one[1], other[1])
+fn points_agree(one: [f64; 2], other: [f64; 2]) -> bool {
+    agrees(one[0], other[0]) && agrees(one[1], other[1])
 }
 
 /// Returns whether two lengths of a profile differ by no more than the rounding of its constants.
-fn near_by(one: f64, other: f64) -> bool {
+fn agrees(one: f64, other: f64) -> bool {
     (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
 }
 
 /// Columns of a line, as on a punched card. A longer statement is continued on the next line.
-const COLUMNS: usize = 72;
+const MAX_COLUMNS: usize = 72;
 
 /// Returns APT-CL's word for a unit.
 ///
@@ -113,27 +117,27 @@ impl Program {
     pub fn write_apt(
         &self,
         out: &mut impl Write,
-        heading: &AptHeader<'_>,
+        header: &AptHeader<'_>,
     ) -> Result<(), WriteError> {
         let unit = self.unit.map(apt_unit).transpose()?;
-        if heading.part.contains(char::is_control) {
-            return Err(WriteError::Part { name: heading.part.to_owned() });
+        if header.part.contains(char::is_control) {
+            return Err(WriteError::Part { name: header.part.to_owned() });
         }
-        if !heading.part.is_empty() {
-            writeln!(out, "PARTNO/{}", heading.part)?;
+        if !header.part.is_empty() {
+            writeln!(out, "PARTNO/{}", header.part)?;
         }
         if let Some(unit) = unit {
             writeln!(out, "UNITS/{unit}")?;
         }
         writeln!(out, "MULTAX/ON")?;
-        if let Some(Cutter { diameter, corner }) = heading.cutter {
+        if let Some(Cutter { diameter, corner }) = header.cutter {
             writeln!(out, "CUTTER/{diameter},{corner}")?;
         }
-        for stop in &self.locations {
-            if stop.rapid {
+        for location in &self.locations {
+            if location.rapid {
                 writeln!(out, "RAPID")?;
             }
-            writeln!(out, "{}", statement(&stop.pose))?;
+            writeln!(out, "{}", statement(&location.pose))?;
         }
         writeln!(out, "FINI")?;
         Ok(())
@@ -148,12 +152,12 @@ impl Program {
     /// If `out` fails.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{HEAD}")?;
-        let full = self.locations.iter().all(|stop| stop.pose.has_spin());
-        writeln!(out, "{}", if full { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" })?;
-        for stop in &self.locations {
-            let TipAxis(tip, axis) = TipAxis::of(&stop.pose);
-            if full {
-                let turn = stop.pose.to_isometry().rotation.coords;
+        let has_spin = self.locations.iter().all(|location| location.pose.has_spin());
+        writeln!(out, "{}", if has_spin { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" })?;
+        for location in &self.locations {
+            let TipAxis(tip, axis) = TipAxis::of(&location.pose);
+            if has_spin {
+                let turn = location.pose.to_isometry().rotation.coords;
                 writeln!(out, "{},{}", Listed(&tip), Listed(&[turn.x, turn.y, turn.z, turn.w]))?;
             } else {
                 writeln!(out, "{},{}", Listed(&tip), Listed(&axis))?;
@@ -170,7 +174,7 @@ fn statement(pose: &Pose) -> String {
     let mut columns = statement.len();
     for (k, number) in tip.iter().chain(&axis).enumerate() {
         let number = format!("{number}{}", if k < 5 { "," } else { "" });
-        if columns + number.len() >= COLUMNS {
+        if columns + number.len() >= MAX_COLUMNS {
             statement.push_str("$\n");
             columns = 0;
         }

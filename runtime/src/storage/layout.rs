@@ -21,7 +21,7 @@ pub(super) const ALIGN: usize = 64;
 /// Bytes per chunk of a checksum; a multiple of [`ALIGN`]. Changing it changes the checksums.
 const CHUNK: usize = 1 << 20;
 /// The position of the header's own checksum.
-const OWN: std::ops::Range<usize> = 16..20;
+const CHECKSUM_RANGE: std::ops::Range<usize> = 16..20;
 
 /// The beginning of a file. The fields up to `file` are the same in every version.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -264,15 +264,15 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
 /// Writes a header's checksum into it.
 pub(super) fn seal(header: &mut [u8]) {
     let sum = header_checksum(header);
-    header[OWN].copy_from_slice(&sum.to_le_bytes());
+    header[CHECKSUM_RANGE].copy_from_slice(&sum.to_le_bytes());
 }
 
 /// Returns a header's checksum, computed as if the checksum field were 0.
 pub(super) fn header_checksum(header: &[u8]) -> u32 {
     let mut sum = crc32fast::Hasher::new();
-    sum.update(&header[..OWN.start]);
-    sum.update(&[0; OWN.end - OWN.start]);
-    sum.update(&header[OWN.end..]);
+    sum.update(&header[..CHECKSUM_RANGE.start]);
+    sum.update(&[0; CHECKSUM_RANGE.end - CHECKSUM_RANGE.start]);
+    sum.update(&header[CHECKSUM_RANGE.end..]);
     sum.finalize()
 }
 

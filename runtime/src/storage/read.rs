@@ -1,7 +1,7 @@
 //! Reading a saved part.
 
 use super::SavedError;
-use super::foreign::{BEGINNING, seems};
+use super::foreign::{PREFIX_LENGTH, describe};
 use super::layout::{
     ALIGN, FileHeader, List, MAGIC, SectionHeader, Start, Surveyed, VERSION, checksums,
     header_checksum, lists, unit,
@@ -94,11 +94,11 @@ impl FileContext<'_> {
         let has = self.length;
         let truncated = |needs| Err(SavedError::Truncated { file: file(), has, needs });
         let mut bytes = Vec::new();
-        let beginning = source.by_ref().take(BEGINNING as u64).read_to_end(&mut bytes);
+        let beginning = source.by_ref().take(PREFIX_LENGTH as u64).read_to_end(&mut bytes);
         beginning.map_err(|source| self.unreadable(source))?;
         let known = bytes.len().min(MAGIC.len());
         if bytes.is_empty() || bytes[..known] != MAGIC[..known] {
-            return Err(SavedError::UnknownFormat { file: file(), seems: seems(&bytes, has) });
+            return Err(SavedError::UnknownFormat { file: file(), seems: describe(&bytes, has) });
         }
         let Some(start) = bytes.get(..size_of::<Start>()) else {
             return truncated(size_of::<Start>() as u64);

@@ -85,8 +85,8 @@ pub trait Tool: Send + Sync {
     );
 
     /// Returns the derivatives of the evaluation at a point inside, by the formulas of the region that owns the point,
-    /// also on borders between regions. `room` is scratch memory, kept between calls.
-    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives;
+    /// also on borders between regions. `scratch` is scratch memory, kept between calls.
+    fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives;
 
     /// Returns an enclosure of the evaluation over a box of the tool's frame, or `None`.
     ///
@@ -218,11 +218,11 @@ impl PointBatch {
 
     /// Appends a point.
     pub fn push(&mut self, point: [f64; 3]) {
-        self.room(1);
+        self.make_room(1);
         for (list, part) in self.next(0, 1).into_iter().zip(point) {
             list[0] = part;
         }
-        self.took(1);
+        self.advance(1);
     }
 
     /// Reserves memory for `count` points in all, without touching it.
@@ -232,7 +232,7 @@ impl PointBatch {
     }
 
     /// Makes room for `more` further points.
-    pub(crate) fn room(&mut self, more: usize) {
+    pub(crate) fn make_room(&mut self, more: usize) {
         let wanted = (self.count + more).next_multiple_of(LANES);
         if self.lists[0].len() < wanted {
             self.lists.iter_mut().for_each(|list| list.resize(wanted, 0.0));
@@ -250,7 +250,7 @@ impl PointBatch {
 
     /// Records that `count` of the slots from [`PointBatch::next`] were written.
     #[inline(always)]
-    pub(crate) fn took(&mut self, count: usize) {
+    pub(crate) fn advance(&mut self, count: usize) {
         self.count += count;
     }
 
