@@ -112,7 +112,7 @@ impl Part {
         taken
     }
 
-    /// Moves points and rotates their unit normals, as `map_point` returns for a point and its normal. The tree
+    /// Moves points and rotates their unit normals, as `to` returns for a point and its normal. The tree
     /// is not rebuilt, so queries get slower as neighbours move apart. Weights are unchanged.
     ///
     /// The covering radius grows by twice the largest displacement of a point. This is a bound if no
@@ -123,13 +123,13 @@ impl Part {
     /// Fails for an invalid position or normal; no point has moved then.
     pub fn displace(
         &mut self,
-        mut map_point: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
+        mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
     ) -> Result<(), CloudError> {
         let mut moved = Vec::new();
         for tree in &self.levels {
             let mut moved_points = Vec::new();
             for (index, point, normal) in tree.all() {
-                let (new_point, new_normal) = map_point(point, normal);
+                let (new_point, new_normal) = to(point, normal);
                 if new_point != point || new_normal != normal {
                     check_position(index, &new_point)?;
                     moved_points.push((index, new_point, unit_normal(index, new_normal)?));

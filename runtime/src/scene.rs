@@ -123,8 +123,8 @@ impl<'a> Scene<'a> {
     }
 
     /// Moves a part as a whole; its tree is unchanged.
-    pub fn move_part(&mut self, part: PartId, part_pose: Pose) {
-        self.parts[part.0].1 = part_pose;
+    pub fn move_part(&mut self, part: PartId, place: Pose) {
+        self.parts[part.0].1 = place;
     }
 
     /// Moves a tool.

@@ -17,8 +17,8 @@ pub struct DeviceWrench {
 impl DeviceWrench {
     /// Returns the wrench multiplied by a factor.
     #[must_use]
-    pub fn scaled(&self, factor: f64) -> DeviceWrench {
-        DeviceWrench { force: self.force * factor, torque: self.torque * factor }
+    pub fn scaled(&self, by: f64) -> DeviceWrench {
+        DeviceWrench { force: self.force * by, torque: self.torque * by }
     }
 
     /// Returns the sum of two wrenches.

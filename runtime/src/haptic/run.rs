@@ -23,10 +23,10 @@ pub struct MonotonicClock {
 }
 
 impl MonotonicClock {
-    /// Creates a clock that spins for `spin_time` before each deadline. Choose the time that the system
+    /// Creates a clock that spins for `awake` before each deadline. Choose the time that the system
     /// takes to wake a thread.
-    pub fn new(spin_time: Duration) -> MonotonicClock {
-        MonotonicClock { start: Instant::now(), spin_time }
+    pub fn new(awake: Duration) -> MonotonicClock {
+        MonotonicClock { start: Instant::now(), spin_time: awake }
     }
 }
 
@@ -152,10 +152,10 @@ impl StateStream {
     }
 }
 
-/// Creates both ends of a state channel, with a buffer for `capacity` states in the stream.
-pub fn state_channel(capacity: usize) -> (StatePublisher, LatestState, StateStream) {
+/// Creates both ends of a state channel, with a buffer for `room` states in the stream.
+pub fn state_channel(room: usize) -> (StatePublisher, LatestState, StateStream) {
     let (latest, output) = triple_buffer::triple_buffer(&None);
-    let (record, consumer) = rtrb::RingBuffer::new(capacity);
+    let (record, consumer) = rtrb::RingBuffer::new(room);
     (StatePublisher { latest, record }, LatestState(output), StateStream(consumer))
 }
 

@@ -18,9 +18,9 @@ const VIRIDIS: [[u8; 3]; 11] = [
 
 /// Returns the sRGB colour of a value from 0 (dark violet) to 1 (yellow). Values beyond are clamped, and NaN
 /// counts as 0.
-pub fn colormap(value: f64) -> [u8; 3] {
-    let value = if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
-    let position = value * (VIRIDIS.len() - 1) as f64;
+pub fn colormap(part: f64) -> [u8; 3] {
+    let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
+    let position = part * (VIRIDIS.len() - 1) as f64;
     let index = (position as usize).min(VIRIDIS.len() - 2);
     let fraction = position - index as f64;
     [0, 1, 2].map(|k| {

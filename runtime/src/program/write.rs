@@ -117,20 +117,20 @@ impl Program {
     pub fn write_apt(
         &self,
         out: &mut impl Write,
-        header: &AptHeader<'_>,
+        heading: &AptHeader<'_>,
     ) -> Result<(), WriteError> {
         let unit = self.unit.map(apt_unit).transpose()?;
-        if header.part.contains(char::is_control) {
-            return Err(WriteError::Part { name: header.part.to_owned() });
+        if heading.part.contains(char::is_control) {
+            return Err(WriteError::Part { name: heading.part.to_owned() });
         }
-        if !header.part.is_empty() {
-            writeln!(out, "PARTNO/{}", header.part)?;
+        if !heading.part.is_empty() {
+            writeln!(out, "PARTNO/{}", heading.part)?;
         }
         if let Some(unit) = unit {
             writeln!(out, "UNITS/{unit}")?;
         }
         writeln!(out, "MULTAX/ON")?;
-        if let Some(Cutter { diameter, corner }) = header.cutter {
+        if let Some(Cutter { diameter, corner }) = heading.cutter {
             writeln!(out, "CUTTER/{diameter},{corner}")?;
         }
         for location in &self.locations {

@@ -85,8 +85,8 @@ pub trait Tool: Send + Sync {
     );
 
     /// Returns the derivatives of the evaluation at a point inside, by the formulas of the region that owns the point,
-    /// also on borders between regions. `scratch` is scratch memory, kept between calls.
-    fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives;
+    /// also on borders between regions. `room` is scratch memory, kept between calls.
+    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives;
 
     /// Returns an enclosure of the evaluation over a box of the tool's frame, or `None`.
     ///

@@ -415,7 +415,7 @@ impl DrawnPath {
         let steps = self.steps.max(1) as f64;
         let contact_points = self.contact_points - self.dropped;
         Ok(ToolPath {
-            contact_points: contact_points,
+            contact_points,
             left_out: self.point_count - contact_points,
             retracts: self.retracts,
             turns: self.squared_turns.map(|squared_turns| (squared_turns / steps).sqrt()),

@@ -98,13 +98,13 @@ impl<'a> PostureSweep<'a> {
         &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
     }
 
-    /// Processes the given batches on all cores, and passes each to `on_batch` as it is done, in no particular
-    /// order, until all are done or `on_batch` breaks. The content of a batch depends neither on the thread nor on
+    /// Processes the given batches on all cores, and passes each to `each` as it is done, in no particular
+    /// order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor on
     /// the time.
     pub fn run<B>(
         &self,
         batches: &[usize],
-        mut on_batch: impl FnMut(Batch) -> ControlFlow<B>,
+        mut each: impl FnMut(Batch) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -125,7 +125,7 @@ impl<'a> PostureSweep<'a> {
             }
             drop(done);
             while let Ok(batch) = batch.recv() {
-                let flow = on_batch(batch);
+                let flow = each(batch);
                 if flow.is_break() {
                     stop.store(true, Ordering::Relaxed);
                     return flow;
