@@ -10,7 +10,7 @@ use std::fmt;
 ///
 /// let depth = Interval::new(0.25, 0.75);
 /// assert!(depth.contains(0.5) && depth.width() == 0.5);
-/// assert_eq!(depth.scaled_by(25.4).high, 19.05);
+/// assert_eq!(depth.scaled_by(2.0).high, 1.5);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
