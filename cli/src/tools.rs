@@ -106,14 +106,16 @@ struct FileRow {
 /// Prints the text of a built-in tool, or writes it to a file with the files that it mounts below the same folder.
 fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     built_in(name)?;
-    let index = TOOLS.iter().position(|tool| tool.info().name == name).unwrap_or_default();
-    let [(_, text), mounted @ ..] = SOURCES[index] else { return Ok(()) };
+    let mut texts = TOOLS.iter().zip(SOURCES);
+    let files =
+        texts.find(|(tool, _)| tool.info().name == name).map_or(&[][..], |(_, files)| files);
+    let [(_, text), mounted @ ..] = files else { return Ok(()) };
     if let Some(output) = output {
         return write_tool(name, output, (text, mounted));
     }
     let mut out = Output::bytes();
     if json {
-        let files = SOURCES[index].iter().map(|(file, text)| FileRow { file, text }).collect();
+        let files = files.iter().map(|(file, text)| FileRow { file, text }).collect();
         serde_json::to_writer(&mut out, &TextRow { name, files })?;
         writeln!(out)?;
     } else {

@@ -158,7 +158,7 @@ fn poses() -> impl Strategy<Value = Vec<(Pose, bool)>> {
     )
 }
 
-/// How far reading moves an axis, in each coordinate: normalising errs by 3.5 u (2.5 u of the norm, u of the quotient), making the
+/// Bound on the change of an axis by reading, per coordinate: normalising errs by 3.5 u (2.5 u of the norm, u of the quotient), making the
 /// rotation orthonormal moves it by half of 6 u and rounds once. That is 7.5 u, and u is half of this ε.
 const READ: f64 = 4.0 * f64::EPSILON;
 

@@ -199,9 +199,9 @@ impl<'a> Certifier<'a> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
         }
-        let surfaces = &self.info.surfaces;
-        let Some(index) = surfaces.iter().position(|known| known.name == surface) else {
-            let known: Vec<String> = surfaces.iter().map(|s| format!("`{}`", s.name)).collect();
+        let Some(SurfaceId(index)) = self.info.surface_named(surface) else {
+            let surfaces = self.info.surfaces.iter();
+            let known: Vec<String> = surfaces.map(|s| format!("`{}`", s.name)).collect();
             return Err(AllowanceError::NoSurface {
                 tool: self.info.name.to_string(),
                 surface: surface.to_owned(),

@@ -1,4 +1,4 @@
-//! How points are sampled on a mesh.
+//! The number, the method and the seed of points that are sampled on a mesh.
 
 use crate::keywords::words;
 

@@ -138,7 +138,7 @@ pub enum StlError {
         file: String,
         /// The triangle's index, from 0.
         triangle: usize,
-        /// Where in the file the vertex stands.
+        /// The location of the vertex in the file.
         place: SourceLocation,
         /// The outlying coordinate and its statistics.
         stray: Outlier,

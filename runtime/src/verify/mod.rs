@@ -125,10 +125,8 @@ impl<'a> Verifier<'a> {
     ) -> Result<Verifier<'a>, VerifyError> {
         // Accept exactly what a certifier accepts.
         Certifier::new(self.bvh, self.tool)?.with_allowance(surface, allowed)?;
-        let surfaces = &self.tool.info().surfaces;
-        let index = surfaces.iter().position(|entry| entry.name == surface);
-        if let Some(entry) = index.and_then(|index| self.allowed.get_mut(index)) {
-            *entry = Some(allowed);
+        if let Some(SurfaceId(index)) = self.tool.info().surface_named(surface) {
+            self.allowed[index] = Some(allowed);
         }
         Ok(self)
     }
@@ -309,12 +307,11 @@ impl Mode<'_> {
         }
         let mut found = Vec::new();
         let mut inside = Vec::new();
-        for (surface, allowed) in self.limits.iter().copied().enumerate() {
+        for (index, allowed) in self.limits.iter().copied().enumerate() {
             if allowed == f64::INFINITY {
                 continue;
             }
-            let index = surface;
-            let surface = SurfaceId(surface);
+            let surface = SurfaceId(index);
             let depth = self.certifier.motion_depth(surface, motion, allowed, resolution);
             match depth.expect("a surface of the tool") {
                 MotionDepth::Within => (),
