@@ -9,119 +9,119 @@ kinds! {
 
     error T0501 ProfileAndMounts
         "profile beside mounts"
-        message "a tool has a profile or mounts"
-        help "drop one, or mount the profile as a file of its own"
-        explain "Mounted files are joined into one outline, which leaves no room for another.";
+        message "a tool has either a `profile` or mounts, not both"
+        help "remove one of them, or move the profile to a file of its own and mount it"
+        explain "The profiles of mounted files are joined into the tool's only profile.";
     error T0502 FrameOfMounts
-        "tip or spindle beside mounts"
-        message "mounts bring their own tip and spindle"
-        help "drop it: the tip is the first mount's, at z = 0"
-        explain "Mounts are placed along the axis from the first one's tip, each by its own tip and spindle.";
+        "`tip` or `spindle` beside mounts"
+        message "a tool with mounts cannot set `tip` or `spindle`"
+        help "remove it: the tip of the first mount is at z = 0"
+        explain "Each mounted file sets its own tip and spindle. Mounts are placed along the axis, from the tip of the first one.";
     error T0503 MountsAlike { name: String }
-        "two mounts of one name"
+        "two mounts with the same name"
         message "two mounts are called `{name}`"
-        help "give it another name"
-        explain "The surfaces of a part carry its name: `cutter.flute`.";
+        help "rename one of them"
+        explain "Surfaces of a mounted tool are named after the mount, as in `cutter.flute`.";
     error T0504 NothingMounted
-        "nothing mounted"
-        message "nothing is mounted"
+        "no mount"
+        message "this tool mounts no file"
         help "write `mount \"FILE.tool\" as NAME;`"
-        explain "A tool of mounts has at least one."
-        without "a tool without a mount is none of mounts";
+        explain "An assembly has at least one mount."
+        without "a tool without a mount is not compiled as an assembly";
     error T0505 PartCalledCutting
-        "part called `cutting`"
-        message "no part is called `cutting`"
-        help "give it another name"
-        explain "Laws mean all cutting surfaces by `cutting`.";
+        "mount called `cutting`"
+        message "a mount cannot be called `cutting`"
+        help "choose another name"
+        explain "In laws, `cutting` stands for all cutting surfaces.";
     error T0506 CuttingMount
         "mount marked `cutting`"
-        message "a mount is not `cutting`"
-        help "drop it: each surface of the mounted file says so for itself"
-        explain "A part has surfaces that cut and others that do not, as its file says.";
+        message "a mount cannot be marked `cutting`"
+        help "remove `cutting`: the mounted file marks its own surfaces"
+        explain "A mounted tool can have both cutting and non-cutting surfaces. Its file tells which are which.";
     error T0507 FirstMountPlaced
-        "first mount with a place"
-        message "the first mount keeps its place"
-        help "drop `at`: its tip is the tool's, at z = 0"
-        explain "The other mounts are placed from the first one's tip.";
+        "first mount with a position"
+        message "the first mount cannot have a position"
+        help "remove `at`: the tip of the first mount is at z = 0"
+        explain "The other mounts are placed from the tip of the first one.";
     error T0508 NoPlace { name: String }
-        "mount without a place"
-        message "where along the axis does `{name}` begin?"
-        help "write `at z = …`, from the first mount's tip"
-        explain "All mounts but the first say where along the axis their tip lies.";
+        "mount without a position"
+        message "mount `{name}` has no position along the axis"
+        help "write `at z = …`, measured from the tip of the first mount"
+        explain "Every mount except the first needs the z of its tip.";
     error T0509 TooManyMounts { most: usize }
         "too many mounted files"
         message "more than {most} mounted files"
-        help "write some of them as one file"
-        explain "Files that mounted files mount count too."
+        help "combine some of them in one file"
+        explain "Files that are mounted by mounted files count too."
         without "an example would have dozens of mounts";
     error T0510 NotTool { file: String }
-        "mounted file that is no tool"
+        "mounted file that is not a tool"
         message "`{file}` is not a `.tool` file"
-        help "a mounted file begins with `tool Name {{`"
-        explain "A file that begins otherwise is not read any further, and nothing of it is shown.";
+        help "mount a file that begins with `tool Name {{`"
+        explain "The compiler reads no more of a file that begins otherwise, and shows none of its text.";
     error T0511 NoFolder { file: String }
-        "mount in a text from no file"
-        message "where is `{file}`? this text is from no file"
-        help "a mounted file is looked for beside the file that mounts it"
-        explain "A text that a program hands to the compiler without a place has no folder to look in."
-        without "a text in a file has a folder";
+        "mount in a text without a file"
+        message "cannot find `{file}`: this text does not come from a file"
+        help "save the text as a file: paths of mounts are relative to it"
+        explain "Paths of mounted files are relative to the file that mounts them. A text that a program passes to the compiler without a path has no such folder."
+        without "the text of an example comes from a file";
     error T0512 OutsideRoot { file: String, root: Option<String> }
         "mounted file outside the tool's folder"
         message (root) {
-            Some(root) => "`{file}` does not lie below `{root}`",
-            None => "`{file}` does not lie below the tool's folder",
+            Some(root) => "`{file}` is outside the folder `{root}`",
+            None => "`{file}` is outside the tool's folder",
         }
-        help "move the file there; the program also takes a folder above both: `--root DIR`"
-        explain "A tool from elsewhere may read no file that does not belong to it.";
+        help "move it into that folder, or pass `--root DIR` with a folder that contains both"
+        explain "A tool may read only files below its folder, so that a tool from an unknown source cannot read others.";
     error T0513 Unreadable { file: String, error: String }
         "mounted file that cannot be read"
         message "cannot read `{file}`: {error}"
-        help "the path is relative to the file that mounts it"
-        explain "The file does not exist, may not be read, is too long, or is no UTF-8 text.";
+        help "check the path: it is relative to the file that mounts it"
+        explain "The file does not exist, may not be read, is too long, or is not UTF-8 text.";
     error T0514 MountsItself { file: String, chain: Chain }
         "file that mounts itself"
         message "`{file}` mounts itself: {chain}"
-        help "mount a file that does not lead back to this one"
-        explain "A file may mount files that mount others, but none of them the file itself.";
+        help "mount a file that does not mount this one, directly or through others"
+        explain "A mounted file may mount others, but none of the files through which it is mounted itself.";
     error T0515 SolidMounted { file: String }
         "mounted solid"
-        message "`{file}` is a solid without an axis and cannot be mounted"
-        help "only outlines can be joined: mount a `tool`"
-        explain "Mounts are joined along the axis of a solid of revolution.";
+        message "`{file}` is a `solid` and cannot be mounted"
+        help "mount a `tool` that has a `profile`"
+        explain "Mounts are joined along the axis of a solid of revolution. A `solid` has no axis.";
     error T0516 NoOutline { file: String, regions: bool }
         "mounted file without a profile"
         message (regions) {
             true => "`{file}` has regions but no profile and cannot be mounted",
             false => "`{file}` has no profile and cannot be mounted",
         }
-        help "only outlines can be joined: write it as a `profile`"
-        explain "The outlines of mounted files are joined into one, from which regions are derived.";
+        help "write the mounted tool as a `profile`"
+        explain "The profiles of mounted files are joined into one, from which regions are derived.";
     error T0517 NotAbove { name: String, z: FormattedNumber, below: String, height: FormattedNumber }
-        "mount not above the one before"
-        message "`{name}` at z = {z} does not lie above `{below}` at z = {height}"
-        help "mounts are listed from the tip up"
-        explain "Each mount continues the outline of those before it, from a plane across the axis on.";
+        "mount not above the previous one"
+        message "`{name}` at z = {z} is not above `{below}` at z = {height}"
+        help "list the mounts from the tip up, each at a larger z"
+        explain "Each mount continues the profile of the previous ones from a plane across the axis.";
     error T0518 TooShort { below: String, z: FormattedNumber, top: FormattedNumber, length: FormattedNumber, first: bool }
-        "part too short"
+        "mounted tool too short"
         message (first) {
-            true => "`{below}` is {length} long and cannot stick out {z}",
+            true => "`{below}` is only {length} long and cannot stick out {z}",
             false => "`{below}` ends at z = {top} and does not reach z = {z}",
         }
-        help "put it at z = {top} or below, or make `{below}` longer"
-        explain "A part reaches at least the plane on which the next one begins.";
+        help "mount at z = {top} or below, or make `{below}` longer"
+        explain "A mounted tool must reach the plane at which the next mount begins.";
     error T0519 PointAtPlane { below: String, z: FormattedNumber }
-        "part that is a point at the plane"
-        message "`{below}` comes to a point at z = {z}"
-        help "put the plane where there is something to hold"
-        explain "At the plane on which the next part begins, this one has no radius.";
+        "radius 0 at the mounting plane"
+        message "`{below}` has radius 0 at z = {z}, where the next mount begins"
+        help "mount at a z where `{below}` has a radius"
+        explain "A mounted tool needs a radius at the plane at which the next mount begins.";
     error T0520 PlaneCutsTwice { below: String, z: FormattedNumber }
-        "plane that cuts a part more than once"
+        "mounting plane that cuts a profile more than once"
         message "the plane z = {z} cuts `{below}` more than once"
-        help "put the plane where the profile crosses it once"
-        explain "Below the plane the lower part is kept, above it is dropped. A profile that comes back would be left in pieces.";
+        help "mount at a z where the profile crosses the plane once"
+        explain "The lower tool is kept below the plane and cut off above it. A profile that crosses the plane again would leave separate pieces.";
     error T0521 NoFace { file: String }
         "mounted file without a flat face"
         message "the first segment of `{file}` is not a flat face"
-        help "what is mounted on another part begins with a face across the axis"
-        explain "Two parts are joined at a plane across the axis, on which the upper one stands with a flat face.";
+        help "begin the mounted profile with a line perpendicular to the axis"
+        explain "Two mounted tools are joined at a plane across the axis, on which the upper one stands with a flat face.";
 }

@@ -9,143 +9,142 @@ kinds! {
 
     error T0101 TextTooLong { bytes: usize, most: usize }
         "text too long"
-        message "the text is {bytes} bytes long"
-        help "a tool's text has at most {most} bytes"
-        explain "A `.tool` file describes one tool. The limit keeps the compiler quick on files that are no tools."
+        message "the text is {bytes} bytes long; the limit is {most}"
+        help "shorten it to at most {most} bytes"
+        explain "A `.tool` file describes one tool. The limit makes the compiler reject other files quickly."
         without "an example would be a MiB long";
     error T0102 NameTooLong { letters: usize, most: usize }
         "name too long"
-        message "this name is {letters} letters long"
-        help "a name has at most {most}"
-        explain "Names appear in messages, drawings and generated code, where longer ones cannot be read.";
+        message "this name is {letters} letters long; the limit is {most}"
+        help "shorten it to at most {most} letters"
+        explain "Names appear in messages, drawings and generated code, where longer names are hard to read.";
     error T0103 TooManyItems { most: usize }
         "too many items"
-        message "more than {most} items"
-        help "a file describes one tool"
+        message "this file has more than {most} items"
+        help "split the tool into several files and join them with `mount`"
         explain "Items are the statements between the braces of a tool."
         without "an example would have thousands of items";
     error T0104 CommentNotClosed
         "comment not closed"
-        message "this comment does not end"
+        message "this comment is not closed"
         help "close it with `*/`"
-        explain "A comment that begins with `/*` ends with `*/`. Comments may be nested: each has its own end.";
+        explain "A comment that begins with `/*` must end with `*/`. Comments can be nested: each `/*` needs its own `*/`.";
     error T0105 CommentsTooDeep { most: usize }
         "comments nested too deep"
-        message "comments are nested more than {most} deep"
-        help "close them with `*/`"
-        explain "Mostly an earlier comment was not closed, so that all later ones are nested in it.";
+        message "comments are nested more than {most} levels deep"
+        help "close the earlier comments with `*/`"
+        explain "The usual cause is an earlier comment that was not closed: all later comments are then nested in it.";
     error T0106 BracketsTooDeep { most: usize }
         "brackets nested too deep"
-        message "brackets are nested more than {most} deep"
+        message "brackets are nested more than {most} levels deep"
         help "name a part of the expression with `let` or `curve`"
-        explain "The limit counts parentheses and braces alike. It keeps the compiler on a small stack.";
+        explain "The limit counts parentheses and braces together. It bounds the stack that the compiler needs.";
     error T0107 ExpressionTooTall { most: u32 }
-        "expression with too many steps"
-        message "this expression is built of too many steps upon each other"
-        help "at most {most}: name a part of it with `let` or `curve`"
-        explain "Steps are operations whose operands are results of other operations. A sum of many terms has one step per term.";
+        "expression nested too deep"
+        message "this expression nests more than {most} operations"
+        help "name a part of it with `let` or `curve`"
+        explain "Each operation on the result of another one adds a level. A sum of many terms has one level per term.";
     error T0108 ExpressionTooLong
         "sum or product too long"
-        message "this expression is too long"
+        message "this sum or product has too many operands"
         help "name a part of it with `let` or `curve`"
-        explain "One sum or product has at most 64 operands.";
+        explain "A sum or product has at most 64 operands.";
     error T0109 NumberOutOfRange
         "number out of range"
         message "this number is out of range"
-        help "numbers are 0, or between 1e-90 and 1e90 in size"
-        explain "Generated code computes in double precision. Within this range no square or product of two numbers overflows.";
+        help "write 0, or a number between 1e-90 and 1e90 in absolute value"
+        explain "Generated code computes in double precision. Within this range the product of two numbers never overflows.";
     error T0110 TakenName { word: String }
-        "tool's name taken"
-        message "the name `{word}` is taken"
-        help "the name becomes a Rust type: take another"
-        explain "A compiled tool is a Rust type of its name. Some names belong to Rust, or to the code that is generated beside it.";
+        "reserved name of a tool"
+        message "the tool's name `{word}` is reserved"
+        help "choose another name"
+        explain "A tool's name becomes a Rust type. Some names belong to Rust or to the code that is generated with the type.";
     error T0111 NotTypeName { word: String }
         "tool's name not in `UpperCamelCase`"
-        message "`{word}` is not a tool's name"
-        help "the name becomes a Rust type: write it as `UpperCamelCase`"
-        explain "A compiled tool is a Rust type of its name, and Rust's types begin with a capital and have no `_`.";
+        message "the tool's name `{word}` is not in `UpperCamelCase`"
+        help "write it like `D6BallEr16`: a capital letter first, no `_`"
+        explain "A tool's name becomes a Rust type. Rust types begin with a capital letter and contain no `_`.";
     error T0112 StrictComparison { written: String }
-        "strict comparison"
-        message "`{written}` is no comparison here: a region is closed"
+        "comparison other than `<=` or `>=`"
+        message "`{written}` cannot be used here: regions include their borders"
         help (written.as_str()) {
-            "<" => "write `<=`; a border belongs to the region listed first",
-            ">" => "write `>=`; a border belongs to the region listed first",
-            "=" | "==" => "write two conditions, `a <= b` and `a >= b`, if a single line is meant; a border \
-                           belongs to the region listed first",
-            _ => "write `<=` or `>=`; a border belongs to the region listed first",
+            "<" => "write `<=`; a point on a border belongs to the region listed first",
+            ">" => "write `>=`; a point on a border belongs to the region listed first",
+            "=" | "==" => "write `<=` or `>=`; for the points of one curve write both, `a <= b, a >= b`",
+            _ => "write `<=` or `>=`; a point on a border belongs to the region listed first",
         }
-        explain "Regions contain their borders, so that a tool has no gaps. A point on a border belongs to the region listed first.";
+        explain "Regions include their borders, so that a tool has no gaps. A point on a border belongs to the region listed first.";
     error T0113 UnknownAllowance { written: String }
-        "`allow` that does not fit"
-        message "`allow {written}` does not fit here"
+        "invalid `allow`"
+        message "`allow {written}` is not valid here"
         help "write `direction: … allow oblique;` or `niceness: … allow rising;`"
-        explain "An allowance silences one warning where the unusual is meant: a direction that is not the steepest way out, or a niceness that rises with depth.";
+        explain "`allow` silences one warning where the unusual is intended: a direction other than the steepest descent of the depth, or a niceness that increases with depth.";
     error T0114 UnknownFile { word: String, meant: Option<&'static str> }
-        "unknown beginning of a file"
-        message "a file does not begin with `{word}`"
+        "unknown first word of a file"
+        message "a file begins with `tool` or `solid`, not with `{word}`"
         help (meant) {
             Some(meant) => "did you mean `{meant}`?",
-            None => "write `tool Name {{ … }}`, or `solid Name {{ … }}` without an axis",
+            None => "write `tool Name {{ … }}`, or `solid Name {{ … }}` if it has no axis",
         }
-        explain "A file holds one `tool`, a solid of revolution, or one `solid`, a shape without an axis.";
+        explain "A file contains one `tool`, which is a solid of revolution, or one `solid`, which has no axis.";
     error T0115 UnknownItem { word: String, meant: Option<&'static str>, known: Names }
         "unknown item"
-        message "no item begins with `{word}`"
+        message "unknown item `{word}`"
         help ((word.as_str(), meant)) {
-            ("depth" | "direction", _) => "`{word}:` belongs inside a `region`",
+            ("depth" | "direction", _) => "write `{word}:` inside a `region`",
             (_, Some(meant)) => "did you mean `{meant}`?",
-            _ => "an item is one of {known}",
+            _ => "write one of {known}",
         }
-        explain "An item is a statement between the braces of a tool. Its first word says what it is.";
+        explain "An item is a statement between the braces of a tool. Its first word tells what it is.";
     error T0116 UnknownProperty { word: String, meant: Option<&'static str> }
         "unknown property of a region"
-        message "a region has no `{word}`"
+        message "a region has no property `{word}`"
         help (meant) {
             Some(meant) => "did you mean `{meant}`?",
-            None => "a region says `depth`, `magnitude`, `direction`, `niceness`",
+            None => "write `depth`, `magnitude`, `direction` or `niceness`",
         }
-        explain "A region states how deep a point is, and how it is felt there.";
+        explain "The properties of a region give the depth, magnitude, direction and niceness at each of its points.";
     error T0117 MissingSemicolon
         "missing `;`"
         message "`;` is missing after this"
         help "write `;` here"
-        explain "Items and properties end with `;`, but for those that end with `}`.";
+        explain "Items and properties end with `;`, except those that end with `}`.";
     error T0118 TextEnds { expected: Expected }
-        "unexpected end"
-        message "the text ends here"
+        "unexpected end of the text"
+        message "unexpected end of the text"
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
             Expected::Setting => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
-            Expected::Unknown => "write the rest of it",
+            Expected::Unknown => "complete the statement",
         }
-        explain "The text ends within an item, or within a value from outside the file.";
+        explain "The text ends inside an item, or inside a value that is given for a `param`.";
     error T0119 DoesNotFit { token: String, expected: Expected }
-        "token that does not fit"
-        message "`{token}` does not fit here"
+        "unexpected token"
+        message "unexpected `{token}`"
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
             Expected::Setting => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
-            Expected::Unknown => "drop it",
+            Expected::Unknown => "remove it",
         }
-        explain "The grammar has no rule for this token at this place. The remedy lists the tokens that would fit.";
+        explain "The grammar does not allow this token here. The remedy lists the tokens that it allows.";
     error T0120 HiddenCharacter { code: u32 }
-        "hidden character in a text"
-        message "this text has the character U+{code:04X}, which cannot be seen"
-        help "delete it: texts are shown as they are written"
-        explain "Titles and file names are shown on terminals and in drawings. Control characters and marks that turn a line around could disguise them.";
+        "invisible character in a title or file name"
+        message "this text contains the invisible character U+{code:04X}"
+        help "delete it"
+        explain "Titles and file names are shown on terminals and in drawings. Control characters and marks that change the direction of text could disguise them.";
     error T0121 NoTool
         "file without a tool"
         message "there is no tool in this text"
         help "write `tool Name {{ units mm; … }}`"
-        explain "A file holds exactly one `tool` or `solid`.";
+        explain "A file contains exactly one `tool` or `solid`.";
     error T0122 ClosesNothing { bracket: char }
-        "bracket that closes nothing"
-        message "this `{bracket}` closes nothing"
-        help "drop it, or open one before"
-        explain "Each closing bracket belongs to an opening one of its kind.";
+        "unmatched closing bracket"
+        message "this `{bracket}` has no matching opening bracket"
+        help "remove it, or add the opening bracket before it"
+        explain "Each closing bracket needs an opening bracket of the same kind before it.";
     error T0123 NotClosed { bracket: char, close: char }
-        "bracket not closed"
+        "unclosed bracket"
         message "this `{bracket}` is not closed"
         help "write `{close}` where its contents end"
-        explain "Each opening bracket is closed by one of its kind. Which one is missing is told by the indentation.";
+        explain "Each opening bracket needs a closing bracket of the same kind. The compiler finds the unclosed one by the indentation.";
 }

@@ -89,7 +89,8 @@ fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
                 region: region.name.clone(),
                 beside: neighbour.name.clone(),
             };
-            Diagnostic::new(region.law_spans.depth, kind).and(neighbour.law_spans.depth, "here")
+            Diagnostic::new(region.law_spans.depth, kind)
+                .and(neighbour.law_spans.depth, "other depth")
         }
     })
 }

@@ -60,7 +60,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             let place = show(pair[0].ends()[1]);
             diagnostics.push(
                 Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { place })
-                    .and(pair[0].span, "from this one"),
+                    .and(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
@@ -70,7 +70,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                     pair[1].span,
                     ProfileKind::HardlyTurns { least: TANGENT_SINE, place },
                 )
-                .and(pair[0].span, "from this one"),
+                .and(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         }
@@ -95,7 +95,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                             place: show(point),
                         },
                     )
-                    .and(a.span, "that one"),
+                    .and(a.span, "other segment"),
                 );
                 reported.extend([i, j]);
             }

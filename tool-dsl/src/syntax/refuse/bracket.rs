@@ -23,7 +23,7 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     let diagnostic = Diagnostic::new(stop.span(at, at + 1), kind);
     Some(match first_token(stop.rest()) {
         "" => diagnostic,
-        next => diagnostic.and(stop.next(next.len()), "before this"),
+        next => diagnostic.and(stop.next(next.len()), "still open here"),
     })
 }
 
