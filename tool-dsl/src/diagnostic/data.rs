@@ -245,18 +245,18 @@ impl fmt::Display for Statement {
             None => "the outside".to_owned(),
         };
         match self {
-            Statement::Alone(owner) => write!(f, "that {} alone has it", shown(owner)),
+            Statement::Alone(owner) => write!(f, "whether all points belong to {}", shown(owner)),
             Statement::Nearest(owner) => {
-                write!(f, "that {} has what is nearest to its points", shown(owner))
+                write!(f, "whether the nearest features belong to {}", shown(owner))
             }
             Statement::Continues(from, to) => {
-                write!(f, "that depth goes on from {} to {}", shown(from), shown(to))
+                write!(f, "whether depth is continuous from {} to {}", shown(from), shown(to))
             }
             Statement::NotNegative(owner) => {
-                write!(f, "that depth is not negative in {}", shown(owner))
+                write!(f, "whether depth is at least 0 in {}", shown(owner))
             }
             Statement::Crowd(count) => write!(f, "which of {count} regions meet"),
-            Statement::EndsOnProfile => f.write_str("that the solid ends on the profile"),
+            Statement::EndsOnProfile => f.write_str("whether the solid ends on the profile"),
         }
     }
 }

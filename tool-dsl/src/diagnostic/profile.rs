@@ -9,102 +9,102 @@ kinds! {
 
     error T0301 TooManySegments { most: usize }
         "too many segments"
-        message "more than {most} segments"
-        help "arcs say in one segment what many short lines say"
-        explain "The plane is divided by the nearest segment, which would take minutes for more of them."
+        message "the profile has more than {most} segments"
+        help "replace runs of short lines by arcs"
+        explain "The compiler divides the section into regions by nearest segment. More segments would take minutes."
         without "an example would have hundreds of segments";
     error T0302 BeginsOffAxis { begin: String, axis: String }
-        "profile that begins off the axis"
-        message "the profile begins at {begin}, not on the axis"
-        help "write `start {axis};` and then `line to {begin}`"
-        explain "A profile is turned about the axis. It runs from the axis to the axis, and the axis closes it.";
+        "profile that starts off the axis"
+        message "the profile starts at {begin}, not on the axis"
+        help "write `start {axis};`, then `line to {begin}`"
+        explain "A profile is rotated about the axis. It starts and ends on the axis, which closes it.";
     error T0303 EndsOffAxis { end: String, axis: String }
         "profile that ends off the axis"
         message "the profile ends at {end}, not on the axis"
-        help "let it run from the axis to the axis: add `line to {axis}`"
-        explain "A profile is turned about the axis. It runs from the axis to the axis, and the axis closes it.";
+        help "add `line to {axis}` at the end"
+        explain "A profile is rotated about the axis. It starts and ends on the axis, which closes it.";
     error T0304 SegmentWithoutLength
-        "segment without a length"
-        message "this segment has no length"
-        help "drop it"
-        explain "Its end is its beginning, so that it has no direction and no normal.";
+        "segment of zero length"
+        message "this segment has zero length"
+        help "remove it, or correct its end point"
+        explain "Its start and end points are equal, so it has no direction and no normal.";
     error T0305 OffCircle { near: String, far: String }
-        "arc off its circle"
-        message "the arc's ends are {near} and {far} from its centre"
-        help "both ends lie on one circle; by `radius` its centre is found for you"
-        explain "An arc's centre is as far from its beginning as from its end.";
+        "arc ends at unequal distances from the centre"
+        message "the arc starts {near} from its centre but ends {far} from it"
+        help "correct the centre, or write `radius R` and the compiler finds it"
+        explain "The start and the end of an arc are equally far from its centre.";
     error T0306 RadiusNotPositive
         "radius that is not positive"
-        message "an arc's radius is more than 0"
-        help "into the material it bulges by `concave`"
-        explain "The sign of a radius has no meaning here: `concave` says on which side the centre lies.";
+        message "the radius of an arc must be greater than 0"
+        help "write a positive radius; for an arc that curves into the material add `concave`"
+        explain "The sign of a radius has no meaning. `concave` says that the centre lies outside the material.";
     error T0307 FlatArc { radius: FormattedNumber }
-        "arc as flat as a line"
-        message "this arc of radius {radius} is a line to all ends"
-        help "write `line to`"
-        explain "The radius is more than a million times the chord, so that rounding would decide where the arc lies.";
+        "arc too flat"
+        message "an arc of radius {radius} is too flat between these points"
+        help "write `line to`, or a smaller radius"
+        explain "The radius is more than a million times the chord, so rounding would decide where the arc lies.";
     error T0308 NotConcave
-        "arc that is not concave"
-        message "this arc is not concave"
-        help "its centre lies in the material: drop `concave`"
-        explain "`concave` marks arcs whose centre lies outside the material, so that a wrong sign is noticed.";
+        "arc marked `concave` that is not"
+        message "this arc is marked `concave`, but its centre lies in the material"
+        help "remove `concave`, or move the centre to the other side"
+        explain "`concave` marks arcs whose centre lies outside the material. The check finds centres on the wrong side.";
     error T0309 Concave { centre: String }
-        "concave arc"
-        message "this arc is concave: its centre {centre} lies outside the material"
-        help "say `concave` if it should be"
-        explain "`concave` marks arcs whose centre lies outside the material, so that a wrong sign is noticed.";
+        "concave arc not marked"
+        message "this arc is not marked `concave`, but its centre {centre} lies outside the material"
+        help "add `concave`, or move the centre to the other side"
+        explain "`concave` marks arcs whose centre lies outside the material. The check finds centres on the wrong side.";
     error T0310 RadiusTooSmall { radius: FormattedNumber, chord: FormattedNumber, least: FormattedNumber }
-        "radius too small"
-        message "no arc of radius {radius} spans a chord of {chord}"
-        help "its radius is {least} or more; else bring its ends nearer"
-        explain "The ends of an arc are at most two radii apart.";
+        "radius too small for its chord"
+        message "a radius of {radius} is too small: the end points are {chord} apart"
+        help "write a radius of {least} or more, or move the end points closer together"
+        explain "The end points of an arc are at most two radii apart.";
     error T0311 OnAxis
         "segment on the axis"
         message "this segment lies on the axis"
-        help "leave it out: the axis closes the profile by itself"
+        help "remove it: the axis closes the profile"
         explain "A segment on the axis bounds no material.";
     error T0312 CrossesAxis
-        "segment across the axis"
+        "segment that crosses the axis"
         message "this segment crosses the axis"
-        help "`d` is a radius and never negative"
-        explain "Only the half of the section at `d >= 0` is written. It is turned about the axis.";
+        help "keep `d` at 0 or more: it is the distance from the axis"
+        explain "A profile describes the half of the section with `d >= 0`. It is rotated about the axis.";
     error T0313 TouchesAxis
         "segment that touches the axis"
-        message "this segment touches the axis"
-        help "a profile is on the axis at its two ends only"
-        explain "Where a profile touches the axis, the solid would hang together by a single point.";
+        message "this segment touches the axis between the ends of the profile"
+        help "keep `d` above 0 except at the two ends of the profile"
+        explain "Where a profile touches the axis between its ends, two parts of the solid would be joined by a single point.";
     error T0314 Clockwise
         "profile that runs clockwise"
         message "the profile runs clockwise"
-        help "start at its low end and keep the material on the left"
-        explain "The sense of a profile says on which side the material lies.";
+        help "reverse the order of the points: start at the low end, with the material on the left"
+        explain "The material lies to the left of a profile, seen with `d` to the right and `z` up.";
     error T0315 AlongAxis { place: String }
-        "needle on the axis"
-        message "this segment runs along the axis at {place}"
-        help "a needle without an angle is no solid: let it meet the axis at an angle"
-        explain "The material between the segment and the axis has no angle there, and no direction leads out of it.";
+        "profile tangent to the axis"
+        message "this segment is tangent to the axis at {place}"
+        help "make the segment meet the axis at an angle"
+        explain "The tip there has an angle of 0, so no direction leads out of the material.";
     error T0316 TurnsBack { place: String }
-        "needle at a corner"
+        "segment that turns straight back"
         message "this segment turns straight back at {place}"
-        help "a needle without an angle is no solid: move a corner"
-        explain "The material between the two segments has no angle at their corner, and no direction leads out of it.";
+        help "move a point so that the segments enclose an angle"
+        explain "The corner has an angle of 0, so no direction leads out of the material.";
     error T0317 HardlyTurns { least: f64, place: String }
-        "corner too flat to be told"
-        message "this segment turns by less than {least:e} at {place}"
-        help "such a corner is told from none by no double: draw both as one line"
-        explain "Double precision does not tell such a corner from a straight line.";
+        "corner too flat"
+        message "this segment turns by less than {least:e} rad at {place}"
+        help "replace the two segments by one, or make the corner sharper"
+        explain "Double precision cannot distinguish such a corner from a smooth transition.";
     error T0318 MeetsItself { touches: bool, place: String }
-        "profile that meets itself"
+        "profile that touches or crosses itself"
         message (touches) {
-            true => "this segment touches that one at {place}",
-            false => "this segment crosses that one at {place}",
+            true => "this segment touches another one at {place}",
+            false => "this segment crosses another one at {place}",
         }
-        help "a profile never crosses or touches itself: move a corner"
-        explain "A profile bounds one solid. Where it meets itself, inside and outside are not told apart.";
+        help "move a point so that the segments stay apart"
+        explain "A profile bounds one solid. Where it meets itself, inside and outside are ambiguous.";
     error T0319 Undivided { d: f64, z: f64 }
-        "section that could not be divided"
-        message "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
-        help "write this tool's regions by hand, as in docs/language.md"
-        explain "The regions of a profile are the points nearest to each segment. Rounding can hide where three of them meet."
+        "section that cannot be divided into regions"
+        message "the section cannot be divided into regions near ({d:.4}, {z:.4})"
+        help "change the profile there, or write its regions by hand (docs/language.md)"
+        explain "A region holds the points nearest to one segment or corner. Rounding can hide the point where three regions meet."
         without "no outline is known for which the division fails";
 }

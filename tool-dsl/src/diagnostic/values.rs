@@ -14,159 +14,159 @@ kinds! {
         help (remedy) {
             NameRemedy::Meant(meant) => "did you mean `{meant}`?",
             NameRemedy::Define => "define it above, as in `let {word} = 3;`",
-            NameRemedy::Constant => "what is given is a constant: numbers with their units, `pi`",
-            NameRemedy::Dash => "a name has no dash: write `_`; a difference has spaces about its `-`",
+            NameRemedy::Constant => "use constants only: numbers with or without a unit, and `pi`",
+            NameRemedy::Dash => "in a name write `_` instead of `-`; for a difference put spaces around `-`",
         }
-        explain "A name is a coordinate, `pi`, or defined above by `let`, `param` or `curve`.";
+        explain "A name must be a coordinate, `pi`, or defined above by `let`, `param` or `curve`.";
     error T0202 NameWithoutValue { word: String }
         "name without a value"
-        message "`{word}` has no value: its definition is refused"
-        help "mend its definition"
-        explain "It follows from another error, which is shown in its place."
+        message "`{word}` has no value, because its definition has an error"
+        help "correct its definition"
+        explain "This follows from another error, which is shown instead."
         without "only the error that it follows from is shown";
     error T0203 UsedAbove { word: String }
         "name used above its definition"
         message "`{word}` is used above its definition"
-        help "move the definition up"
-        explain "A name has a value only below its definition, so that a file is read from top to bottom.";
+        help "move the definition above this use"
+        explain "A file is read from top to bottom, so a name has a value only below its definition.";
     error T0204 DefinedTwice { word: String }
         "name defined twice"
         message "`{word}` is defined twice"
-        help "drop one, or give it another name"
-        explain "A name has one meaning in a file. `let`, `param` and `curve` share their names.";
+        help "remove one definition, or rename it"
+        explain "A name has one meaning per file. `let`, `param` and `curve` share one set of names.";
     error T0205 ReservedName { word: String, meaning: Option<&'static str> }
-        "name of the language"
+        "reserved name"
         message (meaning) {
-            Some(meaning) => "`{word}` is {meaning} and cannot be defined",
-            None => "`{word}` belongs to the language and cannot be defined",
+            Some(meaning) => "`{word}` is {meaning} and cannot be redefined",
+            None => "`{word}` is a reserved name and cannot be redefined",
         }
         help ((word.as_str(), meaning)) {
-            ("d", Some(_)) => "for a diameter use `D`",
-            _ => "take another name",
+            ("d", Some(_)) => "choose another name, such as `D` for a diameter",
+            _ => "choose another name",
         }
-        explain "Coordinates, functions, `pi` and `depth` keep their meaning in every file.";
+        explain "Coordinates, functions, `pi` and `depth` have the same meaning in every file.";
     error T0206 DefinedByItself { word: String, links: Links, more: usize }
         "circular definition"
         message ((links.0.is_empty(), more)) {
-            (true, _) => "`{word}` is defined by itself",
-            (false, 0) => "`{word}` is defined by itself: {links}",
-            (false, more) => "`{word}` is defined by itself: {links}, and {more} links more lead back to `{word}`",
+            (true, _) => "`{word}` is defined in terms of itself",
+            (false, 0) => "`{word}` is defined in terms of itself: {links}",
+            (false, more) => "`{word}` is defined in terms of itself: {links}, and {more} more links lead back to `{word}`",
         }
         help (links.0.is_empty()) {
-            true => "write its value: a name has one only below its definition",
-            false => "give one of them a value of its own",
+            true => "write a value that does not use `{word}`",
+            false => "give one of these names a value that does not use the others",
         }
-        explain "A definition may use names that are defined before it, but not its own name, not even by way of others.";
+        explain "A definition may use only names that are defined above it. It cannot use its own name, directly or through other names.";
     warning T0207 UnusedName { word: String }
         "unused name"
         message "`{word}` is never used"
-        help "drop it, or is another name misspelt?"
-        explain "A definition that nothing uses changes nothing. Often another name was meant where it should be used.";
+        help "remove it, or correct the name where it should be used"
+        explain "A definition that nothing uses changes nothing. Often the name is misspelt where it should be used.";
     error T0208 OtherCoordinate { word: String, other: &'static str }
         "coordinate of the other kind of file"
-        message "`{word}` exists in a `{other}` only"
+        message "`{word}` is a coordinate of a `{other}` only"
         help (*other) {
-            "solid" => "in a `tool` the coordinates are `d`, the distance from the axis, and `z`",
-            _ => "in a `solid` write `hypot(x, y)`",
+            "solid" => "in a `tool` use `d`, the distance from the axis, and `z`",
+            _ => "in a `solid` use `hypot(x, y)`",
         }
         explain "A `tool` is a solid of revolution, written in `d` and `z`. A `solid` is written in `x`, `y` and `z`.";
     error T0209 NotConstant { word: Option<String>, role: Role }
-        "value that is no constant"
+        "value that is not constant"
         message (word) {
-            Some(word) => "`{word}` changes from point to point; {role} takes constants only",
-            None => "this changes from point to point; {role} takes constants only",
+            Some(word) => "`{word}` varies from point to point, but {role} must be constant",
+            None => "this varies from point to point, but {role} must be constant",
         }
         help (role) {
-            Role::Let | Role::Param => "name a function of the coordinates with `curve`",
-            _ => "write a number, or a `let` or `param`",
+            Role::Let | Role::Param => "use `curve` to define a function of the coordinates",
+            _ => "use a number, a `let` or a `param`",
         }
-        explain "Points, radii, exponents, `let` and `param` are fixed when the tool is compiled. Functions of the coordinates are curves.";
+        explain "Points, radii, exponents, `let` and `param` are computed once, when the tool is compiled. A function of the coordinates is a `curve`.";
     error T0210 DepthUnknown
-        "`depth` out of place"
-        message "`depth` is not known here"
-        help "only `magnitude` and `niceness` may mention `depth`"
-        explain "The depth of a point is known once its region is. Curves and conditions decide which region that is.";
+        "`depth` where it is not available"
+        message "`depth` is not available here"
+        help "use `depth` in `magnitude` and `niceness` only"
+        explain "The depth of a point depends on its region. Curves and conditions are evaluated first, to find that region.";
     error T0211 UnknownFunction { word: String, meant: Option<&'static str>, known: &'static [&'static str] }
         "unknown function"
         message "unknown function `{word}`"
         help ((meant, known.join(", "))) {
             (Some(meant), _) => "did you mean `{meant}`?",
-            (None, known) => "functions are {known}",
+            (None, known) => "use one of {known}",
         }
-        explain "The functions are those whose bounds and derivatives the compiler proves with. Others are written by them.";
+        explain "The compiler has bounds and derivatives for these functions only. Write others in terms of them.";
     error T0212 WrongArguments { word: String, several: bool, count: usize }
         "wrong number of arguments"
         message (several) {
-            true => "`{word}` takes two or more values, this has {count}",
-            false => "`{word}` takes one value, this has {count}",
+            true => "`{word}` takes two or more arguments, this has {count}",
+            false => "`{word}` takes one argument, this has {count}",
         }
         help (several) {
             true => "write `{word}(a, b)`",
             false => "write `{word}(a)`",
         }
-        explain "`min`, `max` and `hypot` take two values or more, all other functions one.";
+        explain "`min`, `max` and `hypot` take two or more arguments, all other functions take one.";
     error T0213 UnknownUnit { word: String, meant: Option<&'static str>, known: Names }
         "unknown unit of a number"
         message "unknown unit `{word}`"
         help ((word.as_str(), meant)) {
             ("in" | "inches" | "zoll", _) => "write `inch`, as in `0.25inch`",
             (_, Some(meant)) => "did you mean `{meant}`?",
-            _ => "units are {known}",
+            _ => "use one of {known}",
         }
-        explain "A unit stands directly behind its number. A length without a unit is in the unit of its file.";
+        explain "A unit follows its number without a space. A length without a unit is in the unit of its file.";
     error T0214 UnknownFileUnit { word: String, meant: Option<&'static str> }
         "unknown unit of a file"
         message "unknown unit `{word}`"
         help (meant) {
             Some(meant) => "write `units {meant};`",
-            None => "units are `mm`, `inch` and `m`",
+            None => "use `mm`, `inch` or `m`",
         }
-        explain "The first item of a file says the unit of its lengths.";
+        explain "`units`, the first item of a file, gives the unit of its lengths.";
     error T0215 NoUnit
         "missing unit of length"
-        message "no unit: a tool says its unit of length first"
-        help "say `units mm;`, `units inch;` or `units m;`"
-        explain "A file without a unit would be read in the wrong one sooner or later, so that there is no default.";
+        message "the unit of length is missing"
+        help "write `units mm;`, `units inch;` or `units m;` as the first item"
+        explain "There is no default unit: a file read in the wrong one would give a tool of the wrong size.";
     error T0216 UnitNotFirst
-        "unit not the first item"
-        message "the unit is not the first item"
-        help "move `units` to the top: everything below is measured in it"
-        explain "The unit applies to every length of the file, so that it stands above all of them.";
+        "`units` not the first item"
+        message "`units` is not the first item"
+        help "move `units` above all other items"
+        explain "The unit applies to every length in the file, so it comes before all of them.";
     error T0217 UnitTwice
-        "unit said twice"
-        message "the unit is said twice"
-        help "drop one; a single number may carry another unit, as in `0.25inch`"
-        explain "A file has one unit for lengths that carry none.";
+        "unit given twice"
+        message "the unit is given twice"
+        help "remove one; to use another unit for one number, write it there, as in `0.25inch`"
+        explain "A file has one unit for all numbers that are written without one.";
     error T0218 GluedName { number: f64, word: String, factor: String, diameter: bool }
-        "number glued to a name"
-        message "`{number}{word}` is not a number"
+        "number joined to a name"
+        message "`{number}{word}` is not a number with a unit"
         help (diameter) {
-            true => "write `{number}*{factor}` for two times the distance from the axis",
+            true => "write `{number}*{factor}`; `d` is the distance from the axis, a radius",
             false => "write `{number}*{factor}`",
         }
-        explain "A product is written with `*`. Letters directly behind a number are its unit.";
+        explain "A product is written with `*`. Letters that follow a number without a space are its unit.";
     error T0219 ConstantOutOfRange
         "constant out of range"
-        message "this constant is out of range"
-        help "numbers are 0, or between 1e-90 and 1e90 in size"
-        explain "Constants are computed when the tool is compiled, and checked as they grow.";
+        message "the value of this constant is out of range"
+        help "keep values at 0, or between 1e-90 and 1e90 in absolute value"
+        explain "Constants are computed when the tool is compiled, and every intermediate result is checked.";
     error T0220 ValueOutOfRange { value: f64 }
         "value out of range"
-        message "{value:e} is out of range"
-        help "numbers are 0, or between 1e-90 and 1e90 in size"
+        message "the value {value:e} is out of range"
+        help "keep values at 0, or between 1e-90 and 1e90 in absolute value"
         explain "Generated code computes in double precision. Within this range no square or product of two numbers overflows.";
     error T0221 TooManySteps { most: u32 }
-        "value with too many steps"
-        message "this is built of too many steps upon each other"
-        help "at most {most} operations lie between a value and a coordinate"
-        explain "Names count with the expressions that they stand for, so that a chain of curves grows tall.";
+        "expression nested too deeply"
+        message "this expression is nested too deeply"
+        help "simplify it to at most {most} nested operations, counting those of the curves it uses"
+        explain "A name counts as the expression that it stands for, so a chain of curves adds up.";
     error T0222 NotLength { role: Role, dimension: Dimension }
         "dimension other than a length"
         message "{role} takes a length, this is {dimension}"
-        help "lengths are numbers with or without `mm`, `inch` or `m`"
-        explain "Points, radii and places along the axis are lengths.";
+        help "write a number without a unit, or with `mm`, `inch` or `m`"
+        explain "Points, radii and positions along the axis are lengths.";
     error T0223 UnlikeOperands { operation: Operation, left: Dimension, right: Dimension }
-        "operands of unlike dimensions"
+        "operands of different dimensions"
         message (operation) {
             Operation::Add => "this adds {left} to {right}",
             Operation::Subtract => "this subtracts {right} from {left}",
@@ -174,92 +174,92 @@ kinds! {
             Operation::Divide => "this divides {left} by {right}",
         }
         help ((left, right)) {
-            (Dimension::Angle, _) | (_, Dimension::Angle) => "an angle is for `sin`, `cos` and `tan`: angles go with angles",
-            _ => "both sides want the same power of length; a bare number fits any",
+            (Dimension::Angle, _) | (_, Dimension::Angle) => "combine angles with angles only, or take `sin`, `cos` or `tan` first",
+            _ => "give both sides the same power of length; a number without a unit fits any",
         }
-        explain "Every expression has a dimension: a number, a power of length, or an angle. A sum of unlike ones would depend on the unit.";
+        explain "Every expression is a number, a power of length, or an angle. A sum of different dimensions would depend on the unit.";
     error T0224 DivisionByZero
-        "division by a constant 0"
+        "division by zero"
         message "division by zero"
-        help "this is 0; divide by what is not"
-        explain "The divisor is a constant, so that the quotient has a value nowhere.";
+        help "correct the divisor: it is always 0"
+        explain "The divisor is a constant, so the quotient has no value anywhere.";
     error T0225 Exponent
-        "exponent"
-        message "an exponent is a multiple of one half from -16 to 16"
-        help "only square roots run at every contact"
-        explain "Other powers need a logarithm, which differs from machine to machine in its last bits.";
+        "unsupported exponent"
+        message "an exponent must be a multiple of 1/2 from -16 to 16"
+        help "write a whole or half exponent, as in `d^2` or `d^1.5`"
+        explain "Other powers need a logarithm, whose last bits differ between machines.";
     error T0226 PowerOfAngle
         "power of an angle"
-        message "an angle has no powers"
-        help "take `sin`, `cos` or `tan` of it first, which are numbers"
-        explain "Angles are for trigonometric functions. Lengths never come from powers of them.";
+        message "an angle cannot be raised to a power"
+        help "take `sin`, `cos` or `tan` of it first, which gives a number"
+        explain "Angles are arguments of `sin`, `cos` and `tan`. A power of an angle is not a dimension of the language.";
     error T0227 NoSuchPower
-        "power that does not exist"
-        message "this power of a constant does not exist"
-        help "the base is negative under a root, or 0 under a negative exponent"
-        explain "The base is a constant, so that the power has a value nowhere.";
+        "undefined power"
+        message "this power of a constant is undefined"
+        help "correct the base: it is negative with a half exponent, or 0 with a negative one"
+        explain "The base is a constant, so the power has no value anywhere.";
     error T0228 RootOfAngle
         "root of an angle"
         message "an angle has no square root"
-        help "take `sin`, `cos` or `tan` of it first, which are numbers"
-        explain "Angles are for trigonometric functions. Lengths never come from roots of them.";
+        help "take `sin`, `cos` or `tan` of it first, which gives a number"
+        explain "Angles are arguments of `sin`, `cos` and `tan`. A root of an angle is not a dimension of the language.";
     error T0229 RootOfNegative
         "root of a negative constant"
         message "square root of a negative number"
-        help "take the root of what is 0 or more"
-        explain "The number under the root is a constant, so that the root has a value nowhere.";
+        help "correct the argument: it must be 0 or more"
+        explain "The argument is a constant, so the root has no value anywhere.";
     error T0230 UnlikeArguments { word: String, first: Dimension, other: Dimension }
-        "arguments of unlike dimensions"
-        message "`{word}` compares {first} with {other}"
-        help "all its values want the same power of length"
-        explain "A comparison of unlike dimensions would depend on the unit.";
+        "arguments of different dimensions"
+        message "`{word}` combines {first} with {other}"
+        help "give all arguments the same power of length"
+        explain "With arguments of different dimensions the result would depend on the unit.";
     error T0231 TrigonometryOfVariable { word: String }
         "trigonometric function of a coordinate"
-        message "this `{word}` would run at every contact"
-        help "`{word}` takes constants only: numbers, `let`s and `param`s"
-        explain "Trigonometric functions are slow and differ in their last bits from machine to machine. Of constants they are computed once, when the tool is compiled.";
+        message "`{word}` takes constants only, this varies from point to point"
+        help "use only numbers, `let`s and `param`s in the argument of `{word}`"
+        explain "Trigonometric functions are slow, and their last bits differ between machines. They are computed once, when the tool is compiled.";
     error T0232 NotAngle { word: String, dimension: Dimension, value: f64 }
         "trigonometric function of a number"
         message "`{word}` takes an angle, this is {dimension}"
         help "write `{word}({value}deg)` or `{word}({value}rad)`"
-        explain "An angle carries its unit, since degrees are often taken for radians.";
+        explain "An angle needs a unit, since degrees are easily mistaken for radians.";
     error T0233 HugeAngle
-        "huge angle"
+        "angle too large"
         message "this angle is more than a million radians"
-        help "angles are written in `deg` or `rad`"
-        explain "Such an angle is mostly a length, or has the wrong unit.";
+        help "correct the value, or its unit: `deg` or `rad`"
+        explain "An angle of this size is usually a length, or has the wrong unit.";
     error T0234 TanOfRightAngle
         "tangent of a right angle"
-        message "`tan` of a right angle does not exist"
-        help "write the angle that is meant, less than 90deg"
+        message "`tan` of a right angle is undefined"
+        help "write an angle of less than 90deg"
         explain "The tangent grows without bound toward a right angle.";
     error T0235 CurveOfAngle
         "curve that is an angle"
-        message "a curve is no angle"
-        help "give a number or a power of length"
-        explain "A curve is zero on a line of the section, and its sign tells the sides apart.";
+        message "a curve cannot be an angle"
+        help "write an expression that is a number or a power of length"
+        explain "A curve is zero along a line of the section, and its sign tells the two sides apart.";
     error T0236 GivenTwice { word: String }
         "param given twice"
         message "`{word}` is given twice"
-        help "drop one"
-        explain "A param has one value, whether a mount, a macro's call or the command line gives it.";
+        help "remove one of the two values"
+        explain "A param takes one value, from a mount, a macro call or the command line.";
     error T0237 GivenDimension { word: String, wanted: Dimension, found: Dimension }
-        "param given another dimension"
-        message "`{word}` is {wanted}, what is given is {found}"
+        "param value of the wrong dimension"
+        message "`{word}` is {wanted}, but the given value is {found}"
         help "give {wanted}"
-        explain "A param's default says its dimension.";
+        explain "A param has the dimension of its default value.";
     error T0238 GivenUnit { word: String, number: FormattedNumber, here: &'static str, there: &'static str }
-        "param given without a unit"
-        message "is `{word}` {number}{here} or {number}{there}?"
-        help "this file is in {here}, the mounted one in {there}: write the unit; a mere number is `{number}{here}/1{here}`"
-        explain "The two files have different units, and the default has no unit, so that the given number can be meant in either.";
+        "param value without a unit"
+        message "the unit of `{word}` is ambiguous: {number}{here} or {number}{there}"
+        help "write the unit: this file is in {here}, the mounted one in {there}; for a pure number write `{number}{here}/1{here}`"
+        explain "The two files have different units and the default has none, so the number could be in either.";
     error T0239 NoSuchParam { tool: String, word: String, remedy: ParamRemedy, params: Names }
         "unknown param"
         message "`{tool}` has no param `{word}`"
         help (remedy) {
-            ParamRemedy::Let => "write `param` there; it has {params}",
+            ParamRemedy::Let => "change `let {word}` to `param {word}` in that file; it has {params}",
             ParamRemedy::Meant(meant) => "did you mean `{meant}`? it has {params}",
             ParamRemedy::List => "it has {params}",
         }
-        explain "Only a `param` can be given from outside its file.";
+        explain "Only a `param` can be given a value from outside its file.";
 }

@@ -55,7 +55,7 @@ fn read_arguments<'t>(
         if let Some(first) = arguments.iter().find(|other| other.setting.name.word == name.word) {
             diagnostics.push(
                 Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
-                    .and(first.setting.name.span, "first here"),
+                    .and(first.setting.name.span, "first value"),
             );
             continue;
         }
@@ -99,7 +99,7 @@ impl Argument<'_> {
                     found: self.dimension,
                 },
             )
-            .and(default.span, "its default");
+            .and(default.span, "default value");
             return Err(diagnostic);
         };
         let power = match dimension {
@@ -163,7 +163,7 @@ pub(super) fn report_unknown_params(
         let kind = ValueKind::NoSuchParam { tool, word: word.to_owned(), remedy, params };
         let diagnostic = Diagnostic::new(name.span, kind);
         diagnostics.push(match other {
-            Some(other) => diagnostic.and(other.name.span, "this is a `let`"),
+            Some(other) => diagnostic.and(other.name.span, "defined by `let` here"),
             None => diagnostic,
         });
     }

@@ -106,5 +106,5 @@ fn circular(cycle: &[Step<'_>], span: Span) -> Diagnostic {
     let links: Vec<[String; 2]> = cycle.iter().zip(next).take(MAX_LISTED_LINKS).map(link).collect();
     let more = cycle.len() - links.len();
     let kind = ValueKind::DefinedByItself { word, links: Links(links), more };
-    Diagnostic::new(span, kind).and(second.span, "the first link")
+    Diagnostic::new(span, kind).and(second.span, "first link of the cycle")
 }

@@ -35,7 +35,7 @@ impl RegionResolver<'_> {
                 },
             })),
             [first, second, ..] => Err(Diagnostic::new(second.span, RegionKind::DirectionTwice)
-                .and(first.span, "first here")),
+                .and(first.span, "first direction")),
         }
     }
 

@@ -60,7 +60,7 @@ impl<'t> Laws<'t> {
                     let surface = (!word.is_empty()).then(|| word.to_owned());
                     diagnostics.push(
                         Diagnostic::new(span, RegionKind::TwoLaws { quantity: what, surface })
-                            .and(*first, "the first"),
+                            .and(*first, "first law"),
                     );
                 }
                 known_laws.push((law.quantity, word, span));
@@ -104,7 +104,7 @@ fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
 
 pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
     Diagnostic::new(span, RegionKind::IdleNiceness { surface: surface.name.clone() })
-        .and(surface.span, "not `cutting` here")
+        .and(surface.span, "not marked `cutting` here")
 }
 
 /// Returns a filter of laws by quantity.

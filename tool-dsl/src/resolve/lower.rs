@@ -89,7 +89,7 @@ impl Lowering {
                 name.span,
                 ValueKind::DefinedTwice { word: word.to_owned() },
             )
-            .and(earlier.span, "first here"));
+            .and(earlier.span, "first definition"));
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
@@ -229,7 +229,8 @@ impl Lowering {
                 if definition.start < span.start
                     && let Allowed::Constants(role) = may
                 {
-                    return Err(not_constant(span, Some(word), role).and(*definition, "a curve"));
+                    return Err(not_constant(span, Some(word), role)
+                        .and(*definition, "defined as a curve here"));
                 }
                 return Err(Diagnostic::new(span, ValueKind::UsedAbove { word: word.to_owned() })
                     .and(*definition, "defined here"));

@@ -175,7 +175,7 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
         if let Some((first, _)) = regions_item {
             diagnostics.push(
                 Diagnostic::new(*span, RegionKind::SaidTwice { word: "regions".to_owned() })
-                    .and(first, "first here"),
+                    .and(first, "first definition"),
             );
         }
         regions_item = regions_item.or(Some((*span, smooth.as_ref())));
@@ -184,7 +184,7 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
         (Some((span, _)), Some(region)) => {
             diagnostics.push(
                 Diagnostic::new(span, RegionKind::DerivedAndWritten)
-                    .and(region.name.span, "written here"),
+                    .and(region.name.span, "first region written by hand"),
             );
             Divider::Features
         }
@@ -219,7 +219,8 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     let first = profiles.next();
     if let (Some(first), Some(second)) = (first, profiles.next()) {
         diagnostics.push(
-            Diagnostic::new(second.span, RegionKind::SecondProfile).and(first.span, "the first"),
+            Diagnostic::new(second.span, RegionKind::SecondProfile)
+                .and(first.span, "first profile"),
         );
     }
     let mounts: Vec<&Mount> = tool
@@ -230,7 +231,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     if let (Some(profile), Some(mount)) = (first, mounts.first()) {
         diagnostics.push(
             Diagnostic::new(mount.span, MountKind::ProfileAndMounts)
-                .and(profile.span, "the profile"),
+                .and(profile.span, "profile of this file"),
         );
     }
     for item in &tool.items {
@@ -279,7 +280,7 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
         tool.items[1..].iter().find(|i| matches!(i, Item::Units(_)))
     {
         return Err(
-            Diagnostic::new(second_unit.span, ValueKind::UnitTwice).and(name.span, "first here")
+            Diagnostic::new(second_unit.span, ValueKind::UnitTwice).and(name.span, "first unit")
         );
     }
     Unit::from_word(&name.word).ok_or_else(|| {
@@ -354,7 +355,7 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
         if let Some(first) = previous_span.replace(span) {
             diagnostics.push(
                 Diagnostic::new(span, RegionKind::SaidTwice { word: word.to_owned() })
-                    .and(first, "first here"),
+                    .and(first, "first definition"),
             );
         }
     }

@@ -115,7 +115,7 @@ impl Mounting<'_> {
                         mount.name.span,
                         MountKind::MountsAlike { name: mount.name.word.clone() },
                     )
-                    .and(first.name.span, "the first"),
+                    .and(first.name.span, "first mount of this name"),
                 );
             }
             let at = self.mount_height(mount, index, lowering);
@@ -386,18 +386,18 @@ impl MountedPart {
                     span,
                     MountKind::TooShort { below, z, top, length, first: height.is_zero() },
                 )
-                .and(last.name.span, "this one")
+                .and(last.name.span, "lower part")
             }
             JoinError::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
             JoinError::Back(segment) => {
                 Diagnostic::new(span, MountKind::PlaneCutsTwice { below, z })
-                    .and(segment.span, "here it comes back to it")
+                    .and(segment.span, "second crossing")
             }
             JoinError::NoFace(segment) => Diagnostic::new(
                 mount.file.span,
                 MountKind::NoFace { file: mount.file.word.clone() },
             )
-            .and(segment.span, "this one"),
+            .and(segment.span, "first segment"),
         })?;
         part.transform_scopes(&Number::int(1), at);
         let scopes = self.scopes.len();

@@ -112,7 +112,7 @@ fn written(
     {
         let diagnostic =
             Diagnostic::new(name.span, RegionKind::RegionsAlike { name: name.word.clone() });
-        return Err(diagnostic.and(first.name.span, "the first"));
+        return Err(diagnostic.and(first.name.span, "first region of this name"));
     }
     if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
         return Err(Diagnostic::new(depth.value.span, RegionKind::DepthBesideProfile));
@@ -180,7 +180,7 @@ fn fans<'t>(
                         most: max_length,
                     },
                 )
-                .and(outline[piece].span, "this edge")
+                .and(outline[piece].span, "segment too short")
             }
         }
     })?;
@@ -330,7 +330,7 @@ pub(crate) fn never_wins(
         span,
         CheckKind::NeverWins { region: name.to_owned(), by: first.to_owned(), more },
     )
-    .and(at, "this one")
+    .and(at, "region listed before it")
 }
 
 /// Returns the error for two regions that have points in common, for instance at `place`. The first region is at `at`.
@@ -341,5 +341,5 @@ pub(crate) fn overlapping(
     at: Span,
 ) -> Diagnostic {
     let (first, second) = (first.to_owned(), second.to_owned());
-    Diagnostic::new(span, CheckKind::Overlap { first, second, place }).and(at, "the other one")
+    Diagnostic::new(span, CheckKind::Overlap { first, second, place }).and(at, "overlapping region")
 }

@@ -54,7 +54,7 @@ pub(super) fn regions(
                     written.name.span,
                     RegionKind::RegionsAlike { name: earlier.name.clone() },
                 )
-                .and(earlier.span, "the first"),
+                .and(earlier.span, "first region of this name"),
             );
         }
         let evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
@@ -89,7 +89,8 @@ pub(super) fn named_surface(
     match surfaces.iter().position(|surface| surface.name == name.word) {
         Some(at) => {
             if surfaces[at].cutting != cutting {
-                let there = if cutting { "and not here" } else { "and is here" };
+                let there =
+                    if cutting { "not marked `cutting` here" } else { "marked `cutting` here" };
                 diagnostics.push(
                     Diagnostic::new(
                         name.span,
@@ -261,7 +262,7 @@ impl RegionResolver<'_> {
                 second.span,
                 RegionKind::SaidTwice { word: quantity.keyword().to_owned() },
             )
-            .and(first.span, "first here"));
+            .and(first.span, "first definition"));
         }
         Ok(first)
     }
