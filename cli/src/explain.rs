@@ -62,8 +62,12 @@ fn list_all(out: &mut Output) -> Result<(), Failure> {
     for family in FAMILIES {
         writeln!(out, "{}", family.title)?;
         for entry in family.entries {
-            let warning = if entry.severity == Severity::Warning { " (warning)" } else { "" };
-            writeln!(out, "  {}  {}{warning}", entry.code, entry.title)?;
+            let severity = match entry.severity {
+                Severity::Error => "",
+                Severity::Warning => " (warning)",
+                Severity::Note => " (note)",
+            };
+            writeln!(out, "  {}  {}{severity}", entry.code, entry.title)?;
         }
     }
     Ok(())
@@ -73,6 +77,7 @@ fn severity(entry: &Entry) -> &'static str {
     match entry.severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
+        Severity::Note => "note",
     }
 }
 

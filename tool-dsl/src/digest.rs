@@ -1,8 +1,10 @@
 //! A digest of a tool's meaning, which distinguishes its versions.
 
 use crate::checked::CheckedTool;
+use crate::domain::Domain;
 use crate::expr::{Id, Node};
 use crate::plan::Tree;
+use crate::prove::Bounds;
 use siphasher::sip::SipHasher24;
 use std::collections::HashMap;
 use std::fmt::{Debug, Write};
@@ -35,17 +37,26 @@ fn meaning(tool: &CheckedTool) -> String {
     let mut line = |what: &dyn Debug| {
         let _ = writeln!(text, "{what:?}");
     };
-    line(&(model.domain, model.unit, tool.extent.cell().sides));
-    line(&(&tool.envelope(), tool.bounds()));
-    model.outline().for_each(|piece| line(&piece));
+    // Only numbers, words and tuples are written, so that a renamed type or field changes no digest.
+    let domain = match model.domain {
+        Domain::HalfPlane => "half plane",
+        Domain::Space => "space",
+    };
+    let sides = tool.extent.cell().sides.map(|side| (side.low, side.high));
+    line(&(domain, model.unit.symbol(), sides));
+    tool.envelope().iter().for_each(|slab| line(&(slab.low, slab.high, slab.radius)));
+    let Bounds { least, lipschitz, rounding } = tool.bounds();
+    line(&(least, lipschitz, rounding));
+    model.outline().for_each(|piece| line(&(piece.ends, piece.circle, piece.surface)));
     model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
     for region in &model.regions {
         let outputs: Vec<usize> = region.outputs.roots().into_iter().map(index).collect();
         line(&(&region.name, region.surface, outputs));
     }
     model.curves.iter().for_each(|curve| line(&index(curve.value)));
-    line(&(&tool.plan.owner, &tool.plan.inside));
-    line(&tool.plan.outside.map(&|id: &Id| Some(index(*id))));
+    line(&tests(&tool.plan.owner, &|owner| format!("{owner:?}")));
+    line(&tests(&tool.plan.inside, &|inside| inside.to_string()));
+    line(&tests(&tool.plan.outside, &|id| index(*id).to_string()));
     for id in &needed {
         match model.graph.node(*id) {
             // The rounded value, as in the generated code.
@@ -59,6 +70,16 @@ fn meaning(tool: &CheckedTool) -> String {
         }
     }
     text
+}
+
+/// Writes a tree as nested tests, with its leaves as text.
+fn tests<L>(tree: &Tree<L>, leaf: &dyn Fn(&L) -> String) -> String {
+    match tree {
+        Tree::Leaf(value) => leaf(value),
+        Tree::Split { curve, strict, below, above } => {
+            format!("({curve} {strict} {} {})", tests(below, leaf), tests(above, leaf))
+        }
+    }
 }
 
 fn leaves(tree: &Tree<Id>, all: &mut Vec<Id>) {

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use tool_dsl::diagnostic::{Diagnostic, Refusal};
+use tool_dsl::diagnostic::{Diagnostic, Refusal, Severity};
 use tool_dsl::source::Sources;
 
 /// Returns a tool's errors, each at its location.
@@ -19,7 +19,7 @@ pub(crate) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> T
         .collect()
 }
 
-/// Returns a tool's warnings, each at its location.
+/// Returns a tool's warnings, each at its location. Notes are not shown in a build.
 ///
 /// On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
 /// the text of its deprecation note.
@@ -28,7 +28,8 @@ pub(crate) fn warnings(
     sources: &Sources,
     call_site: Span,
 ) -> TokenStream {
-    located(diagnostics.iter(), sources, call_site)
+    let warnings = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Warning);
+    located(warnings, sources, call_site)
         .map(|(message, [first, _])| {
             quote_spanned! { first =>
                 const _: () = {

@@ -44,16 +44,18 @@ use std::ops::Range;
 /// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
+    /// A note needs no change of the text.
+    Note,
     /// A warning does not prevent code from being emitted.
     Warning,
     /// An error prevents code from being emitted.
     Error,
 }
 
-/// An error or a warning.
+/// An error, a warning or a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Error or warning.
+    /// Error, warning or note.
     pub severity: Severity,
     /// The reason.
     pub kind: Kind,
@@ -121,6 +123,7 @@ impl Diagnostic {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
+            Severity::Note => Level::NOTE,
         };
         let (source, span) = sources.locate(self.span);
         let primary = AnnotationKind::Primary.span(visible(source, span));

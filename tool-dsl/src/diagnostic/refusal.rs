@@ -83,7 +83,9 @@ pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
         diagnostics.truncate(MOST);
         diagnostics.push(match next {
             (Severity::Error, span) => Diagnostic::new(span, CheckKind::MoreErrors),
-            (Severity::Warning, span) => Diagnostic::new(span, CheckKind::MoreWarnings),
+            (Severity::Warning | Severity::Note, span) => {
+                Diagnostic::new(span, CheckKind::MoreWarnings)
+            }
         });
     }
     diagnostics

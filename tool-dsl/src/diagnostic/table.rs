@@ -149,6 +149,7 @@ macro_rules! kinds {
         }
     };
     (@severity error) => { $crate::diagnostic::Severity::Error };
+    (@severity note) => { $crate::diagnostic::Severity::Note };
     (@severity warning) => { $crate::diagnostic::Severity::Warning };
     (@example $code:ident) => {
         $crate::diagnostic::Example::Text(include_str!(concat!(

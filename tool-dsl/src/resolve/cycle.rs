@@ -79,7 +79,7 @@ impl<'t> Step<'t> {
 }
 
 /// Returns the names that an expression mentions, in the order of the text.
-fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
+pub(super) fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
     let mut names = Vec::new();
     let mut pending = vec![expr];
     while let Some(expr) = pending.pop() {

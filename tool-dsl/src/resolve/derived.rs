@@ -51,7 +51,7 @@ pub(super) fn derived(
     curves: &mut Curves,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> FromProfile {
-    laws.check(&surfaces, diagnostics);
+    laws.check(&surfaces, &lowering.left_out, diagnostics);
     if let Err(diagnostic) = divider.check_limits(&outline) {
         diagnostics.push(diagnostic);
         return FromProfile::default();

@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Names, RegionKind, SurfaceRemedy, enough, ne
 use crate::model::Surface;
 use crate::source::Span;
 use crate::syntax::tree::{Law, Quantity};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A tool's laws.
 pub(super) struct Laws<'t> {
@@ -37,8 +37,13 @@ impl<'t> Laws<'t> {
             .copied()
     }
 
-    /// Reports errors in the laws themselves.
-    pub(super) fn check(&self, surfaces: &[Surface], diagnostics: &mut Vec<Diagnostic>) {
+    /// Reports errors in the laws themselves. A law may be for a surface that is left out.
+    pub(super) fn check(
+        &self,
+        surfaces: &[Surface],
+        left_out: &BTreeSet<String>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         let mut known_laws: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.own {
             if enough(diagnostics) {
@@ -69,6 +74,7 @@ impl<'t> Laws<'t> {
                     continue;
                 }
                 match surface {
+                    None if left_out.contains(word) => {}
                     None => {
                         let known = surfaces.iter().map(|s| s.name.as_str());
                         // The part may have been omitted from the name of a part's surface.

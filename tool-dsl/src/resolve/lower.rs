@@ -1,6 +1,7 @@
 //! Lowers expressions of the syntax tree to nodes of the graph, with their dimensions.
 
 use super::call::FUNCTIONS;
+use super::cycle::mentioned;
 use crate::diagnostic::{
     Diagnostic, Kind, NameRemedy, Names, Operation, Reported, Role, ValueKind, nearest,
 };
@@ -12,7 +13,7 @@ use crate::number::Number;
 use crate::source::Span;
 use crate::syntax::MAX_HEIGHT;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Names reserved by the language, whatever the file's own coordinates.
 const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
@@ -52,6 +53,10 @@ pub(super) struct Lowering {
     pub(super) declared: BTreeMap<String, Span>,
     /// The names without a value, each with the evidence that its definition was rejected.
     pub(super) broken: BTreeMap<String, Reported>,
+    /// The names whose values depend on params.
+    pub(super) parametric: BTreeSet<String>,
+    /// The surfaces of segments that are left out, as their params give them no length.
+    pub(super) left_out: BTreeSet<String>,
 }
 
 /// The largest intermediate constant, 2^1000, large enough for powers of lengths.
@@ -106,6 +111,11 @@ impl Lowering {
             let reported = Reported::push(diagnostics, diagnostic);
             self.broken.insert(name.word.clone(), reported);
         }
+    }
+
+    /// Returns whether the value of an expression depends on a param.
+    pub(super) fn is_parametric(&self, expr: &Expr) -> bool {
+        mentioned(expr).iter().any(|(word, _)| self.parametric.contains(*word))
     }
 
     /// Lowers an expression that has to be constant, in this role.

@@ -314,6 +314,9 @@ fn constants(
         if lowering.broken.contains_key(&definition.name.word) {
             continue;
         }
+        if is_param || lowering.is_parametric(&definition.value) {
+            lowering.parametric.insert(definition.name.word.clone());
+        }
         let value = lowering.constant(&definition.value, Role::Let);
         let value = value.and_then(|value| match is_param {
             true => arguments::value_of(definition, value, given, lowering.unit),

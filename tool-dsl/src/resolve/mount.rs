@@ -16,7 +16,7 @@ use crate::regionalise::check::check;
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of files that a tool mounts, including those that mounted files mount.
 const MAX_MOUNTS: usize = 64;
@@ -29,6 +29,8 @@ pub(super) struct MountedPart {
     /// with depth.
     niceness: Vec<Option<(usize, Expr, bool)>>,
     scopes: Vec<Scope>,
+    /// The surfaces that its file leaves out.
+    left_out: BTreeSet<String>,
 }
 
 /// The names of a mounted file.
@@ -123,6 +125,10 @@ impl Mounting<'_> {
             let part = self.resolve_mount(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
+                    let names = part.left_out.iter();
+                    lowering
+                        .left_out
+                        .extend(names.map(|name| format!("{}.{name}", mount.name.word)));
                     parts.push((
                         *mount,
                         at,
@@ -200,6 +206,7 @@ impl Mounting<'_> {
         if let Some(reported) = Reported::among(&self.diagnostics[previous_count..]) {
             return Err(reported);
         }
+        part.left_out = std::mem::take(&mut lowering.left_out);
         part.scopes.push(Scope { lowering, curves: curves(&tree) });
         Ok((part, unit))
     }
@@ -294,7 +301,13 @@ impl Mounting<'_> {
                 let (outline, surfaces) = profile::outline(profile, lowering, self.diagnostics)?;
                 self.diagnostics.extend(check_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
-                MountedPart { outline, surfaces, niceness, scopes: Vec::new() }
+                MountedPart {
+                    outline,
+                    surfaces,
+                    niceness,
+                    scopes: Vec::new(),
+                    left_out: BTreeSet::new(),
+                }
             }
             Some(Shape::Mounts(mounts)) => self.assemble(&mounts, lowering)?,
             None => {
@@ -314,7 +327,7 @@ impl Mounting<'_> {
             .filter(|law| law.quantity == Quantity::Niceness)
             .collect();
         let laws = Laws::new(&laws, BTreeMap::new());
-        laws.check(&part.surfaces, self.diagnostics);
+        laws.check(&part.surfaces, &lowering.left_out, self.diagnostics);
         let own = part.scopes.len();
         for (surface, niceness) in part.surfaces.iter().zip(&mut part.niceness) {
             if let Some(law) = laws.find(Quantity::Niceness, surface).filter(|_| surface.cutting) {

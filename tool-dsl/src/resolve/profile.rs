@@ -33,9 +33,17 @@ pub(super) fn outline(
     let mut surfaces = Vec::new();
     let mut segments = Vec::new();
     let mut from = exact_point(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
+    let mut begin = &profile.start;
     for piece in &profile.pieces {
-        let surface = surface(piece, &mut surfaces, diagnostics);
+        let ends = [std::mem::replace(&mut begin, &piece.to), &piece.to];
         let to = exact_point(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
+        if from.is_some() && from == to && is_parametric(ends, lowering) {
+            let surface = piece.surface.word.clone();
+            lowering.left_out.insert(surface.clone());
+            diagnostics.push(Diagnostic::new(piece.span, ProfileKind::LeftOut { surface }));
+            continue;
+        }
+        let surface = surface(piece, &mut surfaces, diagnostics);
         if let (Some(from), Some(to)) = (from, to.clone()) {
             match segment(piece, from, to, surface, lowering) {
                 Ok(segment) => segments.push(segment),
@@ -48,14 +56,17 @@ pub(super) fn outline(
         }
     }
     without_error(&diagnostics[before..])?;
+    if segments.is_empty() {
+        let diagnostic = Diagnostic::new(profile.span, ProfileKind::SegmentWithoutLength);
+        return Err(Reported::push(diagnostics, diagnostic));
+    }
     off_axis(profile, &segments, diagnostics);
     without_error(&diagnostics[before..])?;
     let frame = lowering.frame.clone();
     diagnostics.extend(check(&segments, shown));
     without_error(&diagnostics[before..])?;
     // The map to the tool's frame may reverse the orientation; the order of the segments is then reversed too.
-    let to_tool =
-        |exact_point: &ExactPoint| [exact_point[0].clone(), frame.to_tool(&exact_point[1])];
+    let to_tool = |point: &ExactPoint| [point[0].clone(), frame.to_tool(&point[1])];
     let mut outline: Vec<Segment> = segments
         .into_iter()
         .map(|segment| {
@@ -94,6 +105,11 @@ fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagn
             ProfileKind::EndsOffAxis { end: shown(end), axis: axis(end) },
         ));
     }
+}
+
+/// Returns whether a coordinate of one of the ends depends on a param.
+fn is_parametric(ends: [&Tuple; 2], lowering: &Lowering) -> bool {
+    ends.iter().flat_map(|end| &end.parts).any(|part| lowering.is_parametric(part))
 }
 
 fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {

@@ -45,7 +45,7 @@ pub(super) fn regions(
     let mut surfaces = Vec::new();
     let owners: Vec<usize> =
         written.iter().map(|region| surface(region, &mut surfaces, diagnostics)).collect();
-    laws.check(&surfaces, diagnostics);
+    laws.check(&surfaces, &lowering.left_out, diagnostics);
     let mut regions: Vec<Region> = Vec::new();
     for (written, owner) in written.into_iter().zip(owners) {
         if let Some(earlier) = regions.iter().find(|r| r.name == written.name.word) {

@@ -10,7 +10,7 @@ use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Tool};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Lowering {
     /// Returns the state for a text without names.
@@ -24,6 +24,8 @@ impl Lowering {
             values: BTreeMap::new(),
             declared: BTreeMap::new(),
             broken: BTreeMap::new(),
+            parametric: BTreeSet::new(),
+            left_out: BTreeSet::new(),
         }
     }
 

@@ -113,6 +113,7 @@ fn section(page: &mut String, entry: &Entry) -> std::fmt::Result {
     let kind = match entry.severity {
         Severity::Error => "",
         Severity::Warning => " (warning)",
+        Severity::Note => " (note)",
     };
     write!(page, "\n### {}: {}{kind}\n\n{}\n\n", entry.code, entry.title, entry.explanation)?;
     match entry.remedies().collect::<Vec<_>>().as_slice() {

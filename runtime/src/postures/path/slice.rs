@@ -23,8 +23,8 @@ pub(super) struct SlicePoint {
     pub(super) crossed: Vec<SurfacePoint>,
 }
 
-/// Returns the lines in which parallel planes cut a mesh, per plane, as points about a step apart: at most that
-/// far, and at least half of it, except for the first of a line. Closed lines end where they begin.
+/// Returns the lines in which parallel planes cut a mesh, per plane, as points at most a step apart. A line begins
+/// within half a step of its end and ends within a step of it; closed lines end where they begin.
 pub(super) fn slices(
     mesh: &Mesh,
     normal: &Vector3<f64>,
@@ -130,16 +130,16 @@ fn join_segments(segments: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
     lines
 }
 
-/// Returns points along a line: the midpoints of equal divisions of its segments, except those that are too
-/// near to the previous point.
+/// Returns points along a line, at most a step apart and otherwise as few as possible. They are midpoints of equal
+/// divisions of its segments, which are no longer than a step, so a next point is always near enough.
 fn sample_line(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint> {
     let mut points: Vec<SlicePoint> = Vec::new();
-    let mut distance = f64::INFINITY;
+    // The midpoint before the current one, with its distance along the line from the last point.
+    let mut skipped: Option<(SlicePoint, f64)> = None;
+    let mut distance = 0.0;
     let mut crossed = Vec::new();
     for (index, SliceSegment { triangle, ends: [from, to] }) in line.iter().enumerate() {
-        if let Some(before) = index.checked_sub(1)
-            && !points.is_empty()
-        {
+        if let Some(before) = index.checked_sub(1) {
             let normals = [line[before].triangle, *triangle].map(|side| mesh.normal(side));
             let spot = |normal| SurfacePoint { point: *from, normal };
             crossed.extend(normals.into_iter().flatten().map(spot));
@@ -150,15 +150,28 @@ fn sample_line(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint>
         for k in 0..parts as usize {
             // Each division adds half its length before its midpoint, and half after it.
             distance += 0.5 * fraction;
-            if distance >= 0.5 * step {
-                let point = from + displacement * ((k as f64 + 0.5) / parts);
-                let crossed = std::mem::take(&mut crossed);
-                points.push(SlicePoint { point, triangle: *triangle, crossed });
+            let point = from + displacement * ((k as f64 + 0.5) / parts);
+            let mut next =
+                SlicePoint { point, triangle: *triangle, crossed: std::mem::take(&mut crossed) };
+            match skipped.take() {
+                Some((last, at)) if distance > step => {
+                    points.push(last);
+                    distance -= at;
+                }
+                Some((last, _)) => next.crossed.splice(0..0, last.crossed).for_each(drop),
+                None => {}
+            }
+            if points.is_empty() {
+                points.push(next);
                 distance = 0.0;
+            } else {
+                skipped = Some((next, distance));
             }
             distance += 0.5 * fraction;
         }
     }
+    // The rest of the line, if it is long enough to be worth a point.
+    points.extend(skipped.filter(|(_, at)| *at >= 0.5 * step).map(|(last, _)| last));
     points
 }
 
@@ -187,7 +200,7 @@ mod tests {
             );
             for pair in line.windows(2) {
                 let spacing = (pair[1].point - pair[0].point).norm();
-                assert!(spacing < 1.01, "{spacing} at {height}");
+                assert!(spacing <= 0.5 + 1e-9, "{spacing} at {height}");
             }
             for point in line {
                 assert!((point.point.z - height).abs() < 1e-9);
