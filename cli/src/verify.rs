@@ -76,18 +76,21 @@ impl PartPoint {
 impl<'a> Row<'a> {
     fn of(finding: &Finding, info: &'a ToolInfo, (file, unit): (&'a str, Unit)) -> Row<'a> {
         let (kind, measurement, point) = match finding.kind {
-            FindingKind::Deep { allowed, depth, most, through, witness, .. } => {
+            FindingKind::Deep { allowed, depth, max_depth, through, witness, .. } => {
                 let deep = Measurement::Deep {
                     allowed_depth: allowed,
                     depth: depth.into(),
-                    depth_bound: most,
+                    depth_bound: max_depth,
                     through,
                 };
                 ("deep", Some(deep), Some(PartPoint::of(&witness)))
             }
-            FindingKind::Near { margin, distance, least, witness, .. } => {
-                let near =
-                    Measurement::Near { margin, distance: distance.into(), distance_bound: least };
+            FindingKind::Near { margin, distance, min_distance, witness, .. } => {
+                let near = Measurement::Near {
+                    margin,
+                    distance: distance.into(),
+                    distance_bound: min_distance,
+                };
                 ("near", Some(near), Some(PartPoint::of(&witness)))
             }
             FindingKind::Inside { .. } => ("inside", None, None),
@@ -198,9 +201,11 @@ fn describe(finding: &Finding, info: &ToolInfo, unit: Unit) -> String {
         FindingKind::Deep { surface, through: true, witness, .. } => {
             format!("{} passes right through triangle {}, {at}", name(*surface), witness.triangle)
         }
-        FindingKind::Deep { surface, depth: Interval { low, high }, most, witness, .. } => {
-            let more = if most > high && finding.from.is_some() {
-                format!("; at most {} {unit} during this motion", format_small(*most, unit))
+        FindingKind::Deep {
+            surface, depth: Interval { low, high }, max_depth, witness, ..
+        } => {
+            let more = if max_depth > high && finding.from.is_some() {
+                format!("; at most {} {unit} during this motion", format_small(*max_depth, unit))
             } else {
                 String::new()
             };

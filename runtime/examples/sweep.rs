@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             if let Some(record) = row.best.first() {
                 best[usize::from(record.tool)] += 1;
             }
-            access[triangle as usize].clone_from(&row.access[0].directions);
+            access[triangle.index()].clone_from(&row.access[0].directions);
         }
         ControlFlow::Continue(())
     });

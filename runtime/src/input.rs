@@ -5,9 +5,9 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Maximum size of a file in bytes, 16 GiB: some 300 million triangles of binary STL.
-pub(crate) const MOST_BYTES: u64 = 1 << 34;
+pub(crate) const MAX_FILE_BYTES: u64 = 1 << 34;
 
-/// Opens a regular file of at most [`MOST_BYTES`] bytes and returns it with its length.
+/// Opens a regular file of at most [`MAX_FILE_BYTES`] bytes and returns it with its length.
 ///
 /// # Errors
 /// Returns the errors of the operating system. Refuses a longer file, and a directory, a pipe, a socket
@@ -23,8 +23,8 @@ pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
     let facts = file.metadata()?;
     match facts.len() {
         _ if !facts.is_file() => irregular(),
-        bytes if bytes > MOST_BYTES => {
-            refused(format!("it has {bytes} bytes, more than the {MOST_BYTES} that are read"))
+        bytes if bytes > MAX_FILE_BYTES => {
+            refused(format!("it has {bytes} bytes, more than the {MAX_FILE_BYTES} that are read"))
         }
         bytes => Ok((file, bytes)),
     }
@@ -69,7 +69,7 @@ mod tests {
             }
         }
         // A sparse file takes no room on the disk.
-        File::create(&path).and_then(|file| file.set_len(MOST_BYTES + 1)).expect("a long file");
+        File::create(&path).and_then(|file| file.set_len(MAX_FILE_BYTES + 1)).expect("a long file");
         assert!(refused(&path).contains("17179869185 bytes, more than the 17179869184"));
     }
 }

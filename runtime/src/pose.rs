@@ -152,8 +152,8 @@ impl Pose {
     /// # Errors
     /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one
     /// allowed.
-    pub fn translated(&self, way: Vector3<f64>) -> Result<Pose, PoseError> {
-        Pose::finite(self.rotation, self.tip + way, self.full)
+    pub fn translated(&self, offset: Vector3<f64>) -> Result<Pose, PoseError> {
+        Pose::finite(self.rotation, self.tip + offset, self.full)
     }
 
     /// Returns the pose rotated by `turn`, with its tip at `tip`.
@@ -173,17 +173,17 @@ impl Pose {
         }
     }
 
-    /// Returns the pose relative to the frame `place`: `place⁻¹ ∘ self`, with the difference of the tips
+    /// Returns the pose relative to `frame`: `frame⁻¹ ∘ self`, with the difference of the tips
     /// taken first. The rotation remains a rotation as in [`Pose::then`].
     ///
     /// # Panics
     /// Panics if the tip leaves [`FARTHEST_TIP`].
-    pub fn relative_to(&self, place: &Pose) -> Pose {
-        if *place == Pose::default() {
+    pub fn relative_to(&self, frame: &Pose) -> Pose {
+        if *frame == Pose::default() {
             return *self;
         }
-        let inverse = place.rotation.transpose();
-        let tip = Point3::from(inverse * (self.tip - place.tip));
+        let inverse = frame.rotation.transpose();
+        let tip = Point3::from(inverse * (self.tip - frame.tip));
         Pose {
             rotation: orthonormal(inverse * self.rotation),
             tip: check_range(tip),

@@ -98,15 +98,15 @@ impl<'a> Scene<'a> {
         self
     }
 
-    /// Adds a part; `place` is the pose of its frame in the world.
+    /// Adds a part; `pose` is the pose of its frame in the world.
     ///
     /// # Errors
     /// Fails if the part's unit differs from the scene's.
-    pub fn add_part(&mut self, part: &'a Part, place: Pose) -> Result<PartId, SceneError> {
+    pub fn add_part(&mut self, part: &'a Part, pose: Pose) -> Result<PartId, SceneError> {
         if part.unit() != self.unit {
             return Err(SceneError { part: part.unit(), scene: self.unit });
         }
-        self.parts.push((part, place));
+        self.parts.push((part, pose));
         for scene_tool in &mut self.tools {
             scene_tool.pairs.push(Pair::new(part, scene_tool.tool, self.law, self.weights));
         }
@@ -123,8 +123,8 @@ impl<'a> Scene<'a> {
     }
 
     /// Moves a part as a whole; its tree is unchanged.
-    pub fn move_part(&mut self, part: PartId, place: Pose) {
-        self.parts[part.0].1 = place;
+    pub fn move_part(&mut self, part: PartId, pose: Pose) {
+        self.parts[part.0].1 = pose;
     }
 
     /// Moves a tool.

@@ -22,11 +22,11 @@ struct Share {
 
 impl Share {
     /// Counts the triangles of a mesh for which `predicate` holds.
-    fn of_all(mesh: &Mesh, predicate: impl Fn(u32) -> bool) -> Share {
-        let ids = (0..mesh.triangles().len() as u32).filter(|id| predicate(*id));
+    fn of_all(mesh: &Mesh, predicate: impl Fn(TriangleId) -> bool) -> Share {
+        let ids = (0..mesh.triangles().len() as u32).map(TriangleId).filter(|id| predicate(*id));
         ids.fold(Share::default(), |share, id| Share {
             triangles: share.triangles + 1,
-            area: share.area + mesh.area(TriangleId(id)),
+            area: share.area + mesh.area(id),
         })
     }
 

@@ -61,7 +61,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     for entry in map.rows()? {
         let (triangle, row) = entry?;
         if let Some(reach) = row.access.into_iter().find(|access| access.tool == index) {
-            access[triangle as usize] = reach.directions;
+            access[triangle.index()] = reach.directions;
         }
     }
     let tolerance = arguments.tolerance.unwrap_or(identity.rules.tolerance);

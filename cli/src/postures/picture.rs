@@ -30,7 +30,7 @@ pub(super) fn of(
     let mut values = vec![None; mesh.triangles().len()];
     for entry in map.rows()? {
         let (triangle, row) = entry?;
-        values[triangle as usize] = value(&row, directions, by);
+        values[triangle.index()] = value(&row, directions, by);
     }
     let known = || values.iter().copied().flatten();
     let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));

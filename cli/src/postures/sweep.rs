@@ -17,7 +17,7 @@ use std::time::Instant;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::sweep::{Batch, PostureSweep, SweepStats};
 use touchoff::postures::{Directions, MapIdentity, MapRow, PostureMap, Rules};
-use touchoff::{Mesh, Tool, Unit};
+use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 /// Summary of a sweep.
 #[derive(Serialize)]
@@ -84,9 +84,9 @@ impl Count {
         }
     }
 
-    fn add(&mut self, triangle: u32, row: &MapRow) {
+    fn add(&mut self, triangle: TriangleId, row: &MapRow) {
         if let Some(best) = row.best.first() {
-            self.reached[triangle as usize] = true;
+            self.reached[triangle.index()] = true;
             self.tools[usize::from(best.tool)].triangles_best += 1;
         }
         for access in &row.access {
@@ -158,7 +158,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         }
     }
     let all = Share::of_all(&mesh, |_| true);
-    let reached = Share::of_all(&mesh, |triangle| count.reached[triangle as usize]);
+    let reached = Share::of_all(&mesh, |triangle| count.reached[triangle.index()]);
     let summary = Summary {
         triangles: mesh.triangles().len(),
         unit: unit.symbol(),

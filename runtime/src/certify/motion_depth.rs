@@ -175,8 +175,8 @@ impl Certifier<'_> {
     /// // Both ends are clear of the block; between them the ball is 0.5 deep.
     /// let motion = Motion::new(&pose(-20.0)?, &pose(20.0)?)?;
     /// let found = Certifier::new(&block, &Ball)?.motion_depth(SurfaceId(0), &motion, 0.0, 1e-6)?;
-    /// let MotionDepth::Deeper { depth: Interval { low, high }, most, .. } = found else { panic!("{found:?}") };
-    /// assert!(low <= 0.5 && 0.5 <= high && high - low < 1.1e-6 && most < 0.57);
+    /// let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = found else { panic!("{found:?}") };
+    /// assert!(low <= 0.5 && 0.5 <= high && high - low < 1.1e-6 && max_depth < 0.57);
     /// # Ok(()) }
     /// ```
     ///
@@ -288,10 +288,15 @@ impl MotionSearch<'_, '_> {
             },
         };
         let top = self.climb(first);
-        let (best, most) = self.bounded(top, allowed);
+        let (best, max_depth) = self.bounded(top, allowed);
         let length = self.setting.length;
         let depth = best.depth.scaled_by(length);
-        MotionDepth::Deeper { at: best.at, depth, most: most * length, witness: best.witness }
+        MotionDepth::Deeper {
+            at: best.at,
+            depth,
+            max_depth: max_depth * length,
+            witness: best.witness,
+        }
     }
 
     /// Returns the deepest point found and an upper bound on the depth over the motion.

@@ -12,7 +12,6 @@ use crate::certify::tool_model::field::Scratch;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
 use crate::certify::triangle::local::{LocalTriangle, nearest};
 use crate::certify::verdict::Witness;
-use crate::id::TriangleId;
 use crate::pose::Pose;
 use crate::tool::LANES;
 use fearless_simd::Level;
@@ -56,7 +55,7 @@ impl QuerySetting<'_> {
     pub(crate) fn witness(&self, best: &DeepestCandidate, pose: &Pose) -> Witness {
         Witness {
             point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
-            triangle: TriangleId(self.bvh.ids[best.index as usize]),
+            triangle: self.bvh.ids[best.index as usize],
             surface: self.tool_model.surface(best.feature),
         }
     }

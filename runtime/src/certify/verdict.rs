@@ -154,7 +154,7 @@ pub enum MotionDepth {
         depth: Interval,
         /// Upper bound on depth over the motion, in the part's unit. It usually exceeds `depth.low` by at most the
         /// tolerance or an eighth of the excess over the allowance, whichever is larger.
-        most: f64,
+        max_depth: f64,
         /// The point with that depth at that time.
         witness: Witness,
     },

@@ -64,7 +64,7 @@ pub(super) fn sample_blue_noise(
         for hole in holes {
             if cloud.len() < count && inserted.insert(&hole) {
                 let normal = mesh.normal(TriangleId(hole.triangle)).unwrap_or_default();
-                cloud.push(hole.point, normal, hole.triangle, 0.0);
+                cloud.push(hole.point, normal, TriangleId(hole.triangle), 0.0);
             }
         }
         min_distance =

@@ -32,8 +32,8 @@ pub enum CloudError {
     },
     /// The covering radius needs too many points.
     #[error(
-        "a covering radius of {radius} wants about {needed:.1e} points, more than {most}, \
-         which would have one of about {instead:.2e}: ask for that, or ask the triangles \
+        "a covering radius of {radius} needs about {needed:.1e} points, more than {limit}, \
+         which give one of about {attainable:.2e}: ask for that, or query the triangles \
          (`certify`), between which nothing lies"
     )]
     TooFine {
@@ -42,9 +42,9 @@ pub enum CloudError {
         /// The approximate number of points it needs.
         needed: f64,
         /// The maximum number of points.
-        most: usize,
+        limit: usize,
         /// The approximate covering radius of that maximum number of points.
-        instead: f64,
+        attainable: f64,
     },
     /// The lists have different lengths.
     #[error(

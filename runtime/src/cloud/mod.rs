@@ -19,6 +19,7 @@ mod voronoi;
 pub use error::CloudError;
 pub use method::{Sampling, SamplingMethod};
 
+use crate::id::TriangleId;
 use crate::mesh::{Mesh, OrientedPoints, area_and_normal, is_valid_coordinate};
 use crate::unit::Unit;
 use cells::Cells;
@@ -46,7 +47,7 @@ pub const NORMAL_TOLERANCE: f64 = 1e-3;
 pub struct Cloud {
     points: Vec<Point3<f64>>,
     normals: Vec<Vector3<f64>>,
-    triangles: Vec<u32>,
+    triangles: Vec<TriangleId>,
     weights: Vec<f64>,
     unit: Unit,
     covering_radius: Option<CoveringRadius>,
@@ -121,8 +122,8 @@ impl Cloud {
                 return Err(CloudError::TooFine {
                     radius,
                     needed: required_count,
-                    most: max_count,
-                    instead: attainable,
+                    limit: max_count,
+                    attainable,
                 });
             }
             let count = (required_count.ceil() as usize).max(1);
@@ -151,10 +152,11 @@ impl Cloud {
     pub fn from_points(points: OrientedPoints, unit: Unit) -> Result<Cloud, CloudError> {
         let OrientedPoints { places, normals, faces, areas } = points;
         let count = places.len();
-        let faces = faces.unwrap_or_else(|| (0..count as u32).collect());
+        let faces =
+            faces.unwrap_or_else(|| (0..count as u32).collect()).into_iter().map(TriangleId);
         let estimated = areas.is_none();
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
-        let mut cloud = Cloud::new(places, normals, faces, weights, unit)?;
+        let mut cloud = Cloud::new(places, normals, faces.collect(), weights, unit)?;
         let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
         cloud.covering_radius = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {
@@ -206,7 +208,7 @@ impl Cloud {
         for (id, corners) in (0..).zip(mesh.corners()) {
             if let Some((area, normal)) = area_and_normal(&corners) {
                 let [a, b, c] = corners;
-                cloud.push(a + ((b - a) + (c - a)) / 3.0, normal, id, area);
+                cloud.push(a + ((b - a) + (c - a)) / 3.0, normal, TriangleId(id), area);
             }
         }
         cloud
@@ -224,7 +226,7 @@ impl Cloud {
     pub fn new(
         points: Vec<Point3<f64>>,
         mut normals: Vec<Vector3<f64>>,
-        triangles: Vec<u32>,
+        triangles: Vec<TriangleId>,
         weights: Vec<f64>,
         unit: Unit,
     ) -> Result<Cloud, CloudError> {
@@ -263,7 +265,13 @@ impl Cloud {
         }
     }
 
-    fn push(&mut self, point: Point3<f64>, normal: Vector3<f64>, triangle: u32, weight: f64) {
+    fn push(
+        &mut self,
+        point: Point3<f64>,
+        normal: Vector3<f64>,
+        triangle: TriangleId,
+        weight: f64,
+    ) {
         self.points.push(point);
         self.normals.push(normal);
         self.triangles.push(triangle);
@@ -281,7 +289,7 @@ impl Cloud {
     }
 
     /// Returns the id of the mesh's triangle that each point lies on.
-    pub fn triangles(&self) -> &[u32] {
+    pub fn triangles(&self) -> &[TriangleId] {
         &self.triangles
     }
 

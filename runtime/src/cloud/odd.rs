@@ -4,6 +4,7 @@ use super::pieces::Surface;
 use super::sampling::AreaSampler;
 use super::*;
 use crate::cloud::Sampling;
+use crate::id::TriangleId;
 use crate::mesh::shapes;
 
 const UNIT: Unit = Unit::Millimetre;
@@ -123,7 +124,7 @@ fn coincident_points_are_thinned() {
         let all = (0..count).map(|k| k % 100);
         let points = all.clone().map(|k| cloud.points()[k]).collect();
         let normals = all.map(|k| cloud.normals()[k]).collect();
-        let cloud = Cloud::new(points, normals, vec![0; count], vec![0.0; count], UNIT);
+        let cloud = Cloud::new(points, normals, vec![TriangleId(0); count], vec![0.0; count], UNIT);
         cloud.expect("a cloud").decimated(&tube, 200)
     };
     let thinned = repeated(60_000);

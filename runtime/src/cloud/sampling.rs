@@ -69,7 +69,7 @@ impl AreaSampler {
             cloud.push(
                 point,
                 self.normals[sample_index],
-                self.ids[sample_index],
+                TriangleId(self.ids[sample_index]),
                 area / count as f64,
             );
         }
@@ -86,7 +86,12 @@ impl AreaSampler {
             for index in range {
                 let sample_index = self.index_at((index as f64 + fraction(&mut random)) * share);
                 let point = self.point(mesh, sample_index, &mut random);
-                samples.push(point, self.normals[sample_index], self.ids[sample_index], 0.0);
+                samples.push(
+                    point,
+                    self.normals[sample_index],
+                    TriangleId(self.ids[sample_index]),
+                    0.0,
+                );
             }
             samples
         };

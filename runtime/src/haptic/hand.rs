@@ -82,19 +82,23 @@ struct HandleState {
 }
 
 impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
-    /// Creates a hand that commands the tool pose `wish` as a function of time in seconds, with a device
+    /// Creates a hand that commands the tool pose `target` as a function of time in seconds, with a device
     /// of `rate` cycles per second. The handle starts at the first commanded pose, at rest.
     ///
     /// # Errors
     /// Fails if the rate or a limit is out of its range.
-    pub fn new(limits: DeviceLimits, rate: f64, wish: F) -> Result<SimulatedHand<F>, SettingError> {
+    pub fn new(
+        limits: DeviceLimits,
+        rate: f64,
+        target: F,
+    ) -> Result<SimulatedHand<F>, SettingError> {
         limits.check()?;
         let frame = Frame { centre: Point3::origin(), unit: 1.0, axes: limits.axes };
         let period = setting::period(rate)?;
         let [linear, angular] = Oscillator::linear_and_angular(&HandImpedance::default(), period)?;
         let (wrench, encoder_steps) = (DeviceWrench::default(), [0.0; 2]);
         Ok(SimulatedHand {
-            target: wish,
+            target,
             frame,
             limits,
             period,
@@ -151,10 +155,14 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
     ///
     /// # Errors
     /// Fails if a resolution is negative or not finite.
-    pub fn with_encoders(mut self, way: f64, turn: f64) -> Result<SimulatedHand<F>, SettingError> {
-        setting::not_negative("step of the encoders in mm", way)?;
-        setting::not_negative("step of the encoders in rad", turn)?;
-        self.encoder_steps = [way, turn];
+    pub fn with_encoders(
+        mut self,
+        linear: f64,
+        angular: f64,
+    ) -> Result<SimulatedHand<F>, SettingError> {
+        setting::not_negative("step of the encoders in mm", linear)?;
+        setting::not_negative("step of the encoders in rad", angular)?;
+        self.encoder_steps = [linear, angular];
         Ok(self)
     }
 

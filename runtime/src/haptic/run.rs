@@ -152,10 +152,10 @@ impl StateStream {
     }
 }
 
-/// Creates both ends of a state channel, with a buffer for `room` states in the stream.
-pub fn state_channel(room: usize) -> (StatePublisher, LatestState, StateStream) {
+/// Creates both ends of a state channel, with a buffer for `capacity` states in the stream.
+pub fn state_channel(capacity: usize) -> (StatePublisher, LatestState, StateStream) {
     let (latest, output) = triple_buffer::triple_buffer(&None);
-    let (record, consumer) = rtrb::RingBuffer::new(room);
+    let (record, consumer) = rtrb::RingBuffer::new(capacity);
     (StatePublisher { latest, record }, LatestState(output), StateStream(consumer))
 }
 

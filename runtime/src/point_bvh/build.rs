@@ -26,7 +26,7 @@ pub(super) fn build(cloud: &Cloud) -> PointBvh {
             .map(|items| leaf_attributes(items, cloud, weight))
             .collect(),
         weight,
-        triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
+        triangles: items.iter().map(|item| cloud.triangles()[item.index as usize].0).collect(),
         covering_radius: cloud.covering_radius(),
         removed: 0,
     }

@@ -23,6 +23,7 @@ pub(crate) use traverse::Traversal;
 
 use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};
 use crate::cloud::{Cloud, CoveringRadius};
+use crate::id::TriangleId;
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Point3, Vector3};
 
@@ -140,8 +141,8 @@ impl PointBvh {
     }
 
     /// Returns the id of the triangle on which a point lies.
-    pub fn triangle(&self, index: usize) -> u32 {
-        self.triangles[index]
+    pub fn triangle(&self, index: usize) -> TriangleId {
+        TriangleId(self.triangles[index])
     }
 
     /// Returns a point relative to the tip, in the part's frame, by its index in the tree.

@@ -13,13 +13,13 @@ pub struct Directions {
 
 impl Directions {
     /// Largest number of directions per hemisphere.
-    pub const MOST: usize = 2_000;
+    pub const MAX_HEMISPHERE: usize = 2_000;
 
-    /// Creates directions with about `hemisphere` of them in every hemisphere, at most [`Directions::MOST`]: a
+    /// Creates directions with about `hemisphere` of them in every hemisphere, at most [`Directions::MAX_HEMISPHERE`]: a
     /// spiral of twice as many, each of which stands for an equal area of the sphere (Fibonacci's lattice;
     /// González, *Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices*, 2010).
     pub fn spread(hemisphere: usize) -> Directions {
-        let count = 2 * hemisphere.min(Directions::MOST);
+        let count = 2 * hemisphere.min(Directions::MAX_HEMISPHERE);
         let golden = PI * (3.0 - 5f64.sqrt());
         let list = (0..count).map(|k| {
             let up = 1.0 - (2 * k + 1) as f64 / count as f64;
@@ -71,7 +71,7 @@ impl Directions {
 }
 
 impl From<Vec<[f64; 3]>> for Directions {
-    /// Takes unit vectors, at most twice [`Directions::MOST`].
+    /// Takes unit vectors, at most twice [`Directions::MAX_HEMISPHERE`].
     fn from(list: Vec<[f64; 3]>) -> Directions {
         let vectors: Vec<Vector3<f64>> =
             list.iter().map(|direction| Vector3::from(*direction)).collect();

@@ -5,6 +5,7 @@ use crate::certify::TriangleBvh;
 use crate::debug::debug;
 use crate::escape::Escaped;
 use crate::haptic::{SessionState, StateStream};
+use crate::id::TriangleId;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::probe::Probe;
@@ -25,7 +26,7 @@ pub struct Recorder<'a> {
     validator: Validator<'a>,
     /// Niceness per triangle that a posture needs to be offered to the map.
     required_niceness: Vec<f64>,
-    batch: Vec<(u32, PostureRecord)>,
+    batch: Vec<(TriangleId, PostureRecord)>,
     /// Arrival time of the first posture of the batch.
     batch_start: Instant,
     /// The pose of the last state.
@@ -172,12 +173,13 @@ impl<'a> Recorder<'a> {
         let contacts = self.probe.contacts(&pose);
         let niceness =
             contacts.iter().map(|contact| contact.niceness).fold(f64::INFINITY, f64::min);
-        let mut touched: Vec<u32> = contacts.iter().map(|contact| contact.triangle.0).collect();
+        let mut touched: Vec<TriangleId> =
+            contacts.iter().map(|contact| contact.triangle).collect();
         touched.sort_unstable();
         touched.dedup();
         let required_niceness = &self.required_niceness;
-        let may_improve = |triangle: &u32| {
-            required_niceness.get(*triangle as usize).is_none_or(|required| niceness >= *required)
+        let may_improve = |triangle: &TriangleId| {
+            required_niceness.get(triangle.index()).is_none_or(|required| niceness >= *required)
         };
         touched.retain(may_improve);
         if touched.is_empty() || niceness < self.map.identity().rules.niceness {
@@ -214,7 +216,8 @@ impl<'a> Recorder<'a> {
         }
         self.map.merge(&self.batch)?;
         self.stats.batches += 1;
-        let mut triangles: Vec<u32> = self.batch.drain(..).map(|(triangle, _)| triangle).collect();
+        let mut triangles: Vec<TriangleId> =
+            self.batch.drain(..).map(|(triangle, _)| triangle).collect();
         triangles.sort_unstable();
         triangles.dedup();
         for triangle in triangles {
@@ -227,9 +230,9 @@ impl<'a> Recorder<'a> {
 
     /// Updates the niceness that a triangle requires: that of its last posture, once it has as many as are
     /// kept.
-    fn update_required(&mut self, triangle: u32, best: &[PostureRecord]) {
+    fn update_required(&mut self, triangle: TriangleId, best: &[PostureRecord]) {
         let last = best.get(usize::from(self.map.identity().keep.get()) - 1);
-        self.required_niceness[triangle as usize] =
+        self.required_niceness[triangle.index()] =
             last.map_or(f64::NEG_INFINITY, |record| record.niceness);
     }
 }

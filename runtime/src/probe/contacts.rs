@@ -51,7 +51,7 @@ pub(super) fn collect(
         contacts.push(Contact {
             point: pose.tip() + tree.relative_to_tip(&state.view, index),
             normal: tree.normal(index).into(),
-            triangle: TriangleId(tree.triangle(index)),
+            triangle: tree.triangle(index),
             region,
             surface: info.regions[region].surface,
             depth: evaluations.depth[candidate] * state.length,

@@ -293,7 +293,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     pub fn par_map<R: Send>(
         &self,
         poses: &[Pose],
-        ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
+        query: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
         // Enough poses that cloning the probe costs nothing in comparison.
@@ -302,7 +302,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
             .par_chunks(POSES_PER_TASK)
             .map_init(
                 || self.clone(),
-                |probe, poses| poses.iter().map(|pose| ask(probe, pose)).collect::<Vec<R>>(),
+                |probe, poses| poses.iter().map(|pose| query(probe, pose)).collect::<Vec<R>>(),
             )
             .flatten_iter()
             .collect()

@@ -53,7 +53,7 @@ pub(super) fn deepest_point(
     let index = state.candidates.indices()[candidate] as usize;
     let tree = state.tree;
     let point = pose.tip() + tree.relative_to_tip(&state.view, index);
-    DeepestPoint { depth: depth * state.length, point, triangle: TriangleId(tree.triangle(index)) }
+    DeepestPoint { depth: depth * state.length, point, triangle: tree.triangle(index) }
 }
 
 /// Returns the posture of the last evaluation.

@@ -86,7 +86,7 @@ pub enum FindingKind {
         /// Interval that contains the depth at the finding's pose, the deepest that was found.
         depth: Interval,
         /// Upper bound on the depth over the whole motion.
-        most: f64,
+        max_depth: f64,
         /// Set if the part's surface passes the middle of the tool there. No point of the tool is deeper, so
         /// the depth does not tell how far the tool is in the material.
         through: bool,
@@ -102,7 +102,7 @@ pub enum FindingKind {
         /// Interval that contains the distance at the finding's pose, the nearest that was found.
         distance: Interval,
         /// Lower bound on the distance over the whole motion.
-        least: f64,
+        min_distance: f64,
         /// The point of the part at that distance.
         witness: Witness,
     },

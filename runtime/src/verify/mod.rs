@@ -13,7 +13,7 @@
 //!
 //! **Guarantees.** A motion without a finding is nowhere deeper than allowed by more than the
 //! [resolution](Verifier::with_resolution). A finding is deeper than that at the pose it names: its interval
-//! contains the depth there, and its `most` bounds the depth over the whole motion. The depth is that of the
+//! contains the depth there, and its `max_depth` bounds the depth over the whole motion. The depth is that of the
 //! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`] defines them,
 //! rapid ones too.
 
@@ -315,21 +315,22 @@ impl Mode<'_> {
             let depth = self.certifier.motion_depth(surface, motion, allowed, resolution);
             match depth.expect("a surface of the tool") {
                 MotionDepth::Within => (),
-                MotionDepth::Deeper { at, depth: Interval { low, high }, most, witness }
+                MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, witness }
                     if low < 0.0 =>
                 {
-                    let [from, to, least] = [-high, -low, -most].map(|distance| distance.max(0.0));
+                    let [from, to, min_distance] =
+                        [-high, -low, -max_depth].map(|distance| distance.max(0.0));
                     let (margin, distance) = (-allowed, Interval::new(from, to));
                     found.push((
                         at,
-                        FindingKind::Near { surface, margin, distance, least, witness },
+                        FindingKind::Near { surface, margin, distance, min_distance, witness },
                     ));
                 }
-                MotionDepth::Deeper { at, depth, most, witness } => {
+                MotionDepth::Deeper { at, depth, max_depth, witness } => {
                     let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
                     found.push((
                         at,
-                        FindingKind::Deep { surface, allowed, depth, most, through, witness },
+                        FindingKind::Deep { surface, allowed, depth, max_depth, through, witness },
                     ));
                 }
                 MotionDepth::Inside => inside.push(surface),

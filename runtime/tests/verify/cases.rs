@@ -74,7 +74,7 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
         surface: SurfaceId(0),
         allowed,
         depth: Interval { low, high },
-        most,
+        max_depth,
         through: false,
         ..
     } = found.kind
@@ -82,7 +82,7 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
         panic!("{found:?}")
     };
     assert!(
-        allowed == 0.01 && low <= 0.5 && 0.5 <= high && high <= most && most < 0.57,
+        allowed == 0.01 && low <= 0.5 && 0.5 <= high && high <= max_depth && max_depth < 0.57,
         "{found:?}"
     );
     assert_eq!(check(&pillar(), text, 0.5, &[]).findings, []);
@@ -107,12 +107,15 @@ fn a_flute_that_gouges_does_not_hide_what_rubs() {
     let margin = [rub[0], rub[1], rub[2], ("nut", -1.0)];
     let near = check(&pillar(), &higher(-24.5), 0.0, &margin);
     assert_eq!(briefly(&near), [(2, "near", Some(3))]);
-    let FindingKind::Near { distance: Interval { low, high }, least, margin: kept, .. } =
+    let FindingKind::Near { distance: Interval { low, high }, min_distance, margin: kept, .. } =
         near.findings[0].kind
     else {
         panic!("{near:?}")
     };
-    assert!(kept == 1.0 && low <= 0.5 && 0.5 <= high && least > 0.4 && least <= low, "{near:?}");
+    assert!(
+        kept == 1.0 && low <= 0.5 && 0.5 <= high && min_distance > 0.4 && min_distance <= low,
+        "{near:?}"
+    );
     assert_eq!(check(&pillar(), &higher(-23.0), 0.0, &margin).findings, []);
 }
 

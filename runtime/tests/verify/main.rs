@@ -63,7 +63,7 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
             surface,
             allowed,
             depth: Interval { low, high },
-            most,
+            max_depth,
             witness,
             ..
         } => {
@@ -71,15 +71,21 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
             assert_eq!(*allowed, limits[surface.0]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
             assert!(
-                there > allowed.max(0.0) && high - low < RESOLUTION && most >= high,
+                there > allowed.max(0.0) && high - low < RESOLUTION && max_depth >= high,
                 "{found:?}"
             );
         }
-        FindingKind::Near { surface, margin, distance: Interval { low, high }, least, witness } => {
+        FindingKind::Near {
+            surface,
+            margin,
+            distance: Interval { low, high },
+            min_distance,
+            witness,
+        } => {
             let there = on(witness).distance[surface.0];
             assert_eq!(-margin, limits[surface.0]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
-            assert!(there < *margin && high - low < RESOLUTION && least <= low, "{found:?}");
+            assert!(there < *margin && high - low < RESOLUTION && min_distance <= low, "{found:?}");
         }
         other => panic!("{other:?} at {found:?}"),
     }
@@ -95,11 +101,11 @@ fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
         let deep = depth > limit.max(0.0) + RESOLUTION;
         let near = *limit < 0.0 && distance < -limit - RESOLUTION;
         match found.first().map(|found| found.kind) {
-            Some(FindingKind::Deep { most, .. }) => {
-                assert!(depth <= most + 1e-9, "{depth}: {found:?}");
+            Some(FindingKind::Deep { max_depth, .. }) => {
+                assert!(depth <= max_depth + 1e-9, "{depth}: {found:?}");
             }
-            Some(FindingKind::Near { least, .. }) => {
-                assert!(!deep && distance >= least - 1e-9, "{distance}: {found:?}");
+            Some(FindingKind::Near { min_distance, .. }) => {
+                assert!(!deep && distance >= min_distance - 1e-9, "{distance}: {found:?}");
             }
             _ => assert!(!deep && !near, "{surface}: {limit}, {worst:?}, {of:?}"),
         }

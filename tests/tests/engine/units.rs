@@ -1,6 +1,7 @@
 //! One scene in millimetres, inches and metres: counts stay, lengths scale as lengths and areas as areas.
 
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, ScenePath};
 use touchoff::{Cloud, Law, Part, Pose, Probe, Sampling, Tool, Unit, Weights, Wrench};
@@ -62,7 +63,7 @@ fn tube(unit: Unit, count: usize) -> Part {
     let cloud = Cloud::sample(&mesh, Sampling::monte_carlo(count).with_seed(3)).expect("a cloud");
     let points = cloud.points().iter().map(|p| p * length_unit).collect();
     let weights = cloud.weights().iter().map(|w| w * length_unit * length_unit).collect();
-    let ids = (0..count as u32).collect();
+    let ids = (0..count as u32).map(TriangleId).collect();
     let scaled = Cloud::new(points, cloud.normals().to_vec(), ids, weights, unit);
     Part::from_cloud(&scaled.expect("a cloud"))
 }
@@ -192,7 +193,7 @@ fn a_written_magnitude_stays() {
     for unit in UNITS {
         let inch = Unit::Inch.factor_to(unit);
         let at = Point3::new(7.0, 8.0, 9.0);
-        let ids = vec![0];
+        let ids = vec![TriangleId(0)];
         let cloud =
             Cloud::new(vec![at], vec![Vector3::z()], ids, vec![3.0], unit).expect("a cloud");
         let part = Part::from_cloud(&cloud);

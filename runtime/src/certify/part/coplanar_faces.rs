@@ -6,6 +6,7 @@
 
 use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 
 /// The smallest number of triangles of a face.
@@ -47,7 +48,7 @@ impl CoplanarFaces {
     /// triangle's plane count as in it.
     pub(crate) fn new(
         mesh: &Mesh,
-        ids: &[u32],
+        ids: &[TriangleId],
         corners: &[[Point; 3]],
         flat: f64,
     ) -> CoplanarFaces {
@@ -130,10 +131,10 @@ fn node_faces(some: impl Iterator<Item = u32>) -> [u32; MAX_NODE_FACES] {
 }
 
 /// Returns the neighbours of each triangle across edges that exactly two triangles share.
-fn neighbours(mesh: &Mesh, ids: &[u32]) -> Vec<[u32; 3]> {
+fn neighbours(mesh: &Mesh, ids: &[TriangleId]) -> Vec<[u32; 3]> {
     let mut edges: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(3 * ids.len());
     for (index, id) in (0u32..).zip(ids) {
-        let [a, b, c] = mesh.triangles()[*id as usize];
+        let [a, b, c] = mesh.triangles()[id.index()];
         for (side, [p, q]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
             edges.push(([p.min(q), p.max(q)], index, side));
         }

@@ -27,7 +27,7 @@ pub struct TriangleBvh {
     /// The corners of each triangle, in the tree's order, in the part's frame and unit.
     pub(crate) corners: Vec<[[f64; 3]; 3]>,
     /// The ids of the triangles in the mesh, in the tree's order.
-    pub(crate) ids: Vec<u32>,
+    pub(crate) ids: Vec<TriangleId>,
     unit: Unit,
     /// True if inside and outside are defined; see [`TriangleBvh::has_inside`].
     pub(crate) solid: bool,
@@ -91,7 +91,7 @@ impl TriangleBvh {
             let below = WIDTH.pow(depth + 1 - level);
             inside.chunks(below).map(Plane::of).collect()
         });
-        let ids: Vec<u32> = items.iter().map(|item| item.index).collect();
+        let ids: Vec<TriangleId> = items.iter().map(|item| TriangleId(item.index)).collect();
         let survey = mesh.diagnostics();
         let mut bvh = TriangleBvh {
             coplanar_faces: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
@@ -114,7 +114,7 @@ impl TriangleBvh {
         let inverted = inverted(mesh);
         let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
         if !inverted.is_empty() {
-            self.ids.iter().enumerate().for_each(|(point, id)| places[*id as usize] = point);
+            self.ids.iter().enumerate().for_each(|(point, id)| places[id.index()] = point);
         }
         let is_void = |id: u32| !self.is_negative_beside(places[id as usize]);
         inverted.into_iter().all(|id| mesh.normal(TriangleId(id)).is_none() || is_void(id))

@@ -1,6 +1,7 @@
 //! Errors of posture maps.
 
 use super::Difference;
+use crate::id::TriangleId;
 use std::io;
 
 /// A reason for which a posture map cannot be opened, read or written.
@@ -56,7 +57,7 @@ pub enum MapError {
     },
     /// The end of the file is missing.
     #[error(
-        "{file} is truncated: it has {length} of {whole} bytes: take a copy that is whole, or remove it and make it \
+        "{file} is truncated: it has {length} of {expected} bytes: take a complete copy, or remove it and make it \
          again"
     )]
     Truncated {
@@ -65,7 +66,7 @@ pub enum MapError {
         /// Size of the file, in bytes.
         length: u64,
         /// Least size of the whole file, in bytes.
-        whole: u64,
+        expected: u64,
     },
     /// The map exceeds a limit of all maps.
     #[error("{file} is no map that can be used: {what}")]
@@ -76,7 +77,7 @@ pub enum MapError {
         what: String,
     },
     /// The bytes differ from those that were written.
-    #[error("{file} is damaged: {what}: take a copy that is whole, or remove it and make it again")]
+    #[error("{file} is damaged: {what}: take a complete copy, or remove it and make it again")]
     Damaged {
         /// The file.
         file: String,
@@ -119,7 +120,7 @@ pub enum MapError {
         /// The file.
         file: String,
         /// The triangle.
-        triangle: u32,
+        triangle: TriangleId,
         /// The reason.
         what: &'static str,
     },

@@ -1,6 +1,7 @@
 //! Export of maps. Every number is written so that it reads back as the same double.
 
 use super::{MapError, MapIdentity, PartFingerprint, PostureMap};
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::postures::{Accessibility, MapRow, PostureRecord, Rules};
 use serde::Serialize;
@@ -28,7 +29,7 @@ struct Tool<'a> {
 
 #[derive(Serialize)]
 struct Triangle<'a> {
-    triangle: u32,
+    triangle: TriangleId,
     best: Vec<ExportPosture<'a>>,
     access: Vec<ExportAccess<'a>>,
 }
@@ -76,7 +77,7 @@ impl PostureMap {
     fn line(
         &self,
         out: &mut impl Write,
-        triangle: u32,
+        triangle: TriangleId,
         record: Option<&PostureRecord>,
         access: Option<&Accessibility>,
     ) -> io::Result<()> {
@@ -170,16 +171,16 @@ impl PostureMap {
         mesh: &Mesh,
         colour: impl Fn(f64) -> [u8; 3],
     ) -> Result<(), MapError> {
-        let (has, asked) = (self.identity.part, PartFingerprint::of(mesh));
-        if has != asked {
-            let difference = super::Difference::Part { has, asked };
+        let (stored, requested) = (self.identity.part, PartFingerprint::of(mesh));
+        if stored != requested {
+            let difference = super::Difference::Part { stored, requested };
             return Err(MapError::Differs { file: self.file.clone(), difference });
         }
         let mut niceness = vec![f64::NAN; mesh.triangles().len()];
         for entry in self.rows()? {
             let (triangle, row) = entry?;
             if let Some(best) = row.best.first() {
-                niceness[triangle as usize] = best.niceness;
+                niceness[triangle.index()] = best.niceness;
             }
         }
         write_ply_body(out, mesh, &niceness, colour).map_err(|source| self.export(source))

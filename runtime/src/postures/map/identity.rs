@@ -1,6 +1,7 @@
 //! Identity of a map: the part, the tools and the rules that it belongs to.
 
 use crate::escape::Escaped;
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::postures::{Accessibility, Directions, PostureRecord, Rules, RulesError};
 use crate::tool::Tool;
@@ -119,11 +120,11 @@ impl MapIdentity {
     /// Returns the reason for which data do not fit a map of this identity; `None` if they fit.
     pub(super) fn row_error(
         &self,
-        triangle: u32,
+        triangle: TriangleId,
         best: &[PostureRecord],
         access: &[Accessibility],
     ) -> Option<&'static str> {
-        if triangle >= self.part.triangles {
+        if triangle.0 >= self.part.triangles {
             return Some("the part has no such triangle");
         }
         let tools = best.iter().map(|record| record.tool);
@@ -158,7 +159,8 @@ impl MapIdentity {
     /// are tables between directions that grow with the square of their number.
     pub(super) fn oversized(&self) -> Option<String> {
         let (tools, directions) = (self.tools.len(), self.directions.len());
-        let (max_tools, max_directions) = (usize::from(u16::MAX) + 1, 2 * Directions::MOST);
+        let (max_tools, max_directions) =
+            (usize::from(u16::MAX) + 1, 2 * Directions::MAX_HEMISPHERE);
         if tools > max_tools {
             return Some(format!("it has {tools} tools, and there may be {max_tools}"));
         }
@@ -167,33 +169,34 @@ impl MapIdentity {
     }
 
     /// Returns the difference between this identity, which a file has, and the requested one.
-    pub(super) fn difference(&self, asked: &MapIdentity) -> Option<Difference> {
-        if self.part != asked.part {
-            return Some(Difference::Part { has: self.part, asked: asked.part });
+    pub(super) fn difference(&self, requested: &MapIdentity) -> Option<Difference> {
+        if self.part != requested.part {
+            return Some(Difference::Part { stored: self.part, requested: requested.part });
         }
         let names = |of: &MapIdentity| -> Vec<String> {
             of.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name))).collect()
         };
-        let (has, other_names) = (names(self), names(asked));
-        if has != other_names {
-            let [has, asked] = [has, other_names].map(|names| names.join(", "));
-            return Some(Difference::Tools { has, asked });
+        let (stored, other_names) = (names(self), names(requested));
+        if stored != other_names {
+            let [stored, requested] = [stored, other_names].map(|names| names.join(", "));
+            return Some(Difference::Tools { stored, requested });
         }
-        let mut tools = self.tools.iter().zip(&asked.tools);
-        if let Some((tool, _)) = tools.find(|(tool, asked)| tool.digest != asked.digest) {
+        let mut tools = self.tools.iter().zip(&requested.tools);
+        if let Some((tool, _)) = tools.find(|(tool, requested)| tool.digest != requested.digest) {
             return Some(Difference::Tool { tool: Escaped(&tool.name).to_string() });
         }
-        if self.rules != asked.rules || self.keep != asked.keep {
-            let [has, asked] =
-                [self, asked].map(|of| format!("{}, {} kept of each triangle", of.rules, of.keep));
-            return Some(Difference::Rules { has, asked });
+        if self.rules != requested.rules || self.keep != requested.keep {
+            let [stored, requested] = [self, requested]
+                .map(|of| format!("{}, {} kept of each triangle", of.rules, of.keep));
+            return Some(Difference::Rules { stored, requested });
         }
-        let (has, other_names) = (&self.directions, &asked.directions);
-        let first = has.iter().zip(other_names).position(|(has, asked)| has != asked);
-        (has != other_names).then(|| Difference::Directions {
-            has: has.len(),
-            asked: other_names.len(),
-            first: first.unwrap_or(has.len().min(other_names.len())),
+        let (stored, other_names) = (&self.directions, &requested.directions);
+        let first =
+            stored.iter().zip(other_names).position(|(stored, requested)| stored != requested);
+        (stored != other_names).then(|| Difference::Directions {
+            stored: stored.len(),
+            requested: other_names.len(),
+            first: first.unwrap_or(stored.len().min(other_names.len())),
         })
     }
 }
@@ -202,20 +205,20 @@ impl MapIdentity {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Difference {
     /// Another part.
-    #[error("it is of another part, {has}, and this one has {asked}")]
+    #[error("it is of another part, {stored}, and this one has {requested}")]
     Part {
         /// The file's part.
-        has: PartFingerprint,
+        stored: PartFingerprint,
         /// The requested part.
-        asked: PartFingerprint,
+        requested: PartFingerprint,
     },
     /// Other tools, or another order.
-    #[error("it was begun with the tools {has}, in this order, and now they are {asked}")]
+    #[error("it was begun with the tools {stored}, in this order, and now they are {requested}")]
     Tools {
         /// The file's tools.
-        has: String,
+        stored: String,
         /// The requested tools.
-        asked: String,
+        requested: String,
     },
     /// A tool of the same name with another digest.
     #[error("it was begun with another version of `{tool}`")]
@@ -224,23 +227,23 @@ pub enum Difference {
         tool: String,
     },
     /// Other rules, or another number of postures kept.
-    #[error("it was begun with other rules ({has}) than now ({asked})")]
+    #[error("it was begun with other rules ({stored}) than now ({requested})")]
     Rules {
         /// The file's rules.
-        has: String,
+        stored: String,
         /// The requested rules.
-        asked: String,
+        requested: String,
     },
     /// Other directions.
     #[error(
-        "it was begun with other directions: it has {has}, now there are {asked}, and number {first} \
+        "it was begun with other directions: it has {stored}, now there are {requested}, and number {first} \
          from 0 is the first that differs"
     )]
     Directions {
         /// Number of directions in the file.
-        has: usize,
+        stored: usize,
         /// Number of requested directions.
-        asked: usize,
+        requested: usize,
         /// Index of the first direction that differs.
         first: usize,
     },

@@ -19,6 +19,7 @@ pub use identity::{Difference, MapIdentity, PartFingerprint, ToolFingerprint};
 
 use super::{Accessibility, MapRow, PostureRecord};
 use crate::debug::debug;
+use crate::id::TriangleId;
 use codec::{decode, encode};
 pub(super) use merge::merge;
 use redb::{Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition};
@@ -38,7 +39,7 @@ const FORMAT_VERSION: u32 = 1;
 /// ```
 /// # use nalgebra::Point3;
 /// # use touchoff::postures::{MapIdentity, PostureMap, PostureRecord, Rules};
-/// # use touchoff::{Unit, mesh::shapes};
+/// # use touchoff::{TriangleId, Unit, mesh::shapes};
 /// # touchoff::tool! {
 /// #     tool Ball "a ball of 3 mm radius" {
 /// #         units mm;
@@ -55,8 +56,8 @@ const FORMAT_VERSION: u32 = 1;
 /// let map = PostureMap::open(&path, &identity)?;
 /// let (tip, axis) = ([20.0, 20.0, 9.995], [0.0, 0.0, 1.0]);
 /// let record = PostureRecord { tool: 0, tip, axis, niceness: 1.0, depth: 0.005, clearance: 1.0 };
-/// map.merge(&[(3, record)])?;
-/// assert_eq!(map.row(3)?.map(|row| row.best), Some(vec![record]));
+/// map.merge(&[(TriangleId(3), record)])?;
+/// assert_eq!(map.row(TriangleId(3))?.map(|row| row.best), Some(vec![record]));
 /// assert_eq!(map.coverage()?.covered, 1);
 /// # Ok(()) }
 /// ```
@@ -91,16 +92,16 @@ pub struct MapRows<'a> {
 debug!([] MapRows<'_>, "MapRows", |this| { next: this.next });
 
 impl Iterator for MapRows<'_> {
-    type Item = Result<(u32, MapRow), MapError>;
+    type Item = Result<(TriangleId, MapRow), MapError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let entry = self.range.next()?;
         Some(entry.map_err(|error| self.map.store_error(error)).and_then(|(triangle, bytes)| {
-            let triangle = triangle.value();
-            if u64::from(triangle) < self.next {
+            let triangle = TriangleId(triangle.value());
+            if u64::from(triangle.0) < self.next {
                 return Err(self.map.damaged(format!("triangle {triangle} is there twice")));
             }
-            self.next = u64::from(triangle) + 1;
+            self.next = u64::from(triangle.0) + 1;
             Ok((triangle, self.map.decoded(triangle, bytes.value())?))
         }))
     }
@@ -116,9 +117,9 @@ impl PostureMap {
     ///
     /// # Errors
     /// If the file cannot be read, or the row is damaged.
-    pub fn row(&self, triangle: u32) -> Result<Option<MapRow>, MapError> {
+    pub fn row(&self, triangle: TriangleId) -> Result<Option<MapRow>, MapError> {
         let table = self.table()?;
-        let bytes = table.get(triangle).map_err(|error| self.store_error(error))?;
+        let bytes = table.get(triangle.0).map_err(|error| self.store_error(error))?;
         bytes.map(|bytes| self.decoded(triangle, bytes.value())).transpose()
     }
 
@@ -137,7 +138,7 @@ impl PostureMap {
     /// # Errors
     /// If the map was opened for reading only, if there is no room, if the file cannot be written, or if a row
     /// does not fit the map.
-    pub fn record(&self, rows: &[(u32, MapRow)]) -> Result<(), MapError> {
+    pub fn record(&self, rows: &[(TriangleId, MapRow)]) -> Result<(), MapError> {
         for (triangle, row) in rows {
             self.check_row(*triangle, &row.best, &row.access)?;
         }
@@ -154,7 +155,7 @@ impl PostureMap {
     /// # Errors
     /// If the map was opened for reading only, if there is no room, if the file cannot be written, or if a
     /// record does not fit the map.
-    pub fn merge(&self, records: &[(u32, PostureRecord)]) -> Result<(), MapError> {
+    pub fn merge(&self, records: &[(TriangleId, PostureRecord)]) -> Result<(), MapError> {
         for (triangle, record) in records {
             self.check_row(*triangle, std::slice::from_ref(record), &[])?;
         }
@@ -167,7 +168,7 @@ impl PostureMap {
     ///
     /// # Errors
     /// If the file cannot be read, or a row is damaged.
-    pub fn swept(&self) -> Result<BTreeSet<u32>, MapError> {
+    pub fn swept(&self) -> Result<BTreeSet<TriangleId>, MapError> {
         let mut swept = BTreeSet::new();
         for entry in self.rows()? {
             let (triangle, row) = entry?;
@@ -197,7 +198,7 @@ impl PostureMap {
     /// Joins new data to rows, in one transaction.
     fn update<T>(
         &self,
-        updates: &[(u32, T)],
+        updates: &[(TriangleId, T)],
         join: impl Fn(&mut MapRow, &T),
     ) -> Result<(), MapError> {
         if self.is_copy {
@@ -207,7 +208,7 @@ impl PostureMap {
         let mut table = write.open_table(ROWS).map_err(|error| self.store_error(error))?;
         let mut changed = false;
         for (triangle, new) in updates {
-            let old = match table.get(triangle).map_err(|error| self.store_error(error))? {
+            let old = match table.get(triangle.0).map_err(|error| self.store_error(error))? {
                 Some(bytes) => self.decoded(*triangle, bytes.value())?,
                 None => MapRow::default(),
             };
@@ -216,7 +217,7 @@ impl PostureMap {
             if row != old {
                 let bytes = encode(&row);
                 table
-                    .insert(triangle, bytes.as_slice())
+                    .insert(triangle.0, bytes.as_slice())
                     .map_err(|error| self.store_error(error))?;
                 changed = true;
             }
@@ -236,7 +237,7 @@ impl PostureMap {
     }
 
     /// Decodes a row, and checks that it fits the map.
-    fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<MapRow, MapError> {
+    fn decoded(&self, triangle: TriangleId, bytes: &[u8]) -> Result<MapRow, MapError> {
         let identity = &self.identity;
         let check_row = |row: &MapRow| {
             row.best.len() <= usize::from(identity.keep.get())
@@ -253,7 +254,7 @@ impl PostureMap {
 
     fn check_row(
         &self,
-        triangle: u32,
+        triangle: TriangleId,
         best: &[PostureRecord],
         access: &[Accessibility],
     ) -> Result<(), MapError> {

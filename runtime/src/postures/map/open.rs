@@ -75,7 +75,7 @@ impl PostureMap {
             let Some((header, memory)) = copied else { continue };
             let length = memory.len().map_err(|source| unreadable(&file, source))?;
             if header.is_closed() && length < header.length() {
-                return Err(MapError::Truncated { file, length, whole: header.length() });
+                return Err(MapError::Truncated { file, length, expected: header.length() });
             }
             let mut builder = Builder::new();
             builder.set_check_integrity_on_open(true).set_cache_size(CACHE_BYTES);
@@ -205,7 +205,7 @@ fn open_store(path: &Path) -> Result<(File, Header), MapError> {
 fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
     match error {
         MapError::Damaged { file, .. } if length < header.length() => {
-            MapError::Truncated { file, length, whole: header.length() }
+            MapError::Truncated { file, length, expected: header.length() }
         }
         error => error,
     }

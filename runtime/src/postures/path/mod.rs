@@ -58,20 +58,20 @@ pub enum PathError {
     #[error("the planes' normal is no direction: give three numbers that are not all 0")]
     Normal,
     /// The pattern has too many planes.
-    #[error("{planes:.0} planes are more than {most}: take a larger stepover")]
+    #[error("{planes:.0} planes are more than {limit}: take a larger stepover")]
     TooMany {
         /// Number of planes of the pattern.
         planes: f64,
         /// Largest number allowed.
-        most: usize,
+        limit: usize,
     },
     /// The pattern has too many points on the lines.
-    #[error("{places:.0} places are more than {most}: take a larger step or stepover")]
+    #[error("{points:.0} points are more than {limit}: take a larger step or stepover")]
     TooFine {
         /// Estimated number of points.
-        places: f64,
+        points: f64,
         /// Largest number allowed.
-        most: usize,
+        limit: usize,
     },
     /// The rules are invalid, or the tool cannot be validated.
     #[error(transparent)]
@@ -168,11 +168,11 @@ impl PathRequest<'_> {
         let [low, high] = mesh.bounds();
         let planes = (high - low).norm() / pattern.stepover;
         if planes > MAX_PLANES as f64 {
-            return Err(PathError::TooMany { planes, most: MAX_PLANES });
+            return Err(PathError::TooMany { planes, limit: MAX_PLANES });
         }
-        let places = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
-        if places > MAX_POINTS as f64 {
-            return Err(PathError::TooFine { places, most: MAX_POINTS });
+        let points = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
+        if points > MAX_POINTS as f64 {
+            return Err(PathError::TooFine { points, limit: MAX_POINTS });
         }
         let mut planner = PathPlanner::new(bvh, tool, rules)?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());

@@ -15,6 +15,7 @@ pub use stats::SweepStats;
 use super::{Directions, MapRow, Rules, RulesError, ValidatorError};
 use crate::certify::TriangleBvh;
 use crate::debug::debug;
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::tool::Tool;
 use std::num::NonZeroU16;
@@ -57,7 +58,7 @@ pub enum SweepError {
 #[derive(Clone, Debug)]
 pub struct Batch {
     /// The rows, each with the id of its triangle.
-    pub rows: Vec<(u32, MapRow)>,
+    pub rows: Vec<(TriangleId, MapRow)>,
     /// Counters of the rules that decided the postures of the batch.
     pub stats: SweepStats,
 }
@@ -93,7 +94,7 @@ impl<'a> PostureSweep<'a> {
     }
 
     /// Returns the ids of the triangles in a batch.
-    pub fn triangles(&self, batch: usize) -> &[u32] {
+    pub fn triangles(&self, batch: usize) -> &[TriangleId] {
         let ids = &self.bvh.ids;
         &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
     }

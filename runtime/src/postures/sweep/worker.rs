@@ -45,20 +45,19 @@ impl<'a> Worker<'a> {
     }
 
     /// Computes the rows of some triangles.
-    pub(super) fn batch(&mut self, triangles: &[u32]) -> Batch {
+    pub(super) fn batch(&mut self, triangles: &[TriangleId]) -> Batch {
         let mut stats = SweepStats::default();
-        let mut rows: Vec<(u32, MapRow)> =
+        let mut rows: Vec<(TriangleId, MapRow)> =
             triangles.iter().map(|id| (*id, MapRow::default())).collect();
         for candidate in &mut self.tools {
             candidate.clear_caches();
             for (id, row) in &mut rows {
                 stats.triangles += 1;
                 let mesh = self.sweep.mesh;
-                let [a, b, c] = mesh.triangle(TriangleId(*id));
+                let [a, b, c] = mesh.triangle(*id);
                 let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
                 // A triangle without an area has no normal.
-                let surface_point =
-                    mesh.normal(TriangleId(*id)).map(|normal| SurfacePoint { point, normal });
+                let surface_point = mesh.normal(*id).map(|normal| SurfacePoint { point, normal });
                 let access =
                     candidate.triangle(self.sweep, surface_point, (&mut row.best, &mut stats));
                 row.access.push(access);

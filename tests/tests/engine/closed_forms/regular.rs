@@ -6,6 +6,7 @@ use super::{
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::TAU;
+use touchoff::TriangleId;
 use touchoff::{Cloud, Part};
 use touchoff_tests::oracle::draw::Rng;
 
@@ -32,7 +33,7 @@ fn patch([n, m]: [u32; 2], at: impl Fn(f64, f64) -> (Point3<f64>, Vector3<f64>, 
             weights.push(area / (f64::from(n) * f64::from(m)));
         }
     }
-    let ids = vec![0; points.len()];
+    let ids = vec![TriangleId(0); points.len()];
     Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
 }
 

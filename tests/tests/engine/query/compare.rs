@@ -11,6 +11,7 @@
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
+use touchoff::TriangleId;
 use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
 use touchoff_tests::oracle::brute::{self, Answer, Query};
 use touchoff_tests::oracle::{Oracle, thesis};
@@ -96,8 +97,12 @@ impl<'a> Case<'a> {
         let tree = part.tree();
         let indices = 0..tree.len();
         let points: Vec<[f64; 3]> = indices.clone().map(|i| tree.point(i).into()).collect();
-        let ids: BTreeMap<u32, usize> = indices.clone().map(|i| (tree.triangle(i), i)).collect();
-        assert!(ids.keys().copied().eq(0..tree.len() as u32), "an id for every point");
+        let ids: BTreeMap<TriangleId, usize> =
+            indices.clone().map(|i| (tree.triangle(i), i)).collect();
+        assert!(
+            ids.keys().copied().eq((0..tree.len() as u32).map(TriangleId)),
+            "an id for every point"
+        );
         let largest = oracle.extent().into_iter().fold(0.0, f64::max);
         let size = largest.log2().ceil().exp2();
         Case {

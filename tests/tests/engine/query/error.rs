@@ -1,6 +1,7 @@
 //! The error bounds that a probe states, against the depth of the points that were given.
 
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
 use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
@@ -30,7 +31,7 @@ fn depths_keep_the_stated_error_bound() {
         let cloud = Cloud::new(
             points.clone(),
             vec![Vector3::z(); count],
-            (0..count as u32).collect(),
+            (0..count as u32).map(TriangleId).collect(),
             vec![1.0; count],
             info.unit,
         )

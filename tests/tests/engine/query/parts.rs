@@ -2,6 +2,7 @@
 //! contact can be told from its neighbours.
 
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
@@ -10,7 +11,7 @@ pub(crate) const UNIT: Unit = Unit::Millimetre;
 
 /// Returns a part of these points, normals and weights.
 pub(crate) fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
-    let ids = (0..points.len() as u32).collect();
+    let ids = (0..points.len() as u32).map(TriangleId).collect();
     Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
 }
 

@@ -1,6 +1,7 @@
 //! Exports reproduce the map to the bit.
 
 use super::*;
+use crate::id::TriangleId;
 use crate::mesh::Geometry;
 use crate::postures::colormap;
 use serde_json::Value;
@@ -8,7 +9,8 @@ use serde_json::Value;
 fn known() -> (Place, PostureMap) {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(7));
     let map = place.open();
-    let mut given: Vec<(u32, MapRow)> = (0..10).map(|k| (k, any_row(&mut random))).collect();
+    let mut given: Vec<(TriangleId, MapRow)> =
+        (0..10).map(|k| (TriangleId(k), any_row(&mut random))).collect();
     given[2].1.access.clear();
     given[3].1.best[..].iter_mut().for_each(|record| record.depth = 5e-324);
     map.record(&given).expect("recorded");
@@ -75,7 +77,7 @@ fn json_reads_back() {
     let lines = text.lines().filter(|line| line.starts_with("{\"triangle\""));
     for ((triangle, row), line) in known.iter().zip(lines) {
         let value: Value = serde_json::from_str(line.trim_end_matches(',')).expect("a row");
-        assert_eq!(value["triangle"], *triangle);
+        assert_eq!(value["triangle"], triangle.0);
         assert_eq!(value["access"].as_array().map(Vec::len), Some(row.access.len()));
         for (record, value) in row.best.iter().zip(value["best"].as_array().expect("a list")) {
             // Compare the text as written, independently of a reader's rounding.
@@ -102,7 +104,7 @@ fn ply_reads_back() {
     let faces = &bytes[bytes.len() - 12 * 24..];
     for (triangle, face) in (0..).zip(faces.chunks(24)) {
         let niceness = f64::from_le_bytes(face[16..].try_into().expect("8 bytes"));
-        let row = map.row(triangle).expect("read").unwrap_or_default();
+        let row = map.row(TriangleId(triangle)).expect("read").unwrap_or_default();
         match row.best.first() {
             Some(best) => {
                 assert_eq!(niceness.to_bits(), best.niceness.to_bits());

@@ -1,6 +1,7 @@
 //! A full disk: nothing that was recorded is lost.
 
 use super::*;
+use crate::id::TriangleId;
 use redb::StorageBackend;
 use redb::backends::InMemoryBackend;
 use std::sync::Arc;
@@ -71,18 +72,19 @@ fn a_full_disk_says_so_and_keeps_what_was_recorded() {
         let disk = Disk::new();
         let map = disk.map().expect("room");
         disk.room.store(room, Ordering::Relaxed);
-        let mut acknowledged: Vec<(u32, MapRow)> = Vec::new();
+        let mut acknowledged: Vec<(TriangleId, MapRow)> = Vec::new();
         for triangle in 0..12 {
             let row = MapRow { best: vec![any_record(&mut random)], access: Vec::new() };
-            match map.record(&[(triangle, row.clone())]) {
-                Ok(()) => acknowledged.push((triangle, row)),
+            match map.record(&[(TriangleId(triangle), row.clone())]) {
+                Ok(()) => acknowledged.push((TriangleId(triangle), row)),
                 Err(error) => {
                     let text = error.to_string();
                     assert!(matches!(error, MapError::Full { .. }), "{error:?}");
                     assert!(text.contains("what was recorded before is safe in it"), "{text}");
                     stopped[usize::from(triangle > 0)] += 1;
                     // A further attempt fails as well.
-                    let again = map.record(&[(triangle, row)]).expect_err("no room yet");
+                    let again =
+                        map.record(&[(TriangleId(triangle), row)]).expect_err("no room yet");
                     assert!(matches!(again, MapError::Unwritable { .. } | MapError::Full { .. }));
                     break;
                 }

@@ -5,6 +5,7 @@ mod refused;
 
 use super::open::write_facts;
 use super::*;
+use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::mesh::shapes;
 use crate::postures::Rules;
@@ -104,14 +105,15 @@ fn any_row(random: &mut Pcg64Mcg) -> MapRow {
     MapRow { best, access: vec![access(0, random), access(1, random)] }
 }
 
-fn rows(map: &PostureMap) -> Vec<(u32, MapRow)> {
+fn rows(map: &PostureMap) -> Vec<(TriangleId, MapRow)> {
     map.rows().expect("rows").collect::<Result<_, _>>().expect("rows that are whole")
 }
 
 #[test]
 fn what_is_recorded_is_there_when_it_is_opened_again() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(1));
-    let given: Vec<(u32, MapRow)> = (0..9).map(|k| (k, any_row(&mut random))).collect();
+    let given: Vec<(TriangleId, MapRow)> =
+        (0..9).map(|k| (TriangleId(k), any_row(&mut random))).collect();
     let first = {
         let map = place.open();
         map.record(&given[..5]).expect("recorded");
@@ -126,19 +128,19 @@ fn what_is_recorded_is_there_when_it_is_opened_again() {
     let map = place.open();
     assert_eq!(rows(&map), first);
     assert_eq!(map.identity(), &identity());
-    assert_eq!(map.row(3).expect("read"), Some(first[3].1.clone()));
-    assert_eq!(map.row(9).expect("read"), None);
+    assert_eq!(map.row(TriangleId(3)).expect("read"), Some(first[3].1.clone()));
+    assert_eq!(map.row(TriangleId(9)).expect("read"), None);
     let covered = first.iter().filter(|(_, row)| !row.best.is_empty()).count() as u32;
     assert_eq!(map.coverage().expect("read"), Coverage { covered, swept: 9, triangles: 12 });
     let swept = map.swept().expect("read");
-    assert!(swept.into_iter().eq(0..9));
+    assert!(swept.into_iter().eq((0..9).map(TriangleId)));
 }
 
 #[test]
 fn the_same_postures_stay_in_whatever_order_they_come() {
     let mut random = Pcg64Mcg::seed_from_u64(2);
-    let mut records: Vec<(u32, PostureRecord)> =
-        (0..200).map(|_| (random.next_u32() % 12, any_record(&mut random))).collect();
+    let mut records: Vec<(TriangleId, PostureRecord)> =
+        (0..200).map(|_| (TriangleId(random.next_u32() % 12), any_record(&mut random))).collect();
     let mut found = Vec::new();
     for size in [200, 7, 1] {
         let place = Place::new();
@@ -184,11 +186,11 @@ fn of_equally_nice_postures_the_clearer_and_then_the_less_deep_stays() {
         record(0.6, 2.0, 0.01, 0),
     ];
     for record in order {
-        map.merge(&[(0, record)]).expect("recorded");
-        assert_eq!(map.row(0).expect("read").expect("a row").best, [record]);
+        map.merge(&[(TriangleId(0), record)]).expect("recorded");
+        assert_eq!(map.row(TriangleId(0)).expect("read").expect("a row").best, [record]);
     }
-    order.iter().for_each(|record| map.merge(&[(0, *record)]).expect("recorded"));
-    assert_eq!(map.row(0).expect("read").expect("a row").best, [order[4]]);
+    order.iter().for_each(|record| map.merge(&[(TriangleId(0), *record)]).expect("recorded"));
+    assert_eq!(map.row(TriangleId(0)).expect("read").expect("a row").best, [order[4]]);
 }
 
 #[test]
@@ -196,16 +198,16 @@ fn a_sweep_and_a_hand_do_not_take_from_each_other() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(3));
     let map = place.open();
     let nice = PostureRecord { niceness: 2.0, ..any_record(&mut random) };
-    map.merge(&[(4, nice)]).expect("recorded");
-    assert!(!map.swept().expect("read").contains(&4));
+    map.merge(&[(TriangleId(4), nice)]).expect("recorded");
+    assert!(!map.swept().expect("read").contains(&TriangleId(4)));
     let row = any_row(&mut random);
-    map.record(&[(4, row.clone())]).expect("recorded");
-    let found = map.row(4).expect("read").expect("a row");
+    map.record(&[(TriangleId(4), row.clone())]).expect("recorded");
+    let found = map.row(TriangleId(4)).expect("read").expect("a row");
     assert_eq!(found.best[0], nice);
     assert_eq!(found.access, row.access);
     let again = MapRow { best: Vec::new(), ..any_row(&mut random) };
-    map.record(&[(4, again.clone())]).expect("recorded");
-    let known = map.row(4).expect("read").expect("a row");
+    map.record(&[(TriangleId(4), again.clone())]).expect("recorded");
+    let known = map.row(TriangleId(4)).expect("read").expect("a row");
     assert_eq!(known, MapRow { access: again.access, ..found });
 }
 

@@ -1,12 +1,13 @@
 //! Maps opened for reading: they show one moment, whoever writes to the file, and leave the file unchanged.
 
 use super::*;
+use crate::id::TriangleId;
 use crate::postures::Directions;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-fn some_rows(random: &mut Pcg64Mcg, triangles: std::ops::Range<u32>) -> Vec<(u32, MapRow)> {
-    triangles.map(|k| (k, any_row(random))).collect()
+fn some_rows(random: &mut Pcg64Mcg, triangles: std::ops::Range<u32>) -> Vec<(TriangleId, MapRow)> {
+    triangles.map(|k| (TriangleId(k), any_row(random))).collect()
 }
 
 #[test]
@@ -37,7 +38,7 @@ fn a_copy_is_not_recorded_into() {
     let copy = PostureMap::read(place.path()).expect("a map");
     let error = copy.record(&some_rows(&mut random, 0..1)).expect_err("read only");
     assert!(matches!(error, MapError::ReadOnly { .. }), "{error:?}");
-    let error = copy.merge(&[(0, any_record(&mut random))]).expect_err("read only");
+    let error = copy.merge(&[(TriangleId(0), any_record(&mut random))]).expect_err("read only");
     assert!(error.to_string().contains("`PostureMap::resume`"), "{error}");
     let map = PostureMap::resume(place.path()).expect("a map");
     map.record(&some_rows(&mut random, 0..1)).expect("recorded");
@@ -55,7 +56,7 @@ fn a_map_is_read_while_another_records_into_it() {
     assert_eq!(rows(&PostureMap::read(place.path()).expect("a map")), rows(&map));
 
     let nice = |niceness, random: &mut Pcg64Mcg| PostureRecord { niceness, ..any_record(random) };
-    map.merge(&[(3, nice(9.0, &mut random))]).expect("recorded");
+    map.merge(&[(TriangleId(3), nice(9.0, &mut random))]).expect("recorded");
     let (over, path) = (AtomicBool::new(false), place.path());
     std::thread::scope(|scope| {
         let reader = scope.spawn(|| {
@@ -75,7 +76,7 @@ fn a_map_is_read_while_another_records_into_it() {
         });
         for step in 0..60 {
             let record = nice(10.0 + f64::from(step), &mut random);
-            map.merge(&[(3, record)]).expect("recorded");
+            map.merge(&[(TriangleId(3), record)]).expect("recorded");
         }
         over.store(true, Ordering::Release);
         assert_eq!(reader.join().expect("it reads"), 69.0);
@@ -131,7 +132,7 @@ fn no_file_asks_for_more_memory_than_it_has_bytes() {
     crafted(&place, &many, &[]);
     let error = PostureMap::read(place.path()).expect_err("too many");
     assert!(matches!(error, MapError::Oversized { .. }), "{error:?}");
-    let most = 2 * Directions::MOST;
+    let most = 2 * Directions::MAX_HEMISPHERE;
     assert!(error.to_string().contains(&format!("50000 directions, and there may be {most}")));
     fs::remove_file(place.path()).expect("removed");
     let error = PostureMap::open(place.path(), &many).expect_err("too many");
@@ -157,7 +158,7 @@ fn no_file_asks_for_more_memory_than_it_has_bytes() {
     for row in [row, more] {
         crafted(&place, &identity(), &[(3, encode(&row))]);
         let map = PostureMap::read(place.path()).expect("a map");
-        assert!(matches!(map.row(3), Err(MapError::Damaged { .. })));
+        assert!(matches!(map.row(TriangleId(3)), Err(MapError::Damaged { .. })));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Files that are no map, or a map of something else, are refused with an explanation.
 
 use super::*;
+use crate::id::TriangleId;
 use redb::TableDefinition;
 
 #[test]
@@ -123,13 +124,16 @@ fn a_row_that_does_not_fit_is_refused_with_its_batch() {
         (0, PostureRecord { tip: [f64::NAN; 3], ..good }),
     ];
     for (triangle, record) in bad {
-        let error = map.merge(&[(1, good), (triangle, record)]).expect_err("unfit");
+        let error =
+            map.merge(&[(TriangleId(1), good), (TriangleId(triangle), record)]).expect_err("unfit");
         assert!(matches!(error, MapError::Unfit { .. }), "{error:?}");
         let row = MapRow { best: vec![record], access: Vec::new() };
-        assert!(map.record(&[(triangle, row)]).is_err());
+        assert!(map.record(&[(TriangleId(triangle), row)]).is_err());
     }
     for row in [access(vec![0], 0), access(vec![0, 1 << 6], 0), access(vec![0, 0], 2)] {
-        assert!(map.record(&[(1, access(vec![1, 0], 0)), (0, row)]).is_err());
+        assert!(
+            map.record(&[(TriangleId(1), access(vec![1, 0], 0)), (TriangleId(0), row)]).is_err()
+        );
     }
     assert_eq!(rows(&map), []);
 }
@@ -137,13 +141,14 @@ fn a_row_that_does_not_fit_is_refused_with_its_batch() {
 #[test]
 fn no_flipped_bit_is_taken_for_a_posture() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(5));
-    let given: Vec<(u32, MapRow)> = (0..12).map(|k| (k, any_row(&mut random))).collect();
+    let given: Vec<(TriangleId, MapRow)> =
+        (0..12).map(|k| (TriangleId(k), any_row(&mut random))).collect();
     let map = place.open();
     map.record(&given).expect("recorded");
     let whole = rows(&map);
     drop(map);
     let bytes = fs::read(place.path()).expect("read");
-    let look = |bytes: &[u8]| -> Result<Vec<(u32, MapRow)>, MapError> {
+    let look = |bytes: &[u8]| -> Result<Vec<(TriangleId, MapRow)>, MapError> {
         fs::write(place.path(), bytes).expect("written");
         PostureMap::open(place.path(), &identity())?.rows()?.collect()
     };
