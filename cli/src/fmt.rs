@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use tool_dsl::format::format;
-use tool_dsl::source::{LONGEST, Source, Sources};
+use tool_dsl::source::{MAX_SOURCE_BYTES, Source, Sources};
 use touchoff::AtomicFile;
 use touchoff::tool::ToolError;
 
@@ -118,7 +118,7 @@ fn is_piped(file: &Path) -> bool {
 /// length.
 fn standard_input() -> io::Result<Source> {
     let mut bytes = Vec::new();
-    io::stdin().take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
+    io::stdin().take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
     let text = String::from_utf8(bytes)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))?;
     Ok(Source::new("<stdin>", text))

@@ -50,7 +50,7 @@ impl Domain {
     }
 
     /// Returns the cell of all points at most `size` from the origin along each coordinate.
-    pub fn whole(self, size: f64) -> Cell {
+    pub fn bounding_cell(self, size: f64) -> Cell {
         let full_range = Interval::new(-size, size);
         match self {
             Domain::HalfPlane => Cell::half_plane(Interval::new(0.0, size), full_range),

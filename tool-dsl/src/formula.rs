@@ -136,14 +136,14 @@ impl Formula {
     }
 
     /// Lists the atoms whose curve is undecided, in order.
-    pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
+    pub fn undecided_atoms(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {
             Formula::Atom { curve, below, .. } if self.decided(signs).is_none() => {
                 atoms.push((*curve, *below));
             }
             Formula::All(parts) | Formula::Any(parts) if self.decided(signs).is_none() => {
                 for part in parts {
-                    part.open(signs, atoms);
+                    part.undecided_atoms(signs, atoms);
                 }
             }
             _ => {}

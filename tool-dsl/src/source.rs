@@ -7,12 +7,12 @@ use std::path::{Component, Path, PathBuf};
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// The length of the longest text that is read, in bytes.
-pub const LONGEST: usize = 1 << 20;
+pub const MAX_SOURCE_BYTES: usize = 1 << 20;
 
 /// Reads the text of a file.
 ///
 /// # Errors
-/// If the path is not a regular file, the text is longer than [`LONGEST`] or not UTF-8, or reading fails.
+/// If the path is not a regular file, the text is longer than [`MAX_SOURCE_BYTES`] or not UTF-8, or reading fails.
 fn text(path: &Path) -> io::Result<String> {
     let wrong = |why: String| io::Error::new(io::ErrorKind::InvalidData, why);
     let kind = std::fs::metadata(path)?;
@@ -20,13 +20,13 @@ fn text(path: &Path) -> io::Result<String> {
     if !kind.is_file() && !kind.is_dir() {
         return Err(wrong("it is no regular file: save the text as a file first".to_owned()));
     }
-    if kind.len() > LONGEST as u64 {
-        return Err(wrong(format!("it is longer than {LONGEST} bytes")));
+    if kind.len() > MAX_SOURCE_BYTES as u64 {
+        return Err(wrong(format!("it is longer than {MAX_SOURCE_BYTES} bytes")));
     }
     let mut bytes = Vec::new();
-    File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > LONGEST {
-        return Err(wrong(format!("it is longer than {LONGEST} bytes")));
+    File::open(path)?.take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_SOURCE_BYTES {
+        return Err(wrong(format!("it is longer than {MAX_SOURCE_BYTES} bytes")));
     }
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
@@ -56,7 +56,7 @@ impl Span {
     }
 
     /// Returns the same range in a text that begins at `base`.
-    pub fn behind(self, base: usize) -> Span {
+    pub fn offset_by(self, base: usize) -> Span {
         Span { start: self.start + base, end: self.end + base }
     }
 }
@@ -97,7 +97,7 @@ impl Source {
     /// Reads a source from a file; the path is its name.
     ///
     /// # Errors
-    /// If the file cannot be read, is longer than [`LONGEST`] or is not UTF-8.
+    /// If the file cannot be read, is longer than [`MAX_SOURCE_BYTES`] or is not UTF-8.
     pub fn read(path: impl AsRef<Path>) -> io::Result<Source> {
         Source::read_as(path.as_ref().display().to_string(), path.as_ref())
     }

@@ -98,7 +98,7 @@ impl<'t> CertificateRow<'t> {
             between: [name(Some(border.between.0)), name(border.between.1)],
             depth_jump: ends(border.jump),
             magnitude_jump: ends(border.step),
-            jump_point: border.seen.map(|(point, _)| point),
+            jump_point: border.jump_point.map(|(point, _)| point),
             turn_degrees: turned(border.turn),
             turn_on_surface_degrees: border.turn_on_surface.map(turned),
             depth: ends(border.depth),

@@ -144,8 +144,8 @@ fn info(tool: &CheckedTool) -> ToolInfo {
         },
         outline: model.outline().map(piece).collect(),
         depth: {
-            let Bounds { least, lipschitz, rounding } = tool.bounds();
-            DepthBounds { least, lipschitz, rounding }
+            let Bounds { min_slope, lipschitz, rounding } = tool.bounds();
+            DepthBounds { min_slope, lipschitz, rounding }
         },
         digest: digest(tool),
     }

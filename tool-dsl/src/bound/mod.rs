@@ -222,7 +222,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     }
     let (domain, mut prover) = (model.domain, Prover::of_regions(model));
     let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
-    let domain_box = domain.whole(2f64.powi(power));
+    let domain_box = domain.bounding_cell(2f64.powi(power));
     let mut cell = domain_box;
     // Each end moves inward while the rest stays provably empty. The second pass tightens them, since the
     // solid is easier to bound between its ends.
@@ -287,7 +287,7 @@ fn unbounded_direction(
             Interval::new(-MAX_COORDINATE, -size)
         };
         !prover.empty_within(
-            domain.whole(MAX_COORDINATE).with(*axis, outer),
+            domain.bounding_cell(MAX_COORDINATE).with(*axis, outer),
             20 * BOXES_PER_QUERY,
             0.0,
         )

@@ -27,7 +27,7 @@ pub(crate) use escape::is_hidden;
 pub use kind::{FAMILIES, Family, Kind, entries, entry, near};
 pub use mounts::MountKind;
 pub use profile::ProfileKind;
-pub use refusal::{MOST, Refusal, Reported, any_error};
+pub use refusal::{MAX_DIAGNOSTICS, Refusal, Reported, any_error};
 pub(crate) use refusal::{enough, readable, without_error};
 pub use regions::RegionKind;
 pub use spelling::SpellingKind;
@@ -111,8 +111,8 @@ impl Diagnostic {
 
     /// Moves the locations to a text that begins at `base`.
     pub(crate) fn offset_by(mut self, base: usize) -> Diagnostic {
-        self.span = self.span.behind(base);
-        self.second = self.second.map(|(span, label)| (span.behind(base), label));
+        self.span = self.span.offset_by(base);
+        self.second = self.second.map(|(span, label)| (span.offset_by(base), label));
         self
     }
 

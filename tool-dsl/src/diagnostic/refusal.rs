@@ -74,13 +74,13 @@ pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
         }
         new
     });
-    if diagnostics.len() > MOST && any_error(&diagnostics) {
+    if diagnostics.len() > MAX_DIAGNOSTICS && any_error(&diagnostics) {
         diagnostics.retain(|diagnostic| diagnostic.severity == Severity::Error);
     }
     if let Some(next) =
-        diagnostics.get(MOST).map(|diagnostic| (diagnostic.severity, diagnostic.span))
+        diagnostics.get(MAX_DIAGNOSTICS).map(|diagnostic| (diagnostic.severity, diagnostic.span))
     {
-        diagnostics.truncate(MOST);
+        diagnostics.truncate(MAX_DIAGNOSTICS);
         diagnostics.push(match next {
             (Severity::Error, span) => Diagnostic::new(span, CheckKind::MoreErrors),
             (Severity::Warning | Severity::Note, span) => {
@@ -92,11 +92,12 @@ pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 /// The largest number of diagnostics shown at once.
-pub const MOST: usize = 50;
+pub const MAX_DIAGNOSTICS: usize = 50;
 
 /// Returns whether there are so many diagnostics that more would not help.
 pub(crate) fn enough(diagnostics: &[Diagnostic]) -> bool {
-    diagnostics.iter().filter(|diagnostic| diagnostic.caused_by.is_none()).count() >= MOST
+    diagnostics.iter().filter(|diagnostic| diagnostic.caused_by.is_none()).count()
+        >= MAX_DIAGNOSTICS
 }
 
 /// Returns whether the list contains an error.

@@ -36,7 +36,7 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     for power in -20..=20 {
         let size = 2f64.powi(power);
-        let extent = Extent::of(model.domain.whole(size), size);
+        let extent = Extent::of(model.domain.bounding_cell(size), size);
         let mut linter = Linter::new(model, &extent);
         for point in spread(model.domain, &extent, 50, 0.0) {
             linter.set_point(point);

@@ -35,7 +35,7 @@ impl<'m> EmptinessProver<'m> {
 
     /// Returns whether no box of a cover of the domain can have the signs.
     fn is_excluded_by_boxes(&mut self, signs: &[Signs]) -> bool {
-        let mut pending = vec![self.domain.whole(2f64.powi(300))];
+        let mut pending = vec![self.domain.bounding_cell(2f64.powi(300))];
         let mut boxes_left = match self.domain {
             Domain::HalfPlane => MAX_BOXES_IN_HALF_PLANE,
             Domain::Space => MAX_BOXES_IN_SPACE,

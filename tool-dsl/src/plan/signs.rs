@@ -132,7 +132,7 @@ impl Planner<'_> {
     ) -> (CurveIndex, bool) {
         let mut atoms = Vec::new();
         for region in possible.iter().flatten() {
-            self.model.regions[*region].inside.open(signs, &mut atoms);
+            self.model.regions[*region].inside.undecided_atoms(signs, &mut atoms);
         }
         let mut tried: Vec<CurveIndex> = Vec::new();
         let mut best: Option<(f64, CurveIndex)> = None;

@@ -75,7 +75,7 @@ impl Certificate {
 
 /// Returns the error for a border with a point where depth jumps.
 fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
-    let (point, [own, other]) = border.seen?;
+    let (point, [own, other]) = border.jump_point?;
     let (region, neighbour) = border.between;
     let region = &model.regions[region];
     let place = model.shown(point);

@@ -78,7 +78,8 @@ impl Meridian {
         let regions = regions.collect();
         let mut borders = proved.borders;
         for border in &mut borders {
-            border.seen = border.seen.map(|(point, depths)| (self.point(point), depths));
+            border.jump_point =
+                border.jump_point.map(|(point, depths)| (self.point(point), depths));
         }
         let mut undecided = proved.undecided;
         undecided.iter_mut().for_each(|open| open.cell = self.cell(&open.cell));

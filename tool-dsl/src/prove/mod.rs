@@ -163,7 +163,7 @@ pub struct Border {
     /// The depths at which they meet.
     pub depth: Interval,
     /// A point of the tool's frame where depth jumps, with both depths, if one was found.
-    pub seen: Option<JumpPoint>,
+    pub jump_point: Option<JumpPoint>,
 }
 
 /// A box where a proof did not finish, and the statement to be proved.
@@ -186,7 +186,7 @@ impl Border {
             (is_one, other) => is_one.or(other),
         };
         self.depth = self.depth.hull(other.depth);
-        self.seen = self.seen.or(other.seen);
+        self.jump_point = self.jump_point.or(other.jump_point);
     }
 
     /// Returns whether depths agree exactly on the border. Otherwise it is a point where other regions lie
@@ -200,7 +200,7 @@ impl Border {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The least slope of the depth toward the surface.
-    pub least: Option<f64>,
+    pub min_slope: Option<f64>,
     /// The Lipschitz constant of the depth: see [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
     /// A bound of the difference between a computed depth and one that satisfies these bounds, in the file's
@@ -217,7 +217,7 @@ impl Bounds {
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding = rounding::bound_over_tool(tool);
         let is_written = |region: &Region| region.source == DirectionSource::Written;
-        let exact = Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding };
+        let exact = Bounds { min_slope: Some(1.0), lipschitz: Some(1.0), rounding };
         if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
             return (exact, Vec::new());
         }
@@ -229,7 +229,7 @@ impl Bounds {
         }
         let [min_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
         let rounding = rounding + certificate.slack;
-        (Bounds { least: min_slope, lipschitz, rounding }, diagnostics)
+        (Bounds { min_slope, lipschitz, rounding }, diagnostics)
     }
 }
 

@@ -4,7 +4,7 @@
 use super::Rule;
 use super::lexeme::{Kind, Lexeme, lexemes};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
-use crate::source::{LONGEST, Span};
+use crate::source::{MAX_SOURCE_BYTES, Span};
 use pest::iterators::{Pair, Pairs};
 
 /// The maximum length of a name, in bytes.
@@ -40,11 +40,11 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
 /// Checks the text's length, its comments and its brackets. A comment that does not end is rejected here: pest would
 /// try the comments inside it in all combinations.
 pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
-    if text.len() > LONGEST {
+    if text.len() > MAX_SOURCE_BYTES {
         let end = Span { start: 0, end: 1 };
         return Err(Diagnostic::new(
             end,
-            SyntaxKind::TextTooLong { bytes: text.len(), most: LONGEST },
+            SyntaxKind::TextTooLong { bytes: text.len(), most: MAX_SOURCE_BYTES },
         ));
     }
     let mut depth = 0usize;

@@ -326,7 +326,9 @@ impl<'m> BorderProver<'m> {
         // The border of neighbours is among their own conditions.
         let mut atoms = Vec::new();
         for owner in [Some(pair.0), pair.1].into_iter().flatten() {
-            self.model.regions[owner].inside.open(&vec![ANY; self.curves.len()], &mut atoms);
+            self.model.regions[owner]
+                .inside
+                .undecided_atoms(&vec![ANY; self.curves.len()], &mut atoms);
         }
         let condition_curves: BTreeSet<CurveIndex> =
             atoms.into_iter().map(|(curve, _)| curve).collect();

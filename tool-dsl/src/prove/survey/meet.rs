@@ -191,7 +191,7 @@ impl Survey<'_> {
             step,
             turn: turn_angle,
             turn_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
-            seen: meeting.jump_point,
+            jump_point: meeting.jump_point,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
         self.borders

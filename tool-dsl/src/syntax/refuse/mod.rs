@@ -62,7 +62,7 @@ impl<'t> Stop<'t> {
 
     /// Returns the span between two positions of the text.
     fn span(&self, start: usize, end: usize) -> Span {
-        Span { start, end }.behind(self.offset)
+        Span { start, end }.offset_by(self.offset)
     }
 
     /// Returns the span of the next `length` bytes, and at least of the next character.
