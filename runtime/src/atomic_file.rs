@@ -97,12 +97,12 @@ impl AtomicFile {
             // Open without writing, to refuse a file that is not writable, or a folder.
             OpenOptions::new().write(true).open(path)?;
         }
-        let target = followed(path)?;
+        let target = resolve_links(path)?;
         let folder = folder_of(&target);
         remove_abandoned(folder);
-        let temporary = temporary(folder)?;
+        let temporary = create_temporary(folder)?;
         if let Some(old) = old {
-            keep(temporary.as_file(), &old)?;
+            copy_permissions(temporary.as_file(), &old)?;
         }
         Ok(AtomicFile { out: BufWriter::new(Sink::Temporary(temporary)), target })
     }
@@ -163,11 +163,11 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// Resolves a path's symbolic links. The final target need not exist.
-fn followed(path: &Path) -> io::Result<PathBuf> {
-    /// The limit of Linux.
-    const LINKS: usize = 40;
+fn resolve_links(path: &Path) -> io::Result<PathBuf> {
+    /// Maximum number of links in a path, as on Linux.
+    const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
-    for _ in 0..LINKS {
+    for _ in 0..MAX_LINKS {
         match fs::read_link(&target) {
             Ok(next) => target = folder_of(&target).join(next),
             Err(_) => return Ok(target),
@@ -181,13 +181,13 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
 #[cfg(unix)]
 fn standard_stream(path: &Path) -> Option<io::Result<File>> {
     use std::os::fd::AsFd;
-    let own = |stream: io::Result<std::os::fd::OwnedFd>| Some(stream.map(File::from));
+    let into_file = |stream: io::Result<std::os::fd::OwnedFd>| Some(stream.map(File::from));
     match path.to_str()? {
         "/dev/stdout" | "/dev/fd/1" | "/proc/self/fd/1" => {
-            own(io::stdout().as_fd().try_clone_to_owned())
+            into_file(io::stdout().as_fd().try_clone_to_owned())
         }
         "/dev/stderr" | "/dev/fd/2" | "/proc/self/fd/2" => {
-            own(io::stderr().as_fd().try_clone_to_owned())
+            into_file(io::stderr().as_fd().try_clone_to_owned())
         }
         _ => None,
     }
@@ -199,7 +199,7 @@ fn standard_stream(_: &Path) -> Option<io::Result<File>> {
 }
 
 /// Creates a temporary file in a folder, locked so that no process treats it as abandoned.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+fn create_temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
@@ -208,9 +208,9 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    /// More often than chance and a few other processes require.
-    const TRIES: usize = 16;
-    for _ in 0..TRIES {
+    /// Number of attempts, more than chance and a few other processes require.
+    const MAX_ATTEMPTS: usize = 16;
+    for _ in 0..MAX_ATTEMPTS {
         // Omit the name of the temporary file from the error: it means nothing to the user.
         let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         match file.as_file().try_lock() {
@@ -242,12 +242,12 @@ fn remove_abandoned(folder: &Path) {
 }
 
 /// Copies the permissions of an old file to a new one and, where the system allows it, the owner.
-fn keep(new: &File, old: &Metadata) -> io::Result<()> {
+fn copy_permissions(new: &File, old: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{MetadataExt, fchown};
-        let own = new.metadata()?;
-        if (own.uid(), own.gid()) != (old.uid(), old.gid()) {
+        let metadata = new.metadata()?;
+        if (metadata.uid(), metadata.gid()) != (old.uid(), old.gid()) {
             // Change the owner before the permissions, since it clears some of them.
             let _ = fchown(new, Some(old.uid()), Some(old.gid()));
         }

@@ -16,10 +16,10 @@ pub struct Escaped<'a>(pub &'a str);
 
 impl Display for Escaped<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for part in self.0.split_inclusive(is_obeyed) {
-            match part.char_indices().next_back().filter(|(_, last)| is_obeyed(*last)) {
-                Some((at, last)) => write!(f, "{}\\u{:04x}", &part[..at], u32::from(last))?,
-                None => f.write_str(part)?,
+        for piece in self.0.split_inclusive(is_terminal_control) {
+            match piece.char_indices().next_back().filter(|(_, last)| is_terminal_control(*last)) {
+                Some((at, last)) => write!(f, "{}\\u{:04x}", &piece[..at], u32::from(last))?,
+                None => f.write_str(piece)?,
             }
         }
         Ok(())
@@ -36,10 +36,10 @@ pub struct EscapedLines<'a>(pub &'a str);
 
 impl Display for EscapedLines<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for part in self.0.split_inclusive(['\n', '\t']) {
-            let line = part.trim_end_matches(['\n', '\t']);
+        for piece in self.0.split_inclusive(['\n', '\t']) {
+            let line = piece.trim_end_matches(['\n', '\t']);
             write!(f, "{}", Escaped(line))?;
-            part[line.len()..].chars().try_for_each(|end| f.write_char(end))?;
+            piece[line.len()..].chars().try_for_each(|end| f.write_char(end))?;
         }
         Ok(())
     }
@@ -48,7 +48,7 @@ impl Display for EscapedLines<'_> {
 /// Returns whether a terminal interprets a character instead of showing it. These are control
 /// characters, and the marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm
 /// (UAX 9, section 2).
-fn is_obeyed(c: char) -> bool {
+fn is_terminal_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_that_a_terminal_obeys_is_left() {
+    fn escapes_every_terminal_control() {
         for code in (0..0x20).chain(0x7f..0xa0).chain([0x61c, 0x200e, 0x202e, 0x2066]) {
             let text = format!("a{}é", char::from_u32(code).expect("a character"));
             assert_eq!(Escaped(&text).to_string(), format!("a\\u{code:04x}é"));

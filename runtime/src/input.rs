@@ -5,26 +5,26 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Maximum size of a file in bytes, 16 GiB: some 300 million triangles of binary STL.
-pub(crate) const MAX_FILE_BYTES: u64 = 1 << 34;
+pub(crate) const MAX_BYTES: u64 = 1 << 34;
 
-/// Opens a regular file of at most [`MAX_FILE_BYTES`] bytes and returns it with its length.
+/// Opens a regular file of at most [`MAX_BYTES`] bytes and returns it with its length.
 ///
 /// # Errors
 /// Returns the errors of the operating system. Refuses a longer file, and a directory, a pipe, a socket
 /// or a device, whose content may be endless.
 pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
-    let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
-    let irregular = || refused("it is no regular file".to_owned());
+    let refuse = |reason: String| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    let irregular = || refuse("it is no regular file".to_owned());
     // Check before opening: opening a pipe waits for its writer.
     if !fs::metadata(&path)?.is_file() {
         return irregular();
     }
     let file = File::open(path)?;
-    let facts = file.metadata()?;
-    match facts.len() {
-        _ if !facts.is_file() => irregular(),
-        bytes if bytes > MAX_FILE_BYTES => {
-            refused(format!("it has {bytes} bytes, more than the {MAX_FILE_BYTES} that are read"))
+    let metadata = file.metadata()?;
+    match metadata.len() {
+        _ if !metadata.is_file() => irregular(),
+        bytes if bytes > MAX_BYTES => {
+            refuse(format!("it has {bytes} bytes, more than the {MAX_BYTES} that are read"))
         }
         bytes => Ok((file, bytes)),
     }
@@ -37,8 +37,9 @@ pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
 pub(crate) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
     let mut bytes = Vec::new();
-    let room = usize::try_from(length).ok().filter(|room| bytes.try_reserve_exact(*room).is_ok());
-    if room.is_none() {
+    let capacity =
+        usize::try_from(length).ok().filter(|capacity| bytes.try_reserve_exact(*capacity).is_ok());
+    if capacity.is_none() {
         return Err(io::ErrorKind::OutOfMemory.into());
     }
     file.take(length).read_to_end(&mut bytes)?;
@@ -62,14 +63,14 @@ mod tests {
             let socket = folder.path().join("socket");
             let _listener = std::os::unix::net::UnixListener::bind(&socket).expect("a socket");
             let pipe = folder.path().join("pipe");
-            let made = std::process::Command::new("mkfifo").arg(&pipe).status();
-            assert!(made.expect("mkfifo").success());
+            let status = std::process::Command::new("mkfifo").arg(&pipe).status();
+            assert!(status.expect("mkfifo").success());
             for path in [&socket, &pipe, Path::new("/dev/zero")] {
                 assert_eq!(refused(path), "it is no regular file");
             }
         }
-        // A sparse file takes no room on the disk.
-        File::create(&path).and_then(|file| file.set_len(MAX_FILE_BYTES + 1)).expect("a long file");
+        // A sparse file takes no space on the disk.
+        File::create(&path).and_then(|file| file.set_len(MAX_BYTES + 1)).expect("a long file");
         assert!(refused(&path).contains("17179869185 bytes, more than the 17179869184"));
     }
 }

@@ -11,7 +11,7 @@ pub struct ParseEnumError {
 }
 
 /// Implements `Display` and `FromStr` for an enumeration, with a keyword per variant.
-macro_rules! words {
+macro_rules! keyword_enum {
     ($type:ident, $known:literal, $($variant:ident $word:literal),*) => {
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -32,4 +32,4 @@ macro_rules! words {
     };
 }
 
-pub(crate) use words;
+pub(crate) use keyword_enum;

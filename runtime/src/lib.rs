@@ -3,7 +3,7 @@
 //!
 //! A tool is written in a small language and compiled into straight-line code by [`include_tool!`], [`tool!`] or
 //! [`tool_library!`]. A workpiece is a triangle mesh: sampled as a weighted point cloud for fast queries, or searched
-//! as triangles for proved ones. Every answer says its error.
+//! as triangles for proved ones. Every answer states its error.
 //!
 //! # A tour
 //!
@@ -79,7 +79,7 @@
 //! | [`TriangleBvh`](certify::TriangleBvh), [`Certifier`](certify::Certifier) | triangles prepared for queries, and proved depth, clearance and motions |
 //! | [`Verifier`](verify::Verifier) | the check of a whole [`Program`] |
 //!
-//! Lengths are in the unit of the part or of the tool's file, as each function says; frames are right-handed, and a
+//! Lengths are in the unit of the part or of the tool's file, as each function states; frames are right-handed, and a
 //! tool's axis points from the tip to the spindle.
 //!
 //! # Features

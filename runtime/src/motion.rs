@@ -5,13 +5,13 @@ use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// A motion of a tool from one pose to another at constant speed, with the tip on a straight line.
 ///
-/// [`Motion::new`] rotates the axis about the common normal of both axes (spherical interpolation), as a
-/// 5-axis program means it. The spin about the axis is chosen arbitrarily, since a tool of revolution
+/// [`Motion::new`] rotates the axis about the common normal of both axes (spherical interpolation), as
+/// 5-axis programs prescribe. The spin about the axis is chosen arbitrarily, since a tool of revolution
 /// does not depend on it. [`Motion::with_spin`] rotates the whole frame about one fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     tip: Point3<f64>,
-    way: Vector3<f64>,
+    displacement: Vector3<f64>,
     /// The initial rotation of the rotating frame, whose second column is the axis of rotation.
     start: Matrix3<f64>,
     /// The rotation from the tool frame to the rotating frame, if they differ; the spin is then known.
@@ -38,9 +38,9 @@ pub enum MotionError {
     NoSpin,
 }
 
-/// Angles closer to half a turn than this are ambiguous: rounding would decide the direction of
-/// rotation.
-const OPPOSITE: f64 = 1e-9;
+/// Tolerance, approximately in radians, within which a rotation counts as half a turn and is ambiguous:
+/// rounding would decide its direction.
+const HALF_TURN_TOLERANCE: f64 = 1e-9;
 
 impl Motion {
     /// Creates the motion that rotates the axis along the shorter great circle.
@@ -50,23 +50,29 @@ impl Motion {
     pub fn new(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
         let (first, last) = (from.axis(), to.axis());
         let (sine, cosine) = (first.cross(&last), first.dot(&last));
-        let size = sine.norm();
-        if size < OPPOSITE && cosine < 0.0 {
+        let sine_norm = sine.norm();
+        if sine_norm < HALF_TURN_TOLERANCE && cosine < 0.0 {
             return Err(MotionError::Opposite);
         }
-        let way = to.tip() - from.tip();
+        let displacement = to.tip() - from.tip();
         // Without a rotation of the axis, the displacement defines the frame.
-        let across = if size > f64::MIN_POSITIVE.sqrt() { sine } else { first.cross(&way) };
-        // An exact cross product with the axis is perpendicular to it. One that is not consists of
-        // rounding: its perpendicular remainder would be rounding again, and the three columns would not
-        // form a rotation.
-        let second = across - first * first.dot(&across);
-        let start = match Unit::try_new(second, 0.5 * across.norm()) {
+        let normal =
+            if sine_norm > f64::MIN_POSITIVE.sqrt() { sine } else { first.cross(&displacement) };
+        // An exact cross product is perpendicular to the axis. A computed one that is not consists of
+        // rounding, and so does its perpendicular remainder: the three columns would not form a rotation.
+        let second = normal - first * first.dot(&normal);
+        let start = match Unit::try_new(second, 0.5 * normal.norm()) {
             Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
             None => *from.rotation(),
         };
         let start = orthonormal(start);
-        Ok(Motion { tip: from.tip(), way, start, frame: None, angle: size.atan2(cosine) })
+        Ok(Motion {
+            tip: from.tip(),
+            displacement,
+            start,
+            frame: None,
+            angle: sine_norm.atan2(cosine),
+        })
     }
 
     /// Creates the motion that rotates the tool frame about one axis by less than half a turn, as the
@@ -96,26 +102,27 @@ impl Motion {
         }
         // The rotation in the tool frame. Shepperd's conversion of a rotation matrix to a quaternion is
         // accurate for all angles (1978).
-        let turn = Rotation3::from_matrix_unchecked(from.rotation().transpose() * to.rotation());
-        let turn = UnitQuaternion::from_rotation_matrix(&turn);
-        let (sine, cosine) = (turn.imag(), turn.w);
-        if cosine.abs() < OPPOSITE {
+        let rotation =
+            Rotation3::from_matrix_unchecked(from.rotation().transpose() * to.rotation());
+        let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
+        let (sine, cosine) = (rotation.imag(), rotation.w);
+        if cosine.abs() < HALF_TURN_TOLERANCE {
             return Err(MotionError::HalfTurn);
         }
         // The square of a shorter vector underflows, and its rotation is zero.
         let axis = Unit::try_new(sine * cosine.signum(), f64::MIN_POSITIVE.sqrt());
-        let turn = if axis.is_some() { 2.0 * sine.norm().atan2(cosine.abs()) } else { 0.0 };
+        let angle = if axis.is_some() { 2.0 * sine.norm().atan2(cosine.abs()) } else { 0.0 };
         let axis = axis.unwrap_or(Vector3::y_axis());
         // Two directions perpendicular to the axis, from any frame that contains it.
-        let across = Pose::from_axis(Point3::origin(), *axis).map_err(|_| MotionError::HalfTurn)?;
-        let [first, second] = [0, 1].map(|k| Vector3::from(across.rotation().column(k)));
+        let basis = Pose::from_axis(Point3::origin(), *axis).map_err(|_| MotionError::HalfTurn)?;
+        let [first, second] = [0, 1].map(|k| Vector3::from(basis.rotation().column(k)));
         let columns = Matrix3::from_columns(&[second, *axis, first]);
         Ok(Motion {
             tip: from.tip(),
-            way: to.tip() - from.tip(),
+            displacement: to.tip() - from.tip(),
             start: orthonormal(from.rotation() * columns),
             frame: Some(columns.transpose()),
-            angle: turn,
+            angle,
         })
     }
 
@@ -124,13 +131,13 @@ impl Motion {
     ///
     /// # Panics
     /// Panics if the fraction is NaN.
-    pub fn pose(&self, part: f64) -> Pose {
-        assert!(!part.is_nan(), "NaN is no part of a motion: give a number from 0 to 1");
-        let part = part.clamp(0.0, 1.0);
-        let (sine, cosine) = (part * self.angle).sin_cos();
+    pub fn pose(&self, fraction: f64) -> Pose {
+        assert!(!fraction.is_nan(), "NaN is no part of a motion: give a number from 0 to 1");
+        let fraction = fraction.clamp(0.0, 1.0);
+        let (sine, cosine) = (fraction * self.angle).sin_cos();
         let [x, y, z] = [0, 1, 2].map(|axis| Vector3::from(self.start.column(axis)));
         let columns = Matrix3::from_columns(&[cosine * x - sine * z, y, cosine * z + sine * x]);
-        let tip = self.tip + part * self.way;
+        let tip = self.tip + fraction * self.displacement;
         match &self.frame {
             None => Pose::turned(columns, tip, false),
             Some(frame) => Pose::turned(columns * frame, tip, true),
@@ -156,7 +163,7 @@ impl Motion {
 
     /// Returns the displacement of the tip over the motion, in the world frame.
     pub fn displacement(&self) -> Vector3<f64> {
-        self.way
+        self.displacement
     }
 
     /// Returns the angle by which the axis rotates, or the frame if the spin is known, in radians.
@@ -175,14 +182,14 @@ mod tests {
     /// Tests neighbouring axes and plunges along the axis. There the cross product that defines the
     /// frame consists of rounding only, and may point along the axis itself.
     #[test]
-    fn every_pose_of_a_motion_has_a_rotation() {
+    fn every_pose_of_a_motion_is_a_rotation() {
         let mut random = Pcg64Mcg::seed_from_u64(1);
         let mut uniform = || (random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
-        let mut worst = 0.0f64;
-        let mut judge = |from: &Pose, to: &Pose| {
+        let mut max_error = 0.0f64;
+        let mut check = |from: &Pose, to: &Pose| {
             let motion = Motion::new(from, to).expect("axes that are not opposite");
-            for part in [0.0, 0.5, 1.0] {
-                worst = worst.max(orthonormality_error(motion.pose(part).rotation()));
+            for fraction in [0.0, 0.5, 1.0] {
+                max_error = max_error.max(orthonormality_error(motion.pose(fraction).rotation()));
             }
         };
         for k in 0..1_000_000 {
@@ -191,22 +198,23 @@ mod tests {
             let Some(axis) = Unit::try_new(axis, 1e-3).map(Unit::into_inner) else { continue };
             let tip = Point3::new(uniform(), uniform(), uniform());
             let from = Pose::from_axis(tip, axis).expect("an axis");
-            let nudged = axis.map(|part| part * (1.0 + f64::EPSILON * (3.0 * uniform()).round()));
-            judge(&from, &Pose::from_axis(tip, nudged).expect("an axis"));
-            judge(&from, &Pose::from_axis(tip + from.axis() * uniform(), axis).expect("an axis"));
+            let nudged =
+                axis.map(|component| component * (1.0 + f64::EPSILON * (3.0 * uniform()).round()));
+            check(&from, &Pose::from_axis(tip, nudged).expect("an axis"));
+            check(&from, &Pose::from_axis(tip + from.axis() * uniform(), axis).expect("an axis"));
         }
         // 6u from the rotation and 3u from the check itself. A frame built on rounding along the axis
         // gave forty.
-        assert!(worst <= 4.5 * f64::EPSILON, "{worst:e}");
+        assert!(max_error <= 4.5 * f64::EPSILON, "{max_error:e}");
     }
 
     /// Compares with nalgebra's interpolation of quaternions, for short rotations, long ones, and nearly
     /// half a turn.
     #[test]
-    fn a_motion_with_spin_is_that_of_quaternions() {
+    fn motion_with_spin_matches_quaternion_interpolation() {
         let mut random = Pcg64Mcg::seed_from_u64(2);
         let mut uniform = || (random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
-        let (mut worst, mut ends, mut rotations) = (0.0f64, 0.0f64, 0.0f64);
+        let (mut max_error, mut end_error, mut rotation_error) = (0.0f64, 0.0f64, 0.0f64);
         for k in 0..100_000 {
             let mut quaternion = || UnitQuaternion::new(10.0 * Vector3::from_fn(|_, _| uniform()));
             let (first, axis) = (quaternion(), quaternion() * Vector3::z_axis());
@@ -218,49 +226,52 @@ mod tests {
                 Pose::from_quaternion(tip, [x, y, z, w]).expect("a quaternion")
             });
             let motion = Motion::with_spin(&from, &to).expect("less than half a turn");
-            for (part, end) in [(0.0, from), (1.0, to)] {
-                ends = ends.max((motion.pose(part).rotation() - end.rotation()).abs().max());
+            for (fraction, end) in [(0.0, from), (1.0, to)] {
+                end_error =
+                    end_error.max((motion.pose(fraction).rotation() - end.rotation()).abs().max());
             }
-            let part = 0.5 + 0.5 * uniform();
-            let pose = motion.pose(part);
-            rotations = rotations.max(orthonormality_error(pose.rotation()));
-            let turned = UnitQuaternion::from_axis_angle(&axis, part * angle);
-            let wanted = (first * turned).to_rotation_matrix();
-            worst = worst.max((pose.rotation() - wanted.matrix()).abs().max());
-            let about = motion.rotation_axis();
-            assert!((pose.rotation() * about - from.rotation() * about).norm() < 4e-15);
+            let fraction = 0.5 + 0.5 * uniform();
+            let pose = motion.pose(fraction);
+            rotation_error = rotation_error.max(orthonormality_error(pose.rotation()));
+            let partial = UnitQuaternion::from_axis_angle(&axis, fraction * angle);
+            let expected = (first * partial).to_rotation_matrix();
+            max_error = max_error.max((pose.rotation() - expected.matrix()).abs().max());
+            let rotation_axis = motion.rotation_axis();
+            assert!(
+                (pose.rotation() * rotation_axis - from.rotation() * rotation_axis).norm() < 4e-15
+            );
         }
-        assert!(rotations <= 4.5 * f64::EPSILON, "{rotations:e}");
-        assert!(ends < 8.0 * f64::EPSILON && worst < 1e-14, "{ends:e} {worst:e}");
+        assert!(rotation_error <= 4.5 * f64::EPSILON, "{rotation_error:e}");
+        assert!(end_error < 8.0 * f64::EPSILON && max_error < 1e-14, "{end_error:e} {max_error:e}");
     }
 
     #[test]
-    fn a_motion_with_spin_is_refused_where_it_is_ambiguous() {
+    fn rejects_ambiguous_motions_with_spin() {
         let pose = |q| Pose::from_quaternion(Point3::origin(), q).expect("a quaternion");
-        let still = pose([0.0, 0.0, 0.0, 1.0]);
+        let identity = pose([0.0, 0.0, 0.0, 1.0]);
         let axis = Pose::from_axis(Point3::origin(), Vector3::z()).expect("an axis");
-        assert_eq!(Motion::with_spin(&still, &axis), Err(MotionError::NoSpin));
-        assert_eq!(Motion::with_spin(&axis, &still), Err(MotionError::NoSpin));
+        assert_eq!(Motion::with_spin(&identity, &axis), Err(MotionError::NoSpin));
+        assert_eq!(Motion::with_spin(&axis, &identity), Err(MotionError::NoSpin));
         for q in [[1.0, 0.0, 0.0, 0.0], [0.0, 0.6, -0.8, 1e-10]] {
-            assert_eq!(Motion::with_spin(&still, &pose(q)), Err(MotionError::HalfTurn));
+            assert_eq!(Motion::with_spin(&identity, &pose(q)), Err(MotionError::HalfTurn));
         }
-        assert!(Motion::with_spin(&still, &pose([0.0, 0.6, 0.8, 1e-8])).is_ok());
-        assert!(Motion::with_spin(&still, &pose([0.0, 0.0, 0.0, -1.0])).is_ok());
+        assert!(Motion::with_spin(&identity, &pose([0.0, 0.6, 0.8, 1e-8])).is_ok());
+        assert!(Motion::with_spin(&identity, &pose([0.0, 0.0, 0.0, -1.0])).is_ok());
     }
 
     #[test]
-    fn a_part_outside_is_that_of_the_nearer_end() {
+    fn fractions_outside_the_motion_are_clamped() {
         let [from, to] = [0.0, 1.0]
             .map(|x| Pose::from_axis(Point3::new(x, 0.0, 0.0), Vector3::z()).expect("a pose"));
         let motion = Motion::new(&from, &to).expect("a motion");
-        for (part, end) in [(-1.0, 0.0), (f64::NEG_INFINITY, 0.0), (1.5, 1.0), (1e300, 1.0)] {
-            assert_eq!(motion.pose(part).tip().x, end, "{part}");
+        for (fraction, end) in [(-1.0, 0.0), (f64::NEG_INFINITY, 0.0), (1.5, 1.0), (1e300, 1.0)] {
+            assert_eq!(motion.pose(fraction).tip().x, end, "{fraction}");
         }
     }
 
     #[test]
     #[should_panic(expected = "NaN is no part of a motion")]
-    fn a_part_that_is_not_a_number_is_refused() {
+    fn rejects_a_nan_fraction() {
         let pose = Pose::default();
         Motion::new(&pose, &pose).expect("a motion").pose(f64::NAN);
     }

@@ -2,23 +2,23 @@
 
 use std::ops::Range;
 
-/// Applies `make` to consecutive ranges of `0..count` of `together` indices each, and returns the
-/// results in order.
+/// Splits `0..count` into consecutive ranges of `chunk_size` indices, applies `map` to each, and returns
+/// the results in order.
 pub(crate) fn ranges<R: Send>(
     count: usize,
-    together: usize,
-    make: impl Fn(Range<usize>) -> R + Sync,
+    chunk_size: usize,
+    map: impl Fn(Range<usize>) -> R + Sync,
 ) -> Vec<R> {
-    let range = |k: usize| k * together..((k + 1) * together).min(count);
-    let pieces = count.div_ceil(together);
+    let range = |k: usize| k * chunk_size..((k + 1) * chunk_size).min(count);
+    let chunks = count.div_ceil(chunk_size);
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        (0..pieces).into_par_iter().map(|k| make(range(k))).collect()
+        (0..chunks).into_par_iter().map(|k| map(range(k))).collect()
     }
     #[cfg(not(feature = "parallel"))]
     {
-        (0..pieces).map(|k| make(range(k))).collect()
+        (0..chunks).map(|k| map(range(k))).collect()
     }
 }
 
@@ -37,15 +37,15 @@ pub(crate) fn sort<T: Ord + Send>(list: &mut [T]) {
 
 /// Runs both functions, in parallel if possible, and returns their results.
 pub(crate) fn both<A: Send, B: Send>(
-    one: impl FnOnce() -> A + Send,
-    other: impl FnOnce() -> B + Send,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
 ) -> (A, B) {
     #[cfg(feature = "parallel")]
     {
-        rayon::join(one, other)
+        rayon::join(first, second)
     }
     #[cfg(not(feature = "parallel"))]
     {
-        (one(), other())
+        (first(), second())
     }
 }

@@ -11,7 +11,7 @@ use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
 /// Minimum number of points of a part's coarsest level.
-const FEWEST: usize = 100;
+const MIN_LEVEL_POINTS: usize = 100;
 
 /// A part: its points in a bounding volume hierarchy, and the diagnostics of its mesh.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct Part {
     /// before.
     pub(crate) levels: Vec<PointBvh>,
     pub(crate) unit: Unit,
-    pub(crate) survey: Option<MeshDiagnostics>,
+    pub(crate) diagnostics: Option<MeshDiagnostics>,
 }
 
 /// Reasons why a part could not be built.
@@ -57,8 +57,8 @@ impl Part {
     }
 
     /// Builds a part from a cloud on a mesh and the mesh's diagnostics.
-    pub fn new(cloud: &Cloud, survey: MeshDiagnostics) -> Part {
-        Part { survey: Some(survey), ..Part::from_cloud(cloud) }
+    pub fn new(cloud: &Cloud, diagnostics: MeshDiagnostics) -> Part {
+        Part { diagnostics: Some(diagnostics), ..Part::from_cloud(cloud) }
     }
 
     /// Builds a part as [`Part::from_mesh`] does, with coarser levels of detail. Each has a quarter of
@@ -71,7 +71,7 @@ impl Part {
     pub fn with_lods(mesh: &Mesh, sampling: Sampling) -> Result<Part, CloudError> {
         let mut cloud = Cloud::sample(mesh, sampling)?;
         let mut part = Part::new(&cloud, mesh.diagnostics());
-        while cloud.len() >= 4 * FEWEST {
+        while cloud.len() >= 4 * MIN_LEVEL_POINTS {
             cloud = cloud.decimated(mesh, cloud.len() / 4);
             part.levels.push(PointBvh::new(&cloud));
         }
@@ -80,7 +80,7 @@ impl Part {
 
     /// Builds a part from a cloud, without mesh diagnostics.
     pub fn from_cloud(cloud: &Cloud) -> Part {
-        Part { levels: vec![PointBvh::new(cloud)], unit: cloud.unit(), survey: None }
+        Part { levels: vec![PointBvh::new(cloud)], unit: cloud.unit(), diagnostics: None }
     }
 
     /// Removes the points inside a tool at a pose, namely those deeper than the sampling error bound
@@ -95,25 +95,25 @@ impl Part {
     /// Lipschitz constant or the cloud no covering radius, all points inside are removed and the
     /// covering radius becomes unknown.
     pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
-        let mut taken = 0;
+        let mut removed = 0;
         for tree in &mut self.levels {
             let mut probe = Probe::of(tree, self.unit, tool);
-            let unseen = probe.sampling_error_bound();
-            let places = probe.deeper(pose, unseen.unwrap_or(-1.0));
-            taken += places.len();
-            if places.is_empty() {
+            let error_bound = probe.sampling_error_bound();
+            let indices = probe.deeper(pose, error_bound.unwrap_or(-1.0));
+            removed += indices.len();
+            if indices.is_empty() {
                 continue;
             }
-            if unseen.is_none() {
+            if error_bound.is_none() {
                 tree.covering_radius = None;
             }
-            tree.remove(places);
+            tree.remove(indices);
         }
-        taken
+        removed
     }
 
-    /// Moves points and rotates their unit normals, as `to` returns for a point and its normal. The tree
-    /// is not rebuilt, so queries get slower as neighbours move apart. Weights are unchanged.
+    /// Moves points and rotates their unit normals: `map` takes a point with its normal and returns the new
+    /// ones. The tree is not rebuilt, so queries get slower as neighbours move apart. Weights are unchanged.
     ///
     /// The covering radius grows by twice the largest displacement of a point. This is a bound if no
     /// surface point between the points moves farther, which only the caller can know, so the radius
@@ -123,26 +123,26 @@ impl Part {
     /// Fails for an invalid position or normal; no point has moved then.
     pub fn displace(
         &mut self,
-        mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
+        mut map: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
     ) -> Result<(), CloudError> {
-        let mut moved = Vec::new();
+        let mut levels = Vec::new();
         for tree in &self.levels {
             let mut moved_points = Vec::new();
             for (index, point, normal) in tree.all() {
-                let (new_point, new_normal) = to(point, normal);
+                let (new_point, new_normal) = map(point, normal);
                 if new_point != point || new_normal != normal {
                     check_position(index, &new_point)?;
                     moved_points.push((index, new_point, unit_normal(index, new_normal)?));
                 }
             }
-            moved.push(moved_points);
+            levels.push(moved_points);
         }
         for (tree, moved) in
-            self.levels.iter_mut().zip(&moved).filter(|(_, moved)| !moved.is_empty())
+            self.levels.iter_mut().zip(&levels).filter(|(_, moved)| !moved.is_empty())
         {
-            let farthest = tree.replace(moved);
+            let max_displacement = tree.replace(moved);
             tree.covering_radius = tree.covering_radius.map(|CoveringRadius { radius, .. }| {
-                CoveringRadius { radius: radius + 2.0 * farthest, proved: false }
+                CoveringRadius { radius: radius + 2.0 * max_displacement, proved: false }
             });
         }
         Ok(())
@@ -154,7 +154,7 @@ impl Part {
         if unit != self.unit {
             let factor = self.unit.factor_to(unit);
             self.levels.iter_mut().for_each(|tree| tree.scale_by(factor));
-            self.survey = self.survey.map(|survey| survey.to(unit));
+            self.diagnostics = self.diagnostics.map(|diagnostics| diagnostics.to(unit));
             self.unit = unit;
         }
         self
@@ -177,7 +177,7 @@ impl Part {
 
     /// Returns the diagnostics of the mesh, or `None` for a part built from points alone.
     pub fn diagnostics(&self) -> Option<&MeshDiagnostics> {
-        self.survey.as_ref()
+        self.diagnostics.as_ref()
     }
 }
 

@@ -18,8 +18,8 @@ pub const FARTHEST_TIP: f64 = 1e3 * LARGEST_COORDINATE;
 pub struct Pose {
     rotation: Matrix3<f64>,
     tip: Point3<f64>,
-    /// `true` if the spin about the axis was given.
-    full: bool,
+    /// True if the spin about the axis was given.
+    has_spin: bool,
 }
 
 /// Reasons why a pose is invalid.
@@ -81,25 +81,25 @@ impl Pose {
         Pose::finite(orthonormal(rotation), tip, true)
     }
 
-    fn finite(rotation: Matrix3<f64>, tip: Point3<f64>, full: bool) -> Result<Pose, PoseError> {
+    fn finite(rotation: Matrix3<f64>, tip: Point3<f64>, has_spin: bool) -> Result<Pose, PoseError> {
         if tip.iter().all(|c| c.abs() <= LARGEST_COORDINATE) {
-            Ok(Pose { rotation, tip, full })
+            Ok(Pose { rotation, tip, has_spin })
         } else {
             Err(PoseError::NotFinite)
         }
     }
 
-    /// Creates a pose from a matrix that is a rotation except for rounding; `full` states that its spin
-    /// is known.
-    pub(crate) fn turned(rotation: Matrix3<f64>, tip: Point3<f64>, full: bool) -> Pose {
-        Pose { rotation: orthonormal(rotation), tip, full }
+    /// Creates a pose from a matrix that is a rotation except for rounding; `has_spin` states whether its
+    /// spin is known.
+    pub(crate) fn turned(rotation: Matrix3<f64>, tip: Point3<f64>, has_spin: bool) -> Pose {
+        Pose { rotation: orthonormal(rotation), tip, has_spin }
     }
 
     /// Returns whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`].
     /// Results for a tool of revolution do not depend on it. Results for a solid without an axis do, so
     /// it needs a pose with spin.
     pub fn has_spin(&self) -> bool {
-        self.full
+        self.has_spin
     }
 
     /// Returns the tip's position, in the world frame.
@@ -144,7 +144,7 @@ impl Pose {
     pub fn then(&self, motion: &Pose) -> Pose {
         let tip = motion.tip + motion.rotation * self.tip.coords;
         let rotation = orthonormal(motion.rotation * self.rotation);
-        Pose { rotation, tip: check_range(tip), full: self.full && motion.full }
+        Pose { rotation, tip: check_range(tip), has_spin: self.has_spin && motion.has_spin }
     }
 
     /// Returns the pose translated by a displacement in the world frame.
@@ -152,28 +152,30 @@ impl Pose {
     /// # Errors
     /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one
     /// allowed.
-    pub fn translated(&self, offset: Vector3<f64>) -> Result<Pose, PoseError> {
-        Pose::finite(self.rotation, self.tip + offset, self.full)
+    pub fn translated(&self, displacement: Vector3<f64>) -> Result<Pose, PoseError> {
+        Pose::finite(self.rotation, self.tip + displacement, self.has_spin)
     }
 
-    /// Returns the pose rotated by `turn`, with its tip at `tip`.
+    /// Returns the pose rotated by `rotation`, with its tip at `tip`.
     ///
     /// # Errors
-    /// Fails if the tip is out of bounds or `turn` is not a rotation.
+    /// Fails if the tip is out of bounds or `rotation` is not a rotation.
     #[cfg(feature = "haptic")]
     pub(crate) fn rotated_to(
         &self,
-        turn: Matrix3<f64>,
+        rotation: Matrix3<f64>,
         tip: Point3<f64>,
     ) -> Result<Pose, PoseError> {
-        let rotation = orthonormal(turn * self.rotation);
+        let rotation = orthonormal(rotation * self.rotation);
         match orthonormality_error(&rotation) {
-            error if error <= ORTHONORMALITY_TOLERANCE => Pose::finite(rotation, tip, self.full),
+            error if error <= ORTHONORMALITY_TOLERANCE => {
+                Pose::finite(rotation, tip, self.has_spin)
+            }
             _ => Err(PoseError::NotFinite),
         }
     }
 
-    /// Returns the pose relative to `frame`: `frame⁻¹ ∘ self`, with the difference of the tips
+    /// Returns the pose relative to `frame`, as `frame⁻¹ ∘ self`, with the difference of the tips
     /// taken first. The rotation remains a rotation as in [`Pose::then`].
     ///
     /// # Panics
@@ -187,7 +189,7 @@ impl Pose {
         Pose {
             rotation: orthonormal(inverse * self.rotation),
             tip: check_range(tip),
-            full: self.full,
+            has_spin: self.has_spin,
         }
     }
 
@@ -201,7 +203,7 @@ impl Pose {
 /// Returns the tip after checking that it is within [`FARTHEST_TIP`].
 fn check_range(tip: Point3<f64>) -> Point3<f64> {
     assert!(
-        tip.iter().all(|part| part.abs() <= FARTHEST_TIP),
+        tip.iter().all(|coordinate| coordinate.abs() <= FARTHEST_TIP),
         "the composed pose has its tip at {tip}, out of {FARTHEST_TIP:e}: compose fewer or smaller motions"
     );
     tip
@@ -216,9 +218,10 @@ const ORTHONORMALITY_TOLERANCE: f64 = 1e-9;
 #[cfg(any(test, feature = "haptic"))]
 pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
     let error = rotation.transpose() * rotation - Matrix3::identity();
-    error
-        .iter()
-        .fold(0.0, |max_error, part| if part.abs() <= max_error { max_error } else { part.abs() })
+    error.iter().fold(
+        0.0,
+        |max_error, entry| if entry.abs() <= max_error { max_error } else { entry.abs() },
+    )
 }
 
 /// Corrects the rounding of a matrix `R` that is nearly a rotation. The result `Q` has `QᵀQ` within 6u
@@ -238,7 +241,7 @@ pub(crate) fn orthonormal(product: Matrix3<f64>) -> Matrix3<f64> {
 /// Returns the pose at the origin without rotation.
 impl Default for Pose {
     fn default() -> Pose {
-        Pose { rotation: Matrix3::identity(), tip: Point3::origin(), full: true }
+        Pose { rotation: Matrix3::identity(), tip: Point3::origin(), has_spin: true }
     }
 }
 
@@ -268,39 +271,39 @@ mod tests {
     use super::*;
     use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
-    const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    const NON_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
     /// Checks that every constructor refuses matrices that are not rotations and invalid positions. All
     /// accepted poses are rotations to within rounding, however large the error within the tolerance.
     #[test]
-    fn every_entrance_refuses_what_is_no_pose() {
+    fn constructors_reject_invalid_poses() {
         let origin = Point3::origin();
-        for bad in BAD {
-            for at in 0..4 {
+        for bad in NON_FINITE {
+            for index in 0..4 {
                 let mut quaternion = [0.0, 0.6, 0.0, 0.8];
-                quaternion[at] = bad;
+                quaternion[index] = bad;
                 assert_eq!(Pose::from_quaternion(origin, quaternion), Err(PoseError::NotFinite));
                 let unchecked = UnitQuaternion::new_unchecked(Quaternion::from(quaternion));
                 let isometry = Isometry3::from_parts(Translation3::identity(), unchecked);
                 assert_eq!(Pose::try_from(isometry), Err(PoseError::NotFinite));
-                let [x, y, z] = [0, 1, 2].map(|k| if k == at % 3 { bad } else { 0.0 });
+                let [x, y, z] = [0, 1, 2].map(|k| if k == index % 3 { bad } else { 0.0 });
                 let (tip, axis) = (Point3::new(x, y, z), Vector3::new(x, y, z));
                 assert_eq!(Pose::from_axis(origin, axis), Err(PoseError::NotFinite));
                 assert_eq!(Pose::from_axis(tip, Vector3::z()), Err(PoseError::NotFinite));
                 assert_eq!(Pose::default().translated(axis), Err(PoseError::NotFinite));
             }
         }
-        for size in [0.0, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
-            let axis = Pose::from_axis(origin, Vector3::new(0.0, 0.6, 0.8) * size);
+        for norm in [0.0, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
+            let axis = Pose::from_axis(origin, Vector3::new(0.0, 0.6, 0.8) * norm);
             assert!(matches!(axis, Err(PoseError::NotUnit { what: "axis", .. })), "{axis:?}");
-            let quaternion = Pose::from_quaternion(origin, [0.0, 0.6, 0.0, 0.8].map(|c| c * size));
+            let quaternion = Pose::from_quaternion(origin, [0.0, 0.6, 0.0, 0.8].map(|c| c * norm));
             assert!(matches!(quaternion, Err(PoseError::NotUnit { .. })), "{quaternion:?}");
         }
-        for size in [1.0 - 0.9e-3, 1.0, 1.0 + 0.9e-3] {
+        for norm in [1.0 - 0.9e-3, 1.0, 1.0 + 0.9e-3] {
             for sign in [1.0, -1.0] {
-                let axis = Pose::from_axis(origin, Vector3::new(0.36, 0.48, sign * 0.8) * size);
-                let turned = [0.1, 0.7, -0.1, sign * 0.7].map(|c| c * size);
-                let quaternion = Pose::from_quaternion(origin, turned);
+                let axis = Pose::from_axis(origin, Vector3::new(0.36, 0.48, sign * 0.8) * norm);
+                let components = [0.1, 0.7, -0.1, sign * 0.7].map(|c| c * norm);
+                let quaternion = Pose::from_quaternion(origin, components);
                 for pose in [axis, quaternion] {
                     assert!(
                         orthonormality_error(pose.expect("within tolerance").rotation())
@@ -313,34 +316,34 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "compose fewer or smaller motions")]
-    fn a_composed_pose_does_not_run_away_to_infinity() {
-        let far = Point3::new(LARGEST_COORDINATE, 0.0, 0.0);
-        let mut pose = Pose::from_axis(far, Vector3::z()).expect("a pose");
+    fn rejects_a_composed_tip_out_of_range() {
+        let tip = Point3::new(LARGEST_COORDINATE, 0.0, 0.0);
+        let mut pose = Pose::from_axis(tip, Vector3::z()).expect("a pose");
         for _ in 0..2000 {
             pose = pose.then(&pose);
         }
     }
 
     #[test]
-    fn poses_as_far_apart_as_they_may_be_given_compose() {
+    fn poses_with_extreme_coordinates_compose() {
         let [a, b] = [-LARGEST_COORDINATE, LARGEST_COORDINATE]
             .map(|c| Pose::from_axis(Point3::new(c, c, c), Vector3::x()).expect("a pose"));
-        assert!(a.relative_to(&b).then(&b).tip().iter().all(|part| part.is_finite()));
+        assert!(a.relative_to(&b).then(&b).tip().iter().all(|coordinate| coordinate.is_finite()));
     }
 
     /// Checks that a NaN matrix, or one that has drifted away from a rotation, gives no pose.
     #[cfg(feature = "haptic")]
     #[test]
-    fn what_is_carried_by_no_rotation_is_refused() {
+    fn rejects_matrices_that_are_not_rotations() {
         let (pose, origin) = (Pose::default(), Point3::origin());
-        let scaled = |by: f64| Matrix3::identity() * by;
+        let scaled = |factor: f64| Matrix3::identity() * factor;
         assert!(pose.rotated_to(scaled(1.0), origin).is_ok());
         // The Newton step corrects errors below the square root of the tolerance.
         assert!(pose.rotated_to(scaled(1.0 + 1e-6), origin).is_ok());
-        for turn in [scaled(f64::NAN), scaled(1.01), scaled(0.0), scaled(f64::INFINITY)] {
-            assert_eq!(pose.rotated_to(turn, origin), Err(PoseError::NotFinite));
+        for matrix in [scaled(f64::NAN), scaled(1.01), scaled(0.0), scaled(f64::INFINITY)] {
+            assert_eq!(pose.rotated_to(matrix, origin), Err(PoseError::NotFinite));
         }
-        let nowhere = Point3::new(0.0, f64::NAN, 0.0);
-        assert_eq!(pose.rotated_to(scaled(1.0), nowhere), Err(PoseError::NotFinite));
+        let nan_tip = Point3::new(0.0, f64::NAN, 0.0);
+        assert_eq!(pose.rotated_to(scaled(1.0), nan_tip), Err(PoseError::NotFinite));
     }
 }

@@ -24,14 +24,14 @@ use crate::unit::Unit;
 /// let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre)?;
 /// let part = Part::from_mesh(&cube, Sampling::new(10_000))?;
 /// let mut scene = Scene::new(Unit::Millimetre);
-/// let work = scene.add_part(&part, Pose::default())?;
+/// let workpiece = scene.add_part(&part, Pose::default())?;
 /// let clamp = scene.add_part(&part, Isometry3::translation(40.0, 0.0, 0.0).try_into()?)?;
 /// let ball = scene.add_tool(&Ball);
 ///
 /// scene.move_tool(ball, Pose::from_axis(Point3::new(10.0, 10.0, 19.5), Vector3::z())?);
 /// assert!(scene.wrench(ball).force.z > 0.0);
 /// assert_eq!(scene.pair_wrench(ball, clamp).colliding, 0);
-/// assert_eq!(scene.deepest(ball).map(|(part, _)| part), Some(work));
+/// assert_eq!(scene.deepest(ball).map(|(part, _)| part), Some(workpiece));
 /// # Ok(()) }
 /// ```
 pub struct Scene<'a> {
@@ -72,8 +72,8 @@ struct SceneTool<'a> {
 /// A tool and a part, with the last wrench.
 struct Pair<'a> {
     probe: Probe<'a>,
-    /// The pose and the wrench in the part's frame.
-    evaluations: Option<(Pose, Wrench)>,
+    /// The pose of the last query and its wrench, in the part's frame.
+    last_query: Option<(Pose, Wrench)>,
 }
 
 impl<'a> Scene<'a> {
@@ -179,20 +179,17 @@ impl<'a> Scene<'a> {
 
 impl<'a> Pair<'a> {
     fn new(part: &'a Part, tool: &'a dyn Tool, law: Law, weights: Weights) -> Pair<'a> {
-        Pair {
-            probe: Probe::new(part, tool).with_law(law).with_weights(weights),
-            evaluations: None,
-        }
+        Pair { probe: Probe::new(part, tool).with_law(law).with_weights(weights), last_query: None }
     }
 
     fn wrench(&mut self, pose: &Pose, part_pose: &Pose) -> Wrench {
         let relative = pose.relative_to(part_pose);
-        match &self.evaluations {
-            Some((last, evaluations)) if *last == relative => evaluations.turned(part_pose),
+        match &self.last_query {
+            Some((last_pose, wrench)) if *last_pose == relative => wrench.turned(part_pose),
             _ => {
-                let evaluations = self.probe.wrench(&relative);
-                self.evaluations = Some((relative, evaluations));
-                evaluations.turned(part_pose)
+                let wrench = self.probe.wrench(&relative);
+                self.last_query = Some((relative, wrench));
+                wrench.turned(part_pose)
             }
         }
     }

@@ -58,10 +58,10 @@ impl ScenePath {
     pub fn pose(self, k: usize, n: usize) -> Pose {
         let u = fraction(k, n);
         match self {
-            ScenePath::Outside if u < 0.6 => on_the_wall(u),
-            ScenePath::Outside => over_the_edge(u),
-            ScenePath::Inside => in_the_bore(u),
-            ScenePath::Hold => in_the_rim(u),
+            ScenePath::Outside if u < 0.6 => wall_pose(u),
+            ScenePath::Outside => edge_pose(u),
+            ScenePath::Inside => bore_pose(u),
+            ScenePath::Hold => rim_pose(u),
         }
     }
 }
@@ -76,50 +76,50 @@ pub fn apart(gap: f64, k: usize, n: usize) -> Pose {
     let u = fraction(k, n);
     let phi = 10.0 * PI * u;
     let a = -0.4f64.cos() * radial(phi) + 0.4f64.sin() * tangential(phi);
-    pose_at(at(OUTER + BALL + gap, phi, 1.5 + 10.0 * u), a)
+    pose_at(cylindrical(OUTER + BALL + gap, phi, 1.5 + 10.0 * u), a)
 }
 
 /// Returns a pose of the first 60 % of outside. With `v = u/0.6`: `φ = 10πv`, `z = 1.5 + 10v`, tilt `τ =
 /// 0.5 + 0.45 sin 23v`, `ψ = 17v`, `t = (−sin φ cos ψ, cos φ cos ψ, sin ψ)`; `c = (6 − δ) n̂ + (0, 0,
 /// z)`, `a = −n̂ cos τ + t sin τ`.
-fn on_the_wall(u: f64) -> Pose {
+fn wall_pose(u: f64) -> Pose {
     let v = u / 0.6;
     let phi = 10.0 * PI * v;
     let tilt = 0.5 + 0.45 * (23.0 * v).sin();
     let (sin, cos) = (17.0 * v).sin_cos();
     let t = cos * tangential(phi) + sin * Vector3::z();
     let a = -tilt.cos() * radial(phi) + tilt.sin() * t;
-    pose_at(at(OUTER + BALL - outside_depth(u), phi, 1.5 + 10.0 * v), a)
+    pose_at(cylindrical(OUTER + BALL - outside_depth(u), phi, 1.5 + 10.0 * v), a)
 }
 
 /// Returns a pose of the last 40 % of outside. With `v = (u − 0.6)/0.4`: `φ = 6πv`, `c = ((6 − 0.3δ) n̂,
 /// H − 2 − 1.5 sin 19v)`, `a ∝ (0.03 sin(31v) cos φ − 0.02 sin φ, 0.03 sin(31v) sin φ + 0.02 cos φ,
 /// −1)`.
-fn over_the_edge(u: f64) -> Pose {
+fn edge_pose(u: f64) -> Pose {
     let v = (u - 0.6) / 0.4;
     let phi = 6.0 * PI * v;
     let lean = 0.03 * (31.0 * v).sin() * radial(phi) + 0.02 * tangential(phi);
     let z = HEIGHT - 2.0 - 1.5 * (19.0 * v).sin();
-    pose_at(at(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
+    pose_at(cylindrical(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
 }
 
 /// Returns a pose of inside: `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u)
 /// n̂, −1)`.
-fn in_the_bore(u: f64) -> Pose {
+fn bore_pose(u: f64) -> Pose {
     let phi = 16.0 * PI * u;
     let lean = 0.002 * (31.0 * u).sin() * radial(phi);
     let z = HEIGHT - 2.3 - 1.4 * (19.0 * u).sin();
-    pose_at(at(INNER - BALL + depth(0.0124, u), phi, z), lean - Vector3::z())
+    pose_at(cylindrical(INNER - BALL + depth(0.0124, u), phi, z), lean - Vector3::z())
 }
 
 /// Returns a pose of hold: `φ = 50πu`, tilt `τ = 12° · sin(35.4πu)`, `c = ((1.2 + 0.9 sin 15.8πu) n̂, H
 /// − 6.5 − 2.5 cos 6.6πu)`, `a = (sin τ n̂, −cos τ)`.
-fn in_the_rim(u: f64) -> Pose {
+fn rim_pose(u: f64) -> Pose {
     let phi = 50.0 * PI * u;
     let tilt = 12f64.to_radians() * (35.4 * PI * u).sin();
     let radius = 1.2 + 0.9 * (15.8 * PI * u).sin();
     let z = HEIGHT - 6.5 - 2.5 * (6.6 * PI * u).cos();
-    pose_at(at(radius, phi, z), tilt.sin() * radial(phi) - tilt.cos() * Vector3::z())
+    pose_at(cylindrical(radius, phi, z), tilt.sin() * radial(phi) - tilt.cos() * Vector3::z())
 }
 
 fn outside_depth(u: f64) -> f64 {
@@ -147,7 +147,7 @@ fn tangential(phi: f64) -> Vector3<f64> {
 }
 
 /// Returns a point from cylindrical coordinates.
-fn at(radius: f64, phi: f64, z: f64) -> Point3<f64> {
+fn cylindrical(radius: f64, phi: f64, z: f64) -> Point3<f64> {
     Point3::from(radius * radial(phi) + z * Vector3::z())
 }
 
@@ -171,13 +171,13 @@ mod tests {
         (0..POSES).map(move |k| (k as f64 / POSES as f64, path.pose(k, POSES)))
     }
 
-    fn near(found: f64, expected: f64) -> bool {
+    fn is_close(found: f64, expected: f64) -> bool {
         (found - expected).abs() < 1e-12
     }
 
     /// Compares with tips and axes computed from the formulas independently of this code.
     #[test]
-    fn poses_are_the_formulas() {
+    fn poses_match_the_formulas() {
         for (found, tip, axis) in [
             (
                 ScenePath::Outside.pose(3400, POSES),
@@ -214,8 +214,8 @@ mod tests {
     fn the_ball_enters_the_outer_wall_by_delta() {
         for (u, pose) in poses(ScenePath::Outside) {
             let delta = 0.0536 * (1.0 + 0.9 * (130.0 * u).sin());
-            let entered = if u < 0.6 { delta } else { 0.3 * delta };
-            assert!(near(ball(&pose).1, OUTER + BALL - entered), "{u}");
+            let expected_depth = if u < 0.6 { delta } else { 0.3 * delta };
+            assert!(is_close(ball(&pose).1, OUTER + BALL - expected_depth), "{u}");
         }
     }
 
@@ -223,7 +223,7 @@ mod tests {
     fn the_ball_enters_the_bore_by_delta() {
         for (u, pose) in poses(ScenePath::Inside) {
             let (c, radius) = ball(&pose);
-            assert!(near(radius, INNER - BALL + 0.0124 * (1.0 + 0.9 * (130.0 * u).sin())));
+            assert!(is_close(radius, INNER - BALL + 0.0124 * (1.0 + 0.9 * (130.0 * u).sin())));
             assert!((HEIGHT - 3.7 - 1e-9..=HEIGHT - 0.9 + 1e-9).contains(&c.z));
             assert!(pose.axis().z > 0.999_99);
         }
@@ -231,20 +231,20 @@ mod tests {
 
     #[test]
     fn the_holder_tilts_by_twelve_degrees_at_most() {
-        let steepest =
+        let max_tilt =
             poses(ScenePath::Hold).map(|(_, pose)| pose.axis().z.acos()).fold(0.0, f64::max);
-        assert!((steepest.to_degrees() - 12.0).abs() < 1e-3);
+        assert!((max_tilt.to_degrees() - 12.0).abs() < 1e-3);
     }
 
     #[test]
     fn apart_keeps_its_gap() {
         for k in 0..POSES {
-            assert!(near(ball(&apart(0.5, k, POSES)).1, 6.5));
+            assert!(is_close(ball(&apart(0.5, k, POSES)).1, 6.5));
         }
     }
 
     #[test]
-    fn no_poses_are_no_division_by_zero() {
+    fn zero_poses_do_not_divide_by_zero() {
         for path in ScenePath::ALL {
             assert_eq!(path.pose(0, 0), path.pose(0, 1), "{}", path.name());
         }

@@ -9,7 +9,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_file_is_there_whole_or_not_at_all() {
+fn replaces_files_completely_or_not_at_all() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a");
     AtomicFile::write(&path, "old").expect("written");
@@ -30,26 +30,26 @@ fn a_file_is_there_whole_or_not_at_all() {
 }
 
 #[test]
-fn what_a_killed_process_left_is_removed_and_nothing_else() {
+fn removes_only_abandoned_temporary_files() {
     let folder = tempfile::tempdir().expect("a folder");
-    let place = |name: &str| folder.path().join(name);
-    let live = AtomicFile::create(place("b")).expect("begun");
-    let kept = [".touchoff-notes", "touchoff.tmp", ".other.tmp"];
-    for name in kept.iter().chain(&[".touchoff-Ab3xyz.tmp"]) {
-        fs::write(place(name), "x").expect("written");
+    let path_of = |name: &str| folder.path().join(name);
+    let live = AtomicFile::create(path_of("b")).expect("begun");
+    let unrelated = [".touchoff-notes", "touchoff.tmp", ".other.tmp"];
+    for name in unrelated.iter().chain(&[".touchoff-Ab3xyz.tmp"]) {
+        fs::write(path_of(name), "x").expect("written");
     }
-    AtomicFile::write(place("a"), "a").expect("written");
+    AtomicFile::write(path_of("a"), "a").expect("written");
     let found = names(folder.path());
     assert_eq!(found.len(), 5, "{found:?}");
-    assert!(kept.iter().all(|name| found.contains(&(*name).to_owned())), "{found:?}");
+    assert!(unrelated.iter().all(|name| found.contains(&(*name).to_owned())), "{found:?}");
     // The file being written is not treated as abandoned.
     live.commit().expect("written");
-    assert!(place("b").exists());
+    assert!(path_of("b").exists());
 }
 
 #[cfg(unix)]
 #[test]
-fn permissions_are_those_of_the_old_file_or_of_any_new_one() {
+fn permissions_come_from_the_old_file_or_the_umask() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().expect("a folder");
     let [new, plain] = ["new", "plain"].map(|name| folder.path().join(name));
@@ -70,27 +70,27 @@ fn permissions_are_those_of_the_old_file_or_of_any_new_one() {
 
 #[cfg(unix)]
 #[test]
-fn links_and_devices_are_written_as_what_they_are() {
+fn follows_links_and_writes_devices_directly() {
     use std::os::unix::fs::symlink;
     let folder = tempfile::tempdir().expect("a folder");
-    let place = |name: &str| folder.path().join(name);
-    fs::create_dir(place("in")).expect("a folder");
+    let path_of = |name: &str| folder.path().join(name);
+    fs::create_dir(path_of("in")).expect("a folder");
     // Links to an existing file, over two links, and to a file that does not exist yet.
     for (link, to) in [("one", "in/two"), ("in/two", "file"), ("open", "in/later")] {
-        symlink(to, place(link)).expect("a link");
+        symlink(to, path_of(link)).expect("a link");
     }
-    fs::write(place("in/file"), "old").expect("written");
+    fs::write(path_of("in/file"), "old").expect("written");
     for (link, file) in [("one", "in/file"), ("open", "in/later")] {
-        AtomicFile::write(place(link), "new").expect("written");
-        assert!(fs::symlink_metadata(place(link)).expect("there").is_symlink());
-        assert_eq!(fs::read(place(file)).expect("read"), b"new");
+        AtomicFile::write(path_of(link), "new").expect("written");
+        assert!(fs::symlink_metadata(path_of(link)).expect("there").is_symlink());
+        assert_eq!(fs::read(path_of(file)).expect("read"), b"new");
     }
-    symlink("round", place("round")).expect("a link");
-    AtomicFile::create(place("round")).expect_err("it leads nowhere");
+    symlink("round", path_of("round")).expect("a link");
+    AtomicFile::create(path_of("round")).expect_err("it leads nowhere");
     AtomicFile::write("/dev/null", "x").expect("taken");
     if Path::new("/dev/full").exists() {
-        symlink("/dev/full", place("full")).expect("a link");
-        for path in [Path::new("/dev/full"), &place("full")] {
+        symlink("/dev/full", path_of("full")).expect("a link");
+        for path in [Path::new("/dev/full"), &path_of("full")] {
             let error = AtomicFile::write(path, "x").expect_err("no room");
             assert_eq!(error.kind(), io::ErrorKind::StorageFull);
         }
@@ -99,20 +99,20 @@ fn links_and_devices_are_written_as_what_they_are() {
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_written_to_as_such() {
+fn writes_pipes_directly() {
     use std::io::Read;
-    let (mut from, to) = io::pipe().expect("a pipe");
-    let path = format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&to));
+    let (mut reader, writer) = io::pipe().expect("a pipe");
+    let path = format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&writer));
     AtomicFile::write(path, "through").expect("written");
-    drop(to);
+    drop(writer);
     let mut text = String::new();
-    from.read_to_string(&mut text).expect("read");
+    reader.read_to_string(&mut text).expect("read");
     assert_eq!(text, "through");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_cannot_be_written_is_told_without_the_temporary() {
+fn errors_do_not_name_the_temporary_file() {
     let error = AtomicFile::create("/proc/report.txt").expect_err("no file can be made there");
     assert!(
         error.kind() == io::ErrorKind::NotFound && !error.to_string().contains(SUFFIX),

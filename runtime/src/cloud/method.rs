@@ -1,6 +1,6 @@
 //! The number, the method and the seed of points that are sampled on a mesh.
 
-use crate::keywords::words;
+use crate::keywords::keyword_enum;
 
 /// Methods of distributing points over a mesh and of weighing them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -25,7 +25,7 @@ pub enum SamplingMethod {
     MonteCarlo,
 }
 
-words!(
+keyword_enum!(
     SamplingMethod, "blue, random, monte-carlo",
     BlueNoise "blue", Uniform "random", MonteCarlo "monte-carlo"
 );

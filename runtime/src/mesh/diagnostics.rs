@@ -1,5 +1,4 @@
-//! Diagnostics of a mesh, as numbers and as sentences: whether it is a solid, its orientation, and its
-//! irregularities.
+//! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, and irregularities.
 
 use std::fmt;
 
@@ -66,25 +65,26 @@ impl MeshDiagnostics {
         let mut shell_areas = vec![0.0; shells];
         let mut shell_volumes = vec![0.0; shells];
         for (corners, triangle) in mesh.corners().zip(mesh.triangles()) {
-            let Some((share, normal)) = area_and_normal(&corners) else {
+            let Some((triangle_area, normal)) = area_and_normal(&corners) else {
                 degenerate += 1;
                 continue;
             };
-            let cone = normal.dot(&(corners[0] - origin)) * share / 3.0;
-            area.add(share);
-            volume.add(cone);
+            let cone_volume = normal.dot(&(corners[0] - origin)) * triangle_area / 3.0;
+            area.add(triangle_area);
+            volume.add(cone_volume);
             let shell = shell_of[triangle[0] as usize] as usize;
-            shell_areas[shell] += share;
-            shell_volumes[shell] += cone;
+            shell_areas[shell] += triangle_area;
+            shell_volumes[shell] += cone_volume;
         }
 
         // Each cone's rounding error is a few epsilon times its area times its height. A volume below
         // this bound is indistinguishable from zero, and its sign is meaningless.
         let rounding = 16.0 * f64::EPSILON * nalgebra::distance(&low, &high);
         let area = area.value();
-        let volume = Some(volume.value()).filter(|v| v.abs() > rounding * area).unwrap_or(0.0);
+        let volume =
+            Some(volume.value()).filter(|volume| volume.abs() > rounding * area).unwrap_or(0.0);
         let sums = shell_volumes.iter().zip(&shell_areas);
-        let inverted = sums.filter(|&(v, a)| *v < -rounding * a).count();
+        let inverted = sums.filter(|&(volume, a)| *volume < -rounding * a).count();
         let has_sides = edges.open == 0 && edges.crossed == 0;
         MeshDiagnostics {
             unit: mesh.unit(),
@@ -127,9 +127,9 @@ impl MeshDiagnostics {
     /// irregularities has one sentence.
     pub fn findings(&self) -> Vec<String> {
         let mut findings = vec![self.summary()];
-        let mut note = |count: usize, thing: &str, text: &str| {
+        let mut note = |count: usize, noun: &str, text: &str| {
             if count > 0 {
-                findings.push(format!("{}{text}", format_count(count, thing)));
+                findings.push(format!("{}{text}", format_count(count, noun)));
             }
         };
         note(
@@ -183,7 +183,7 @@ impl MeshDiagnostics {
             (true, true) if self.volume < 0.0 => "closed, inside out",
             (true, true) => "closed, but it encloses nothing",
         };
-        let pieces = match self.shells {
+        let shell_text = match self.shells {
             0 | 1 => String::new(),
             shells => format!(" in {}", format_count(shells, "shell")),
         };
@@ -193,7 +193,7 @@ impl MeshDiagnostics {
             Some(volume) if volume > 0.0 => format!(", volume {} {unit}³", format_number(volume)),
             _ => String::new(),
         };
-        format!("{state}: {triangles}{pieces}, area {area} {unit}²{volume}")
+        format!("{state}: {triangles}{shell_text}, area {area} {unit}²{volume}")
     }
 }
 
@@ -205,7 +205,7 @@ impl fmt::Display for MeshDiagnostics {
 }
 
 /// Formats a count with thousands separators and its noun: `1 open edge`, `52,872 triangles`.
-fn format_count(count: usize, thing: &str) -> String {
+fn format_count(count: usize, noun: &str) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
@@ -215,7 +215,7 @@ fn format_count(count: usize, thing: &str) -> String {
         text.push(digit);
     }
     let plural = if count == 1 { "" } else { "s" };
-    format!("{text} {thing}{plural}")
+    format!("{text} {noun}{plural}")
 }
 
 /// Formats a number with six significant figures, or with all digits of a longer whole number.
@@ -245,7 +245,7 @@ mod tests {
     }
 
     /// Returns the diagnostics of the cube from 0 to 1 after a change to its triangles.
-    fn changed(change: impl FnOnce(&mut Vec<[u32; 3]>)) -> MeshDiagnostics {
+    fn diagnostics_after(change: impl FnOnce(&mut Vec<[u32; 3]>)) -> MeshDiagnostics {
         let cube = cube(0.0, 1.0);
         let mut triangles = cube.triangles().to_vec();
         change(&mut triangles);
@@ -253,56 +253,60 @@ mod tests {
     }
 
     #[test]
-    fn a_solid_has_nothing_odd() {
-        let survey = cube(-2.0, 3.0).diagnostics();
-        assert!(survey.is_solid() && !survey.is_inside_out());
-        assert_eq!((survey.area, survey.volume, survey.shells), (150.0, 125.0, 1));
+    fn a_solid_has_no_irregularities() {
+        let diagnostics = cube(-2.0, 3.0).diagnostics();
+        assert!(diagnostics.is_solid() && !diagnostics.is_inside_out());
+        assert_eq!((diagnostics.area, diagnostics.volume, diagnostics.shells), (150.0, 125.0, 1));
         let text = "closed, oriented outward: 12 triangles, area 150 mm², volume 125 mm³";
-        assert_eq!(survey.findings(), [text]);
+        assert_eq!(diagnostics.findings(), [text]);
         // Far from the origin the volume loses only the rounding of the coordinates themselves.
         assert_eq!(cube(1e9, 1e9 + 1.0).diagnostics().volume, 1.0);
     }
 
     #[test]
     fn finds_leaks_and_turned_triangles() {
-        let open = changed(|triangles| triangles.truncate(11));
+        let open = diagnostics_after(|triangles| triangles.truncate(11));
         assert!((open.open_edges, open.is_closed(), open.is_solid()) == (3, false, false));
         assert!(open.to_string().starts_with("open: 11 triangles, area 5.5 mm²\n3 open edges: "));
 
-        let turned = changed(|triangles| triangles[0].swap(0, 1));
+        let turned = diagnostics_after(|triangles| triangles[0].swap(0, 1));
         assert_eq!((turned.open_edges, turned.crossed_edges), (0, 3));
         assert!(turned.is_closed() && !turned.is_oriented() && !turned.is_solid());
         assert!(turned.to_string().starts_with("closed, not consistently oriented: "));
 
-        let inside_out = changed(|triangles| triangles.iter_mut().for_each(|t| t.swap(0, 1)));
+        let inside_out =
+            diagnostics_after(|triangles| triangles.iter_mut().for_each(|t| t.swap(0, 1)));
         assert!(inside_out.is_inside_out() && !inside_out.is_solid());
         assert_eq!(inside_out.volume, -1.0);
         assert!(inside_out.to_string().contains("12 triangles, all facing inward"));
     }
 
     #[test]
-    fn finds_what_is_empty_and_what_is_doubled() {
-        let collapsed = changed(|triangles| triangles.extend([[0, 0, 1], [5, 5, 5]]));
+    fn finds_degenerate_flat_and_shared_triangles() {
+        let collapsed = diagnostics_after(|triangles| triangles.extend([[0, 0, 1], [5, 5, 5]]));
         assert!(collapsed.is_solid() && collapsed.degenerate == 2);
-        let flat = changed(|triangles| *triangles = vec![[0, 1, 2], [2, 1, 0]]);
+        let flat = diagnostics_after(|triangles| *triangles = vec![[0, 1, 2], [2, 1, 0]]);
         assert!(
             flat.is_closed() && flat.volume == 0.0 && !flat.is_solid() && !flat.is_inside_out()
         );
         assert!(flat.to_string().starts_with("closed, but it encloses nothing"));
-        let fin = changed(|triangles| triangles.push([0, 4, 7]));
+        let fin = diagnostics_after(|triangles| triangles.push([0, 4, 7]));
         assert_eq!((fin.shared_edges, fin.open_edges), (2, 3));
     }
 
     #[test]
-    fn tells_shells_and_voids() {
+    fn distinguishes_shells_and_voids() {
         let (outer, inner) = (cube(0.0, 3.0), cube(1.0, 2.0));
         let vertices = [outer.vertices(), inner.vertices()].concat();
         let hollow = inner.triangles().iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]);
         let triangles = outer.triangles().iter().copied().chain(hollow).collect();
-        let survey = Mesh::new(vertices, triangles, Unit::Inch).expect("a mesh").diagnostics();
-        assert_eq!((survey.shells, survey.inverted_shells, survey.volume), (2, 1, 26.0));
-        assert!(survey.is_solid());
-        let text = survey.to_string();
+        let diagnostics = Mesh::new(vertices, triangles, Unit::Inch).expect("a mesh").diagnostics();
+        assert_eq!(
+            (diagnostics.shells, diagnostics.inverted_shells, diagnostics.volume),
+            (2, 1, 26.0)
+        );
+        assert!(diagnostics.is_solid());
+        let text = diagnostics.to_string();
         assert!(
             text.contains("24 triangles in 2 shells, area 60 inch², volume 26 inch³"),
             "{text}"
@@ -316,16 +320,16 @@ mod tests {
         cube(0.0, 1.0).write_stl(&mut bytes).expect("written");
         let z = bytes[84 + 50 * 11 + 8..].first_chunk_mut::<4>().expect("the last normal's z");
         *z = (-1f32).to_le_bytes();
-        let survey = Mesh::from_stl(&bytes, "", Unit::Millimetre).expect("read").diagnostics();
-        assert!(survey.is_solid() && survey.opposed_normals == 1);
-        assert!(survey.to_string().contains("1 facet whose normal in the file opposes"));
+        let diagnostics = Mesh::from_stl(&bytes, "", Unit::Millimetre).expect("read").diagnostics();
+        assert!(diagnostics.is_solid() && diagnostics.opposed_normals == 1);
+        assert!(diagnostics.to_string().contains("1 facet whose normal in the file opposes"));
     }
 
     #[test]
-    fn writes_numbers_to_be_read() {
+    fn formats_counts_and_numbers() {
         assert_eq!(format_count(1, "edge"), "1 edge");
         assert_eq!(format_count(1_052_872, "edge"), "1,052,872 edges");
-        let figures = [1.0 / 3.0, 759.6188, 1234567.8, 1e12, 2e-9].map(format_number);
-        assert_eq!(figures, ["0.333333", "759.619", "1234568", "1.00000e12", "2.00000e-9"]);
+        let formatted = [1.0 / 3.0, 759.6188, 1234567.8, 1e12, 2e-9].map(format_number);
+        assert_eq!(formatted, ["0.333333", "759.619", "1234568", "1.00000e12", "2.00000e-9"]);
     }
 }

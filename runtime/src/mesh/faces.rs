@@ -9,8 +9,8 @@ use super::{Mesh, MeshError, weld};
 use crate::unit::Unit;
 
 /// Largest fraction of a polygon's area that triangles of its fan may have with the opposite
-/// orientation. It covers the rounding at corners that are nearly in line, and no more.
-const FOLD: f64 = 1e-3;
+/// orientation. It only covers the rounding at corners that are nearly in line.
+const MAX_FOLDED_AREA_FRACTION: f64 = 1e-3;
 
 /// The triangles of a file's faces, in the file's order. A polygon becomes a fan about its first corner.
 #[derive(Default)]
@@ -22,13 +22,13 @@ pub(super) struct Faces {
 
 impl Faces {
     /// Adds a face of three or more corners.
-    pub(super) fn push(&mut self, place: SourceLocation, corners: &[u32]) {
+    pub(super) fn push(&mut self, location: SourceLocation, corners: &[u32]) {
         let start = self.triangles.len();
-        if let [first, others @ ..] = corners {
-            self.triangles.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+        if let [first, rest @ ..] = corners {
+            self.triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
         }
         if corners.len() > 3 {
-            self.polygons.push((place, start..self.triangles.len()));
+            self.polygons.push((location, start..self.triangles.len()));
         }
     }
 
@@ -37,29 +37,33 @@ impl Faces {
     }
 
     /// Returns the ascending indices of the vertices that faces use, and their positions.
-    pub(super) fn used(&self, vertices: &[Point3<f64>]) -> (Vec<usize>, Vec<Point3<f64>>) {
+    pub(super) fn used_vertices(&self, vertices: &[Point3<f64>]) -> (Vec<usize>, Vec<Point3<f64>>) {
         let mut is_used = vec![false; vertices.len()];
         self.triangles.as_flattened().iter().for_each(|vertex| is_used[*vertex as usize] = true);
         let used: Vec<usize> = (0..vertices.len()).filter(|vertex| is_used[*vertex]).collect();
-        let places = used.iter().map(|vertex| vertices[*vertex]).collect();
-        (used, places)
+        let positions = used.iter().map(|vertex| vertices[*vertex]).collect();
+        (used, positions)
     }
 
     /// Returns the location of the first polygon that its fan does not fill, because some of its
     /// triangles face the other way. Every index must be in range.
     pub(super) fn folded(&self, vertices: &[Point3<f64>]) -> Option<SourceLocation> {
-        let folds = |triangles: &[[u32; 3]]| {
-            let area = |triangle: &[u32; 3]| {
+        let is_folded = |triangles: &[[u32; 3]]| {
+            let area_vector = |triangle: &[u32; 3]| {
                 let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
                 (b - a).cross(&(c - a))
             };
-            let sum: Vector3<f64> = triangles.iter().map(area).sum();
-            let against = triangles.iter().map(area).filter(|area| area.dot(&sum) <= 0.0);
-            against.map(|area| area.norm()).sum::<f64>() > FOLD * sum.norm()
+            let sum: Vector3<f64> = triangles.iter().map(area_vector).sum();
+            let opposed = triangles
+                .iter()
+                .map(area_vector)
+                .filter(|area_vector| area_vector.dot(&sum) <= 0.0);
+            opposed.map(|area_vector| area_vector.norm()).sum::<f64>()
+                > MAX_FOLDED_AREA_FRACTION * sum.norm()
         };
         let mut polygons = self.polygons.iter();
-        let folded = polygons.find(|(_, range)| folds(&self.triangles[range.clone()]));
-        folded.map(|(place, _)| *place)
+        let folded = polygons.find(|(_, range)| is_folded(&self.triangles[range.clone()]));
+        folded.map(|(location, _)| *location)
     }
 
     /// Builds the mesh. Corners with equal coordinates become one vertex, whatever their indices. Every

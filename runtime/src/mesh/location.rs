@@ -65,8 +65,8 @@ impl<'a> Tokens<'a> {
     }
 
     pub(super) fn skip_line(&mut self) {
-        let ends = |&byte: &u8| byte == b'\n' || byte == b'\r';
-        let end = self.rest.iter().position(ends).unwrap_or(self.rest.len());
+        let is_line_end = |&byte: &u8| byte == b'\n' || byte == b'\r';
+        let end = self.rest.iter().position(is_line_end).unwrap_or(self.rest.len());
         self.rest = &self.rest[end..];
     }
 }
@@ -79,16 +79,16 @@ fn is_space(byte: u8) -> bool {
 /// NaN: exporters write them where a normal cannot be computed.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     let text = str::from_utf8(word).ok()?;
-    let is_odd = || {
+    let is_non_finite = || {
         let text = text.to_ascii_lowercase();
-        ["nan", "inf", "#ind"].iter().any(|odd| text.contains(odd))
+        ["nan", "inf", "#ind"].iter().any(|spelling| text.contains(spelling))
     };
-    text.parse().ok().or_else(|| is_odd().then_some(f64::NAN))
+    text.parse().ok().or_else(|| is_non_finite().then_some(f64::NAN))
 }
 
 /// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long
 /// and unprintable.
-pub(super) fn shown(word: &[u8]) -> String {
+pub(super) fn printable(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(256)]);
     let start: String = text.chars().take(32).collect();
     let ellipsis = if start.len() < text.len() { "…" } else { "" };

@@ -4,7 +4,7 @@
 use nalgebra::Point3;
 
 use super::faces::Faces;
-use super::location::{SourceLocation, Tokens, number, shown};
+use super::location::{SourceLocation, Tokens, number, printable};
 use super::outlier::{Outlier, find_outlier};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
 use crate::unit::Unit;
@@ -130,7 +130,7 @@ impl Mesh {
     /// See [`ObjError`].
     pub fn from_obj(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, ObjError> {
         let file = || name.to_owned();
-        let mut lines = Lines { words: Tokens::new(bytes), name };
+        let mut lines = Lines { tokens: Tokens::new(bytes), name };
         let mut vertices = Vec::new();
         let mut faces = Faces::default();
         let mut corners = Vec::new();
@@ -138,17 +138,17 @@ impl Mesh {
             match lines.word() {
                 Some(b"v") => vertices.push(lines.vertex()?),
                 Some(b"f") => {
-                    let place = SourceLocation::Line(lines.words.line);
+                    let place = SourceLocation::Line(lines.tokens.line);
                     lines.face(vertices.len(), &mut corners)?;
                     faces.push(place, &corners);
                 }
                 Some(word) if !SKIPPED.contains(&word) => {
-                    let (file, line, word) = (file(), lines.words.line, shown(word));
+                    let (file, line, word) = (file(), lines.tokens.line, printable(word));
                     return Err(ObjError::Unread { file, line, word });
                 }
                 _ => {}
             }
-            lines.words.skip_line();
+            lines.tokens.skip_line();
         }
         if faces.is_empty() {
             return Err(ObjError::NoFaces { file: file() });
@@ -156,9 +156,13 @@ impl Mesh {
         if let Some(place) = faces.folded(&vertices) {
             return Err(ObjError::Folded { file: file(), place });
         }
-        let (used, corners) = faces.used(&vertices);
-        if let Some((at, _, stray)) = find_outlier(&corners) {
-            return Err(ObjError::Stray { file: file(), place: line_of(bytes, used[at]), stray });
+        let (used_vertices, corners) = faces.used_vertices(&vertices);
+        if let Some((index, _, stray)) = find_outlier(&corners) {
+            return Err(ObjError::Stray {
+                file: file(),
+                place: line_of(bytes, used_vertices[index]),
+                stray,
+            });
         }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| ObjError::Mesh { file: file(), source })
@@ -167,44 +171,44 @@ impl Mesh {
 
 /// Returns the line of a vertex in a valid file.
 fn line_of(bytes: &[u8], vertex: usize) -> SourceLocation {
-    let mut lines = Lines { words: Tokens::new(bytes), name: "" };
-    let mut left = vertex + 1;
+    let mut lines = Lines { tokens: Tokens::new(bytes), name: "" };
+    let mut remaining = vertex + 1;
     while lines.next() {
-        left -= usize::from(lines.word() == Some(b"v"));
-        if left == 0 {
+        remaining -= usize::from(lines.word() == Some(b"v"));
+        if remaining == 0 {
             break;
         }
         // A line may continue after a `\`, so read all of its words before skipping the rest.
         while lines.word().is_some() {}
-        lines.words.skip_line();
+        lines.tokens.skip_line();
     }
-    SourceLocation::Line(lines.words.line)
+    SourceLocation::Line(lines.tokens.line)
 }
 
 /// The lines of a file. A line may continue after a `\` and end in a comment.
 struct Lines<'a, 'n> {
-    words: Tokens<'a>,
+    tokens: Tokens<'a>,
     name: &'n str,
 }
 
 impl<'a> Lines<'a, '_> {
     /// Advances to the next line and returns whether there is one.
     fn next(&mut self) -> bool {
-        self.words.skip_space();
-        !self.words.rest.is_empty()
+        self.tokens.skip_space();
+        !self.tokens.rest.is_empty()
     }
 
     fn word(&mut self) -> Option<&'a [u8]> {
         loop {
-            let word = self.words.next_on_line()?;
+            let word = self.tokens.next_on_line()?;
             if word.starts_with(b"#") {
-                self.words.skip_line();
+                self.tokens.skip_line();
                 return None;
             }
             let Some(head) = word.strip_suffix(b"\\") else {
                 return Some(word);
             };
-            self.words.skip_space();
+            self.tokens.skip_space();
             if !head.is_empty() {
                 return Some(head);
             }
@@ -212,8 +216,9 @@ impl<'a> Lines<'a, '_> {
     }
 
     fn expected(&self, expected: &'static str, found: Option<&[u8]>) -> ObjError {
-        let found = found.map_or("the end of the line".to_owned(), |w| format!("`{}`", shown(w)));
-        ObjError::Expected { file: self.name.to_owned(), line: self.words.line, expected, found }
+        let found =
+            found.map_or("the end of the line".to_owned(), |w| format!("`{}`", printable(w)));
+        ObjError::Expected { file: self.name.to_owned(), line: self.tokens.line, expected, found }
     }
 
     /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the
@@ -225,8 +230,8 @@ impl<'a> Lines<'a, '_> {
             let word = self.word().ok_or_else(|| self.expected(expected, None))?;
             *coordinate = number(word).ok_or_else(|| self.expected(expected, Some(word)))?;
             if !is_valid_coordinate(*coordinate) {
-                let (file, line) = (self.name.to_owned(), self.words.line);
-                return Err(ObjError::Coordinate { file, line, coordinate: shown(word) });
+                let (file, line) = (self.name.to_owned(), self.tokens.line);
+                return Err(ObjError::Coordinate { file, line, coordinate: printable(word) });
             }
         }
         Ok(vertex)
@@ -237,18 +242,18 @@ impl<'a> Lines<'a, '_> {
         let expected = "a corner such as 7, 7/1 or 7//2: a face has three or more";
         corners.clear();
         while let Some(word) = self.word() {
-            let first = word.split(|&byte| byte == b'/').next().unwrap_or_default();
-            let index = str::from_utf8(first).ok().and_then(|text| text.parse::<i64>().ok());
+            let vertex = word.split(|&byte| byte == b'/').next().unwrap_or_default();
+            let index = str::from_utf8(vertex).ok().and_then(|text| text.parse::<i64>().ok());
             let index = index.ok_or_else(|| self.expected(expected, Some(word)))?;
-            let from_end = |back: u64| vertices.checked_sub(usize::try_from(back).ok()?);
+            let count_back = |back: u64| vertices.checked_sub(usize::try_from(back).ok()?);
             let corner = match index {
                 0 => None,
                 1.. => usize::try_from(index - 1).ok(),
-                ..0 => from_end(index.unsigned_abs()),
+                ..0 => count_back(index.unsigned_abs()),
             };
-            let known = corner.filter(|&corner| corner < vertices);
-            corners.push(known.and_then(|corner| u32::try_from(corner).ok()).ok_or_else(|| {
-                let (file, line) = (self.name.to_owned(), self.words.line);
+            let valid = corner.filter(|&corner| corner < vertices);
+            corners.push(valid.and_then(|corner| u32::try_from(corner).ok()).ok_or_else(|| {
+                let (file, line) = (self.name.to_owned(), self.tokens.line);
                 ObjError::Index { file, line, index, vertices }
             })?);
         }
@@ -264,7 +269,7 @@ mod tests {
     use super::*;
     use crate::id::TriangleId;
     use crate::mesh::shapes;
-    use crate::mesh::tests::mangled;
+    use crate::mesh::tests::damaged;
     use rand_core::SeedableRng;
 
     const UNIT: Unit = Unit::Millimetre;
@@ -299,14 +304,14 @@ mod tests {
 
     /// A line that may describe surface geometry is refused, not skipped.
     #[test]
-    fn a_surface_that_is_not_read_is_refused() {
+    fn rejects_unsupported_surfaces() {
         let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         for word in ["fo 1 2 3", "F 1 2 3", "surf 0 1 0 1 1 2 3", "call other.obj", "curv 0 1 1 2"]
         {
             let text = format!("{faces}{word}\n");
-            let found = Mesh::from_obj(text.as_bytes(), "a.obj", Unit::Millimetre);
-            let said = found.expect_err(word).to_string();
-            assert!(said.starts_with("a.obj, line 5: `"), "{said}");
+            let result = Mesh::from_obj(text.as_bytes(), "a.obj", Unit::Millimetre);
+            let message = result.expect_err(word).to_string();
+            assert!(message.starts_with("a.obj, line 5: `"), "{message}");
         }
         let text = format!("mtllib a\no b\ng c\ns 1\nusemtl d\n{faces}l 1 2\np 1\n");
         assert!(Mesh::from_obj(text.as_bytes(), "a.obj", Unit::Millimetre).is_ok());
@@ -330,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn polygons_are_fanned_unless_that_folds_them() {
+    fn fans_polygons_unless_they_fold() {
         let with = |face: &str| {
             format!("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 .5 0\nv 0 2 0\nf {face}\nf 1 2 5\n")
         };
@@ -344,8 +349,8 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong_and_where() {
-        for (change, into, says) in [
+    fn errors_name_the_defect_and_the_line() {
+        for (original, replacement, expected) in [
             (
                 "v .5 0 0 1.0",
                 "v .5 0",
@@ -370,15 +375,15 @@ mod tests {
             ("f 1 2 3", "f 1 2 2", "part.obj: none of the mesh's 1 triangles"),
             ("f 1 2 3", "l 1 2 3", "part.obj has no faces"),
         ] {
-            assert!(TRIANGLE.contains(change), "{change}");
-            let message = refusal(TRIANGLE.replace(change, into));
-            assert!(message.contains(says), "{into}: {message}");
+            assert!(TRIANGLE.contains(original), "{original}");
+            let message = refusal(TRIANGLE.replace(original, replacement));
+            assert!(message.contains(expected), "{replacement}: {message}");
         }
         assert!(refusal("").contains("has no faces"));
     }
 
     #[test]
-    fn a_file_cut_anywhere_is_refused_or_leaks() {
+    fn truncated_files_are_refused_or_leak() {
         let text = cuboid_file();
         let whole = text.trim_end().trim_end_matches("/1").len();
         for length in 0..whole {
@@ -389,15 +394,15 @@ mod tests {
     }
 
     #[test]
-    fn survives_any_bytes() {
+    fn damaged_files_do_not_panic() {
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
         let words: [&[u8]; 6] = [b"-", b"\\\n", b"/", b"1e400", b"\nf 1 2 3 4\n", b"99999999999"];
         let seed = cuboid_file().into_bytes();
         for _ in 0..5000 {
-            let bytes = mangled(&seed, &words, &mut random);
+            let bytes = damaged(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_obj(&bytes, "", UNIT) {
-                let survey = mesh.diagnostics();
-                assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
+                let diagnostics = mesh.diagnostics();
+                assert!(diagnostics.area > 0.0 && diagnostics.area.is_finite(), "{diagnostics:?}");
             }
         }
     }

@@ -6,7 +6,7 @@ use nalgebra::Point3;
 
 /// Distance ratio above which a coordinate is an outlier: 2^24. In single precision, at such a distance,
 /// most of the other coordinates are indistinguishable from each other.
-const FAR: f64 = (1u32 << 24) as f64;
+const OUTLIER_DISTANCE_RATIO: f64 = (1u32 << 24) as f64;
 
 /// A vertex far outside the rest of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,24 +40,24 @@ pub(super) fn find_outlier(vertices: &[Point3<f64>]) -> Option<(usize, usize, Ou
     if vertices.is_empty() {
         return None;
     }
-    let mut list: Vec<f64> = Vec::with_capacity(vertices.len());
-    let mut nth = |values: &mut dyn Iterator<Item = f64>, place: usize| {
-        list.clear();
-        list.extend(values);
-        *list.select_nth_unstable_by(place, f64::total_cmp).1
+    let mut scratch: Vec<f64> = Vec::with_capacity(vertices.len());
+    let mut nth = |values: &mut dyn Iterator<Item = f64>, index: usize| {
+        scratch.clear();
+        scratch.extend(values);
+        *scratch.select_nth_unstable_by(index, f64::total_cmp).1
     };
     let count = vertices.len();
-    let middle =
+    let median =
         Point3::from([0, 1, 2].map(|axis| nth(&mut vertices.iter().map(|v| v[axis]), count / 2)));
-    let off = |vertex: &Point3<f64>| (vertex - middle).amax();
-    let rest = nth(&mut vertices.iter().map(off), 3 * count / 4);
+    let distance = |vertex: &Point3<f64>| (vertex - median).amax();
+    let rest = nth(&mut vertices.iter().map(distance), 3 * count / 4);
     if rest == 0.0 {
         return None;
     }
-    let is_far = |vertex: &&Point3<f64>| off(vertex) > FAR * rest;
-    let first = vertices.iter().position(|vertex| is_far(&vertex))?;
-    let axis = (vertices[first] - middle).iamax();
-    let count = vertices.iter().filter(is_far).count();
+    let is_outlier = |vertex: &&Point3<f64>| distance(vertex) > OUTLIER_DISTANCE_RATIO * rest;
+    let first = vertices.iter().position(|vertex| is_outlier(&vertex))?;
+    let axis = (vertices[first] - median).iamax();
+    let count = vertices.iter().filter(is_outlier).count();
     Some((first, axis, Outlier { coordinate: vertices[first][axis], rest, count }))
 }
 
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_what_is_far_outside() {
+    fn finds_outliers() {
         let mut vertices: Vec<_> = (0..40).map(|k| Point3::new(f64::from(k), 1.0, 0.0)).collect();
         assert_eq!(find_outlier(&vertices), None);
         vertices[3].z = 1e8;
@@ -84,19 +84,19 @@ mod tests {
 
     /// Checks that each reader reports the location of one outlying coordinate in a tube.
     #[test]
-    fn names_where_it_stands() {
+    fn readers_name_the_location_of_an_outlier() {
         use crate::mesh::{Mesh, ObjError, PlyError, SourceLocation, StlError, shapes};
         use crate::unit::Unit;
         let unit = Unit::Millimetre;
-        let bar = shapes::tube(1.0, 2.0, 9.0, 12, 3, unit).expect("a tube");
+        let tube = shapes::tube(1.0, 2.0, 9.0, 12, 3, unit).expect("a tube");
         let mut ascii = Vec::new();
-        bar.write_stl_ascii(&mut ascii).expect("written");
+        tube.write_stl_ascii(&mut ascii).expect("written");
         let text = String::from_utf8(ascii).expect("text");
         let line = text.lines().nth(4 + 7 * 2).expect("a line");
         assert!(line.contains("vertex"));
-        let bad = text.replacen(line, "vertex 1 -1e13 3", 1);
-        let error = Mesh::from_stl(bad.as_bytes(), "a.stl", unit).expect_err("far off");
-        let found = bad.lines().position(|line| line.contains("e13")).map(|line| line + 1);
+        let damaged = text.replacen(line, "vertex 1 -1e13 3", 1);
+        let error = Mesh::from_stl(damaged.as_bytes(), "a.stl", unit).expect_err("far off");
+        let found = damaged.lines().position(|line| line.contains("e13")).map(|line| line + 1);
         let StlError::Stray { place: SourceLocation::Line(line), .. } = error else {
             panic!("{error}")
         };
@@ -104,38 +104,38 @@ mod tests {
         assert!(error.to_string().contains("a.stl, triangle "), "{error}");
 
         let mut binary = Vec::new();
-        bar.write_stl(&mut binary).expect("written");
+        tube.write_stl(&mut binary).expect("written");
         let byte = 84 + 50 * 7 + 12 + 12 + 8;
         binary[byte..byte + 4].copy_from_slice(&1e13f32.to_le_bytes());
-        let said = Mesh::from_stl(&binary, "a.stl", unit).expect_err("far off").to_string();
+        let message = Mesh::from_stl(&binary, "a.stl", unit).expect_err("far off").to_string();
         let expected = format!("a.stl, triangle 7 (from 0), byte {byte}: the coordinate 9999999");
-        assert!(said.starts_with(&expected), "{said}");
+        assert!(message.starts_with(&expected), "{message}");
 
         let mut obj = String::from("# a bar\n");
-        bar.vertices().iter().for_each(|v| obj += &format!("v {} {} \\\n {}\n", v.x, v.y, v.z));
-        bar.triangles()
+        tube.vertices().iter().for_each(|v| obj += &format!("v {} {} \\\n {}\n", v.x, v.y, v.z));
+        tube.triangles()
             .iter()
             .for_each(|t| obj += &format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
         let line = obj.lines().nth(1 + 2 * 20).expect("a line").to_owned();
-        let bad = obj.replacen(&line, "v 1e13 0 \\", 1);
-        let error = Mesh::from_obj(bad.as_bytes(), "a.obj", unit).expect_err("far off");
+        let damaged = obj.replacen(&line, "v 1e13 0 \\", 1);
+        let error = Mesh::from_obj(damaged.as_bytes(), "a.obj", unit).expect_err("far off");
         let ObjError::Stray { place: SourceLocation::Line(line), .. } = error else {
             panic!("{error}")
         };
         assert_eq!(line, 2 + 2 * 20);
 
-        let header = format!("ply\nformat ascii 1.0\nelement vertex {}\n", bar.vertices().len());
+        let header = format!("ply\nformat ascii 1.0\nelement vertex {}\n", tube.vertices().len());
         let mut ply = header + "property double x\nproperty double y\nproperty double z\n";
         ply += &format!(
             "element face {}\nproperty list uchar int vertex_index\nend_header\n",
-            bar.triangles().len()
+            tube.triangles().len()
         );
         let vertex = |k: usize, v: &Point3<f64>| match k {
             20 => "3 1e13 1\n".to_owned(),
             _ => format!("{} {} {}\n", v.x, v.y, v.z),
         };
-        bar.vertices().iter().enumerate().for_each(|(k, v)| ply += &vertex(k, v));
-        bar.triangles().iter().for_each(|[a, b, c]| ply += &format!("3 {a} {b} {c}\n"));
+        tube.vertices().iter().enumerate().for_each(|(k, v)| ply += &vertex(k, v));
+        tube.triangles().iter().for_each(|[a, b, c]| ply += &format!("3 {a} {b} {c}\n"));
         let error = Mesh::from_ply(ply.as_bytes(), "a.ply", unit).expect_err("far off");
         let PlyError::Stray { place, vertex, .. } = error else { panic!("{error}") };
         assert_eq!((place, vertex), (SourceLocation::Line(10 + 20), 20));

@@ -71,15 +71,15 @@ impl Geometry {
     /// See [`Geometry::read`].
     pub fn from_bytes(bytes: &[u8], name: &str, unit: Unit) -> Result<Geometry, GeometryError> {
         let extension = Path::new(name).extension().unwrap_or_default();
-        let is = |known: &str| extension.eq_ignore_ascii_case(known);
-        Ok(if ply::begins(bytes) || is("ply") {
+        let has_extension = |known: &str| extension.eq_ignore_ascii_case(known);
+        Ok(if ply::begins(bytes) || has_extension("ply") {
             match ply::has_faces(bytes, name)? {
                 true => Geometry::Mesh(Mesh::from_ply(bytes, name, unit)?),
                 false => Geometry::Points(OrientedPoints::from_ply(bytes, name)?),
             }
-        } else if is("stl") {
+        } else if has_extension("stl") {
             Geometry::Mesh(Mesh::from_stl(bytes, name, unit)?)
-        } else if is("obj") {
+        } else if has_extension("obj") {
             Geometry::Mesh(Mesh::from_obj(bytes, name, unit)?)
         } else {
             return Err(GeometryError::Unknown { file: name.to_owned() });
@@ -93,12 +93,12 @@ mod tests {
 
     const UNIT: Unit = Unit::Millimetre;
 
-    fn says(bytes: &[u8], name: &str) -> String {
+    fn refusal(bytes: &[u8], name: &str) -> String {
         Geometry::from_bytes(bytes, name, UNIT).expect_err("it should be refused").to_string()
     }
 
     #[test]
-    fn chooses_by_content_and_by_name() {
+    fn detects_the_format_by_content_and_extension() {
         let triangle = Geometry::from_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "a.OBJ", UNIT);
         let Ok(Geometry::Mesh(mesh)) = triangle else { panic!("{triangle:?}") };
         let mut stl = Vec::new();
@@ -121,12 +121,12 @@ mod tests {
     }
 
     #[test]
-    fn says_what_it_reads() {
-        let unknown = says(b"ISO-10303-21;", "part.step");
+    fn errors_name_the_supported_formats() {
+        let unknown = refusal(b"ISO-10303-21;", "part.step");
         assert!(unknown.contains("part.step is of no known format: read are meshes in STL, PLY"));
-        assert!(says(b"solid", "part.ply").contains("is no PLY file"));
-        assert!(says(b"", "part.stl").contains("is empty"));
-        assert!(says(b"", "part.obj").contains("has no faces"));
+        assert!(refusal(b"solid", "part.ply").contains("is no PLY file"));
+        assert!(refusal(b"", "part.stl").contains("is empty"));
+        assert!(refusal(b"", "part.obj").contains("has no faces"));
         let missing = Geometry::read("no/such/part.ply", UNIT).expect_err("no such file");
         assert!(missing.to_string().contains("cannot read no/such/part.ply"), "{missing}");
     }

@@ -57,18 +57,18 @@ pub fn tube(
     for s in 0..segments {
         for l in 0..layers {
             let wall = [outside(l, s), outside(l, s + 1), outside(l + 1, s + 1), outside(l + 1, s)];
-            triangles.extend(halves(wall));
+            triangles.extend(split_quad(wall));
             let bore = [inside(l, s), inside(l + 1, s), inside(l + 1, s + 1), inside(l, s + 1)];
-            triangles.extend(halves(bore));
+            triangles.extend(split_quad(bore));
         }
         let top = layers;
-        triangles.extend(halves([
+        triangles.extend(split_quad([
             inside(0, s),
             inside(0, s + 1),
             outside(0, s + 1),
             outside(0, s),
         ]));
-        triangles.extend(halves([
+        triangles.extend(split_quad([
             inside(top, s),
             outside(top, s),
             outside(top, s + 1),
@@ -98,7 +98,7 @@ pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, Me
         .collect();
     let sides =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    Mesh::new(vertices, sides.into_iter().flat_map(halves).collect(), unit)
+    Mesh::new(vertices, sides.into_iter().flat_map(split_quad).collect(), unit)
 }
 
 /// Generates an open square sheet in z = 0 about the origin, with edges of length `2 half_width` and
@@ -120,7 +120,7 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     let squares = (0..divisions).flat_map(|j| (0..divisions).map(move |i| (i, j)));
     let triangles = squares
         .flat_map(|(i, j)| {
-            halves([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)])
+            split_quad([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)])
         })
         .collect();
     Mesh::new(vertices, triangles, unit)
@@ -183,7 +183,7 @@ fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
 }
 
 /// Splits a four-sided face into two triangles.
-fn halves([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+fn split_quad([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
@@ -251,45 +251,57 @@ mod tests {
     }
 
     #[test]
-    fn the_tube_is_the_prism_it_should_be() {
+    fn tubes_are_prisms_of_the_given_dimensions() {
         for (inner, outer, height, segments, layers) in
             [(3.0, 5.0, 13.116, 96, 23), (1e-9, 2e-9, 1e-9, 3, 1), (1.0, 1e6, 0.1, 7, 2)]
         {
             let mesh = tube(inner, outer, height, segments, layers, UNIT).expect("a tube");
-            let survey = mesh.diagnostics();
+            let diagnostics = mesh.diagnostics();
             let n = f64::from(segments);
             let base = n / 2.0 * (2.0 * PI / n).sin() * (outer * outer - inner * inner);
-            let around = 2.0 * n * (PI / n).sin() * (outer + inner);
-            assert!(is_close(survey.area, 2.0 * base + around * height), "{survey}");
-            assert!(is_close(survey.volume, base * height), "{survey}");
-            assert!(survey.is_solid() && survey.findings().len() == 1, "{survey}");
-            assert_eq!(survey.triangles as u32, 4 * segments * (layers + 1));
+            let perimeter = 2.0 * n * (PI / n).sin() * (outer + inner);
+            assert!(is_close(diagnostics.area, 2.0 * base + perimeter * height), "{diagnostics}");
+            assert!(is_close(diagnostics.volume, base * height), "{diagnostics}");
+            assert!(diagnostics.is_solid() && diagnostics.findings().len() == 1, "{diagnostics}");
+            assert_eq!(diagnostics.triangles as u32, 4 * segments * (layers + 1));
         }
     }
 
     #[test]
-    fn the_other_shapes_are_what_they_say() {
+    fn other_shapes_have_the_given_dimensions() {
         let [low, high] = [Point3::new(-1.0, 0.0, 2.0), Point3::new(1.0, 3.0, 6.0)];
-        let survey = cuboid(low, high, UNIT).expect("a cuboid").diagnostics();
-        assert!(survey.is_solid() && (survey.area, survey.volume) == (52.0, 24.0), "{survey}");
+        let diagnostics = cuboid(low, high, UNIT).expect("a cuboid").diagnostics();
+        assert!(
+            diagnostics.is_solid() && (diagnostics.area, diagnostics.volume) == (52.0, 24.0),
+            "{diagnostics}"
+        );
 
         let sheet = plane(2.0, 4, UNIT).expect("a plane");
-        let survey = sheet.diagnostics();
-        assert_eq!((survey.area, survey.open_edges, survey.triangles), (16.0, 16, 32));
-        assert!(survey.is_oriented() && sheet.normal(TriangleId(31)) == Some(Vector3::z()));
+        let diagnostics = sheet.diagnostics();
+        assert_eq!(
+            (diagnostics.area, diagnostics.open_edges, diagnostics.triangles),
+            (16.0, 16, 32)
+        );
+        assert!(diagnostics.is_oriented() && sheet.normal(TriangleId(31)) == Some(Vector3::z()));
 
         for subdivisions in 0..6u32 {
-            let survey = sphere(3.0, subdivisions, UNIT).expect("a sphere").diagnostics();
-            assert!(survey.is_solid() && survey.triangles == 20 << (2 * subdivisions), "{survey}");
-            let short = 1.0 - survey.volume / (36.0 * PI);
-            assert!(short > 0.0 && short < 0.6 / f64::from(1 << (2 * subdivisions)), "{short}");
+            let diagnostics = sphere(3.0, subdivisions, UNIT).expect("a sphere").diagnostics();
+            assert!(
+                diagnostics.is_solid() && diagnostics.triangles == 20 << (2 * subdivisions),
+                "{diagnostics}"
+            );
+            let volume_deficit = 1.0 - diagnostics.volume / (36.0 * PI);
+            assert!(
+                volume_deficit > 0.0 && volume_deficit < 0.6 / f64::from(1 << (2 * subdivisions)),
+                "{volume_deficit}"
+            );
         }
     }
 
     #[test]
-    fn refuses_measures_no_shape_has() {
+    fn rejects_invalid_dimensions() {
         let p = |x: f64| Point3::new(x, 0.0, x);
-        for refused in [
+        for result in [
             tube(5.0, 3.0, 1.0, 8, 1, UNIT),
             tube(0.0, 3.0, 1.0, 8, 1, UNIT),
             tube(1.0, 3.0, f64::NAN, 8, 1, UNIT),
@@ -303,31 +315,31 @@ mod tests {
             sphere(0.0, 1, UNIT),
             sphere(1.0, 11, UNIT),
         ] {
-            let error = refused.expect_err("it should be refused");
+            let error = result.expect_err("it should be refused");
             assert!(matches!(error, MeshError::Shape { .. }), "{error}");
         }
         assert!(matches!(sphere(1e70, 0, UNIT), Err(MeshError::Coordinate { .. })));
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn written_stl_is_read_back() {
         let mesh = tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
         let mut text = Vec::new();
         mesh.write_stl_ascii(&mut text).expect("written");
-        let again = Mesh::from_stl(&text, "", UNIT).expect("read");
-        assert!(mesh.corners().eq(again.corners()));
+        let read_back = Mesh::from_stl(&text, "", UNIT).expect("read");
+        assert!(mesh.corners().eq(read_back.corners()));
 
         let mut binary = Vec::new();
         mesh.write_stl(&mut binary).expect("written");
         assert!(binary.starts_with(b"binary STL in mm"));
-        let again = Mesh::from_stl(&binary, "", UNIT).expect("read");
+        let read_back = Mesh::from_stl(&binary, "", UNIT).expect("read");
         assert!(
             mesh.corners()
                 .flatten()
-                .zip(again.corners().flatten())
+                .zip(read_back.corners().flatten())
                 .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
         );
-        assert!(again.diagnostics().is_solid() && again.diagnostics().opposed_normals == 0);
+        assert!(read_back.diagnostics().is_solid() && read_back.diagnostics().opposed_normals == 0);
 
         let huge = sphere(1e40, 0, UNIT).expect("a large sphere");
         let error = huge.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");

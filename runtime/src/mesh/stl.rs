@@ -5,7 +5,7 @@ use std::io;
 
 use nalgebra::{Point3, Vector3};
 
-use super::location::{SourceLocation, Tokens, number, shown};
+use super::location::{SourceLocation, Tokens, number, printable};
 use super::outlier::{Outlier, find_outlier};
 use super::{LARGEST_COORDINATE, MeshError, area_and_normal, is_valid_coordinate};
 
@@ -161,12 +161,12 @@ pub(super) struct StlFacets {
 }
 
 impl StlFacets {
-    fn push(&mut self, stated: Vector3<f64>, corners: [Point3<f64>; 3]) {
-        // The threshold is 120 degrees from the winding's normal. A careless or stale normal is
-        // harmless, but a normal in the opposite direction indicates that the winding may be wrong.
-        let norm = stated.norm();
+    fn push(&mut self, stated_normal: Vector3<f64>, corners: [Point3<f64>; 3]) {
+        // The threshold is 120 degrees from the winding's normal. An inaccurate or stale normal
+        // is harmless, but one in the opposite direction indicates that the winding may be wrong.
+        let norm = stated_normal.norm();
         if let Some((_, normal)) = area_and_normal(&corners)
-            && normal.dot(&stated) < -0.5 * norm
+            && normal.dot(&stated_normal) < -0.5 * norm
         {
             self.opposed_normals += 1;
         }
@@ -197,17 +197,17 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
 
 /// Returns the line of a corner in a valid text file.
 fn line_of(bytes: &[u8], corner: usize) -> SourceLocation {
-    let mut words = Tokens::new(bytes);
-    let mut left = corner + 1;
-    while left > 0
-        && let Some(word) = words.next()
+    let mut tokens = Tokens::new(bytes);
+    let mut remaining = corner + 1;
+    while remaining > 0
+        && let Some(word) = tokens.next()
     {
         if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
-            words.skip_line();
+            tokens.skip_line();
         }
-        left -= usize::from(word.eq_ignore_ascii_case(b"vertex"));
+        remaining -= usize::from(word.eq_ignore_ascii_case(b"vertex"));
     }
-    SourceLocation::Line(words.line)
+    SourceLocation::Line(tokens.line)
 }
 
 /// Reads the facets of a file and returns them with `true` if the file is text.
@@ -248,10 +248,10 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let mut facets = StlFacets::default();
     let (records, _) = body.as_chunks::<RECORD>();
     for (triangle, record) in records.iter().enumerate() {
-        let (words, _attributes) = record.as_chunks::<4>();
+        let (fields, _attributes) = record.as_chunks::<4>();
         let mut numbers = [0f32; 12];
-        for (number, word) in numbers.iter_mut().zip(words) {
-            *number = f32::from_le_bytes(*word);
+        for (number, field) in numbers.iter_mut().zip(fields) {
+            *number = f32::from_le_bytes(*field);
         }
         if let Some(k) = (3..12).find(|&k| !numbers[k].is_finite()) {
             return Err(StlError::TriangleCoordinate {
@@ -269,17 +269,17 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
 
 fn read_ascii(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let mut facets = StlFacets::default();
-    let mut text = Ascii { words: Tokens::new(bytes), name };
+    let mut text = Ascii { tokens: Tokens::new(bytes), name };
     loop {
         // The name of a solid, of any number of words, extends to the end of its line.
         text.keyword("`solid`, or the end of the file", b"solid")?;
-        text.words.skip_line();
+        text.tokens.skip_line();
         while text.either("`facet` or `endsolid`", b"facet", b"endsolid")? {
-            let (stated, corners) = text.facet()?;
-            facets.push(stated, corners);
+            let (stated_normal, corners) = text.facet()?;
+            facets.push(stated_normal, corners);
         }
-        text.words.skip_line();
-        if text.words.clone().next().is_none() {
+        text.tokens.skip_line();
+        if text.tokens.clone().next().is_none() {
             return Ok(facets);
         }
     }
@@ -287,23 +287,23 @@ fn read_ascii(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
 
 /// A parser for ASCII STL, with one function per phrase of the grammar.
 struct Ascii<'a> {
-    words: Tokens<'a>,
+    tokens: Tokens<'a>,
     name: &'a str,
 }
 
 impl<'a> Ascii<'a> {
     fn word(&mut self, expected: &'static str) -> Result<&'a [u8], StlError> {
-        let word = self.words.next();
+        let word = self.tokens.next();
         word.ok_or_else(|| StlError::Unended {
             file: self.name.to_owned(),
-            line: self.words.line,
+            line: self.tokens.line,
             expected,
         })
     }
 
     fn unexpected(&self, expected: &'static str, found: &[u8]) -> StlError {
-        let (file, line) = (self.name.to_owned(), self.words.line);
-        StlError::Expected { file, line, expected, found: shown(found) }
+        let (file, line) = (self.name.to_owned(), self.tokens.line);
+        StlError::Expected { file, line, expected, found: printable(found) }
     }
 
     fn keyword(&mut self, expected: &'static str, keyword: &[u8]) -> Result<(), StlError> {
@@ -336,8 +336,8 @@ impl<'a> Ascii<'a> {
     /// Reads the rest of a facet after its first word.
     fn facet(&mut self) -> Result<(Vector3<f64>, [Point3<f64>; 3]), StlError> {
         self.keyword("`normal`", b"normal")?;
-        let mut stated = Vector3::zeros();
-        for component in stated.iter_mut() {
+        let mut stated_normal = Vector3::zeros();
+        for component in stated_normal.iter_mut() {
             *component = self.number("a number of the facet's normal")?.0;
         }
         self.keyword("`outer loop`", b"outer")?;
@@ -348,8 +348,8 @@ impl<'a> Ascii<'a> {
             for coordinate in corner.iter_mut() {
                 let (number, word) = self.number("a coordinate, such as 1.5 or 2e-3")?;
                 if !is_valid_coordinate(number) {
-                    let (file, line) = (self.name.to_owned(), self.words.line);
-                    let coordinate = shown(word);
+                    let (file, line) = (self.name.to_owned(), self.tokens.line);
+                    let coordinate = printable(word);
                     return Err(StlError::LineCoordinate { file, line, coordinate });
                 }
                 *coordinate = number;
@@ -357,6 +357,6 @@ impl<'a> Ascii<'a> {
         }
         self.keyword("`endloop` after three vertices", b"endloop")?;
         self.keyword("`endfacet`", b"endfacet")?;
-        Ok((stated, corners))
+        Ok((stated_normal, corners))
     }
 }

@@ -19,7 +19,7 @@ fn binary(header: &str, triangles: &[[f32; 12]]) -> Vec<u8> {
     bytes
 }
 
-fn one() -> [f32; 12] {
+fn triangle_record() -> [f32; 12] {
     [0.0, 0.0, 1.0, -0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 }
 
@@ -28,21 +28,21 @@ fn refusal(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn refuses_what_is_no_mesh() {
+fn rejects_invalid_meshes() {
     let [a, b, c] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
-    let of = |vertices: &[_], triangles: &[_]| Mesh::new(vertices.into(), triangles.into(), UNIT);
-    assert_eq!(of(&[a, b, c], &[]), Err(MeshError::NoTriangle));
-    assert_eq!(of(&[a, b, c], &[[0, 1, 1]]), Err(MeshError::NoArea { triangles: 1 }));
+    let mesh = |vertices: &[_], triangles: &[_]| Mesh::new(vertices.into(), triangles.into(), UNIT);
+    assert_eq!(mesh(&[a, b, c], &[]), Err(MeshError::NoTriangle));
+    assert_eq!(mesh(&[a, b, c], &[[0, 1, 1]]), Err(MeshError::NoArea { triangles: 1 }));
     let index = MeshError::Index { triangle: 1, index: 3, vertices: 3 };
-    assert_eq!(of(&[a, b, c], &[[0, 1, 2], [0, 3, 1]]), Err(index));
-    for odd in [f64::NAN, f64::INFINITY, -1e61] {
-        let error = of(&[a, b, Point3::new(0.0, odd, 0.0)], &[[0, 1, 2]]);
+    assert_eq!(mesh(&[a, b, c], &[[0, 1, 2], [0, 3, 1]]), Err(index));
+    for coordinate in [f64::NAN, f64::INFINITY, -1e61] {
+        let error = mesh(&[a, b, Point3::new(0.0, coordinate, 0.0)], &[[0, 1, 2]]);
         assert!(matches!(error, Err(MeshError::Coordinate { vertex: 2, .. })), "{error:?}");
     }
 }
 
 #[test]
-fn areas_hold_at_any_scale_and_offset() {
+fn areas_are_accurate_at_any_scale_and_offset() {
     for (scale, offset) in
         [(1.0, 0.0), (1e-9, 0.0), (1e9, 0.0), (1e-60, 0.0), (1e60, 0.0), (1.0, 1e9), (1e-3, 1e6)]
     {
@@ -63,7 +63,7 @@ fn areas_hold_at_any_scale_and_offset() {
 }
 
 #[test]
-fn reads_ascii_in_every_dress() {
+fn reads_ascii_variants() {
     let plain = format!("solid a part\n{FACET}endsolid a part\n");
     let expected = Mesh::from_stl(plain.as_bytes(), "", UNIT).expect("plain");
     assert_eq!(expected.triangle(TriangleId(0))[1], Point3::new(1.5e-3, 0.0, 0.0));
@@ -86,9 +86,9 @@ fn reads_ascii_in_every_dress() {
 }
 
 #[test]
-fn says_what_is_wrong_with_ascii_and_where() {
+fn ascii_errors_name_the_defect_and_the_line() {
     let file = |facet: &str| format!("solid x\n{facet}endsolid x\n");
-    for (change, into, line, says) in [
+    for (original, replacement, line, expected) in [
         ("facet n", "face n", 2, "`endsolid`, found `face`"),
         ("normal", "norm", 2, "`normal`, found `norm`"),
         ("0 0 1", "0 0 ?", 2, "a number of the facet's"),
@@ -102,13 +102,13 @@ fn says_what_is_wrong_with_ascii_and_where() {
         ("0 2 0", "0 inf 0", 6, "`inf` is not a finite"),
         ("0 2 0", "0 1e999 0", 6, "`1e999` is not"),
     ] {
-        let message = refusal(file(&FACET.replace(change, into)).as_bytes());
-        let place = format!("part.stl, line {line}: ");
-        assert!(message.starts_with(&place), "{into}: {message}");
-        assert!(message.contains(says), "{into}: {message}");
+        let message = refusal(file(&FACET.replace(original, replacement)).as_bytes());
+        let prefix = format!("part.stl, line {line}: ");
+        assert!(message.starts_with(&prefix), "{replacement}: {message}");
+        assert!(message.contains(expected), "{replacement}: {message}");
     }
-    let more = refusal((file(FACET) + "more").as_bytes());
-    assert!(more.contains("line 10: expected `solid`, or the end of"));
+    let surplus = refusal((file(FACET) + "more").as_bytes());
+    assert!(surplus.contains("line 10: expected `solid`, or the end of"));
     let cut = refusal(format!("solid x\n{FACET}").as_bytes());
     assert!(cut.contains("ends on line 9, where `facet` or `endsolid` should"));
     assert!(refusal(b"solid").contains("cut off"));
@@ -118,8 +118,8 @@ fn says_what_is_wrong_with_ascii_and_where() {
 }
 
 #[test]
-fn says_what_is_wrong_with_binary_and_where() {
-    let whole = binary("solid by a CAD system", &[one(), one()]);
+fn binary_errors_name_the_defect_and_the_byte() {
+    let whole = binary("solid by a CAD system", &[triangle_record(), triangle_record()]);
     let mesh = Mesh::from_stl(&whole, "", UNIT).expect("binary, whatever its header");
     assert_eq!((mesh.triangles().len(), mesh.vertices().len()), (2, 3));
 
@@ -129,10 +129,10 @@ fn says_what_is_wrong_with_binary_and_where() {
     assert!(cut.contains("2 triangles = 184 bytes, but the file has 150"), "{cut}");
     let longer = refusal(&[&whole[..], b"!"].concat());
     assert!(longer.contains("has 185 bytes") && longer.contains("= 184 bytes"), "{longer}");
-    let mut odd = one();
-    odd[7] = f32::NAN;
-    let odd = refusal(&binary("", &[one(), odd]));
-    assert!(odd.contains("triangle 1 (from 0), byte 162: the coordinate NaN"), "{odd}");
+    let mut invalid = triangle_record();
+    invalid[7] = f32::NAN;
+    let invalid = refusal(&binary("", &[triangle_record(), invalid]));
+    assert!(invalid.contains("triangle 1 (from 0), byte 162: the coordinate NaN"), "{invalid}");
     assert!(refusal(&binary("", &[])).contains("no triangle"));
     assert!(refusal(&binary("", &[[1.0; 12]])).contains("none of the mesh's 1 triangles"));
     let missing = Mesh::read_stl("no/such/part.stl", UNIT).expect_err("no such file");
@@ -140,52 +140,57 @@ fn says_what_is_wrong_with_binary_and_where() {
 }
 
 #[test]
-fn welds_what_only_noise_tells_apart() {
-    let mut noisy = one();
+fn welds_vertices_that_differ_by_noise() {
+    let mut noisy = triangle_record();
     noisy[3..6].copy_from_slice(&[1e-17, 0.0, -3e-16]);
-    let [mut far, mut fine] = [one(); 2];
-    (far[6], fine[3]) = (1.0 + f32::EPSILON, 1e-9);
+    let [mut distinct, mut small] = [triangle_record(); 2];
+    (distinct[6], small[3]) = (1.0 + f32::EPSILON, 1e-9);
     let read = |triangles: &[_]| Mesh::from_stl(&binary("", triangles), "", UNIT);
-    let mesh = read(&[one(), noisy, far, fine]).expect("a mesh");
+    let mesh = read(&[triangle_record(), noisy, distinct, small]).expect("a mesh");
     assert_eq!(mesh.triangles()[1], [0, 1, 2], "-0, 0 and 1e-17 are one");
     assert_eq!(mesh.triangles()[2..], [[0, 3, 2], [4, 1, 2]]);
 }
 
 /// Returns a file with up to four random defects: a changed byte, a truncation or an inserted word.
-pub(super) fn mangled(file: &[u8], words: &[&[u8]], random: &mut rand_pcg::Pcg64) -> Vec<u8> {
+pub(super) fn damaged(file: &[u8], words: &[&[u8]], random: &mut rand_pcg::Pcg64) -> Vec<u8> {
     let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
     let mut bytes = file.to_vec();
     for _ in 0..1 + below(4) {
-        let at = below(bytes.len());
+        let position = below(bytes.len());
         match below(4) {
-            0 => bytes[at] = below(256) as u8,
-            1 => bytes[at] ^= 1 << below(8),
-            2 => bytes.truncate(at.max(1)),
-            _ => drop(bytes.splice(at..at, words[below(words.len())].iter().copied())),
+            0 => bytes[position] = below(256) as u8,
+            1 => bytes[position] ^= 1 << below(8),
+            2 => bytes.truncate(position.max(1)),
+            _ => drop(bytes.splice(position..position, words[below(words.len())].iter().copied())),
         }
     }
     bytes
 }
 
 #[test]
-fn survives_any_bytes() {
+fn damaged_files_do_not_panic() {
     let mut random = rand_pcg::Pcg64::seed_from_u64(1);
     let text = format!("solid\n{}endsolid\n", FACET.repeat(2)).into_bytes();
     let words: [&[u8]; 6] = [b"endfacet", b"solid", b"\r\n", b"1e400", b"vertex", b"\0"];
-    for seed in [binary("", &[one(), one()]), binary("solid", &[one()]), text, vec![0; 90]] {
+    for seed in [
+        binary("", &[triangle_record(), triangle_record()]),
+        binary("solid", &[triangle_record()]),
+        text,
+        vec![0; 90],
+    ] {
         for _ in 0..5000 {
-            let bytes = mangled(&seed, &words, &mut random);
+            let bytes = damaged(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_stl(&bytes, "", UNIT) {
-                let survey = mesh.diagnostics();
-                assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
-                assert!(!survey.to_string().is_empty());
+                let diagnostics = mesh.diagnostics();
+                assert!(diagnostics.area > 0.0 && diagnostics.area.is_finite(), "{diagnostics:?}");
+                assert!(!diagnostics.to_string().is_empty());
             }
         }
     }
 }
 
 /// Returns the folder of shared parts, if it exists: a checkout alone has none.
-fn shared() -> Option<PathBuf> {
+fn shared_parts() -> Option<PathBuf> {
     let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
     if parts.is_dir() {
         return Some(parts);
@@ -230,13 +235,13 @@ fn reads_parts_from_stl_files() {
         ("inch.stl", Unit::Inch, 12, 14.5, 1e-12),
         ("metre.stl", Unit::Metre, 12, 2.0 * (0.2 * 0.07 + 0.2 * 0.3 + 0.07 * 0.3), 1e-12),
     ]
-    .map(|(file, unit, triangles, area, off)| {
-        (folder.path().join(file), unit, triangles, area, off)
+    .map(|(file, unit, triangles, area, tolerance)| {
+        (folder.path().join(file), unit, triangles, area, tolerance)
     })
     .to_vec();
-    if let Some(shared) = shared() {
+    if let Some(shared_parts) = shared_parts() {
         // The areas are from an independent reading of the files.
-        let real = [
+        let files = [
             ("thesis_tube.stl", Unit::Millimetre, 9_216, 759.6236125024762),
             ("impeller.stl", Unit::Millimetre, 52_872, 12_995.440601326354),
             ("featuretype_inch.stl", Unit::Inch, 3_476, 53.82738611818216),
@@ -244,16 +249,22 @@ fn reads_parts_from_stl_files() {
             ("kiri_pocket_test.stl", Unit::Millimetre, 28, 28_480.0),
         ];
         parts.extend(
-            real.map(|(file, unit, count, area)| (shared.join(file), unit, count, area, 1e-12)),
+            files.map(|(file, unit, count, area)| {
+                (shared_parts.join(file), unit, count, area, 1e-12)
+            }),
         );
     }
-    for (path, unit, triangles, area, off) in parts {
+    for (path, unit, triangles, area, tolerance) in parts {
         let file = path.display();
         let mesh = Mesh::read_stl(&path, unit).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let survey = mesh.diagnostics();
-        assert_eq!((survey.triangles, mesh.unit()), (triangles, unit), "{file}");
-        assert!(survey.is_solid(), "{file}: {survey}");
-        assert!((survey.area / area - 1.0).abs() < off, "{file}: {} of {area}", survey.area);
+        let diagnostics = mesh.diagnostics();
+        assert_eq!((diagnostics.triangles, mesh.unit()), (triangles, unit), "{file}");
+        assert!(diagnostics.is_solid(), "{file}: {diagnostics}");
+        assert!(
+            (diagnostics.area / area - 1.0).abs() < tolerance,
+            "{file}: {} of {area}",
+            diagnostics.area
+        );
     }
 }
 
@@ -274,28 +285,34 @@ fn ply(mesh: &Mesh, triangles: usize) -> String {
 fn reads_parts_from_ply_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let tube = shapes::tube(3.0, 5.0, 13.116, 96, 23, UNIT).expect("a tube");
-    let all = tube.triangles().len();
+    let total = tube.triangles().len();
     let mut parts = Vec::new();
-    for (name, triangles) in [("whole.ply", all), ("one_hole.ply", all - 1), ("half.ply", all / 2)]
+    for (name, triangles) in
+        [("whole.ply", total), ("one_hole.ply", total - 1), ("half.ply", total / 2)]
     {
         let path = folder.path().join(name);
         std::fs::write(&path, ply(&tube, triangles)).expect("a file");
-        parts.push((path, triangles, triangles == all));
+        parts.push((path, triangles, triangles == total));
     }
-    if let Some(shared) = shared() {
-        let real = [
+    if let Some(shared_parts) = shared_parts() {
+        let files = [
             ("nist_mbe_pmi_1_18k.ply", 18_166, true),
             ("nist_mbe_pmi_2_46k_leaky.ply", 46_192, false),
             ("nist_mbe_pmi_3_7k.ply", 7_140, true),
             ("noether_wavy_mesh_with_hole.ply", 1_347, false),
         ];
-        parts.extend(real.map(|(file, count, closed)| (shared.join(file), count, closed)));
+        parts.extend(files.map(|(file, count, closed)| (shared_parts.join(file), count, closed)));
     }
     for (path, triangles, closed) in parts {
         let file = path.display();
-        let shape = Geometry::read(&path, UNIT).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let Geometry::Mesh(mesh) = shape else { panic!("{file} has faces") };
-        let survey = mesh.diagnostics();
-        assert_eq!((survey.triangles, survey.is_closed()), (triangles, closed), "{file}: {survey}");
+        let geometry =
+            Geometry::read(&path, UNIT).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let Geometry::Mesh(mesh) = geometry else { panic!("{file} has faces") };
+        let diagnostics = mesh.diagnostics();
+        assert_eq!(
+            (diagnostics.triangles, diagnostics.is_closed()),
+            (triangles, closed),
+            "{file}: {diagnostics}"
+        );
     }
 }

@@ -24,18 +24,18 @@ impl Edges {
             starts[vertex] += starts[vertex - 1];
         }
         let mut uses = vec![0u64; starts[starts.len() - 1]];
-        let mut free = starts.clone();
+        let mut next_slot = starts.clone();
         for [from, to] in edge_uses(mesh) {
-            let place = &mut free[from.min(to) as usize];
-            uses[*place] = u64::from(from.max(to)) << 1 | u64::from(from < to);
-            *place += 1;
+            let slot = &mut next_slot[from.min(to) as usize];
+            uses[*slot] = u64::from(from.max(to)) << 1 | u64::from(from < to);
+            *slot += 1;
         }
         let mut edges = Edges { open: 0, crossed: 0, shared: 0 };
         for bucket in starts.windows(2) {
             let bucket = &mut uses[bucket[0]..bucket[1]];
             bucket.sort_unstable();
             for edge in bucket.chunk_by(|a, b| a >> 1 == b >> 1) {
-                let upward = edge.iter().filter(|&&one| one & 1 == 1).count();
+                let upward = edge.iter().filter(|&&entry| entry & 1 == 1).count();
                 edges.open += usize::from(edge.len() % 2 == 1);
                 edges.crossed += usize::from(edge.len() % 2 == 0 && 2 * upward != edge.len());
                 edges.shared += usize::from(edge.len() > 2);
@@ -48,8 +48,11 @@ impl Edges {
 /// Iterates over the directed edges of all triangles, except triangles that name a vertex twice. These
 /// have collapsed into an edge or a point, and their contributions would cancel.
 fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
-    let whole = |[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
-    mesh.triangles().iter().filter(whole).flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+    let has_distinct_corners = |[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
+    mesh.triangles()
+        .iter()
+        .filter(has_distinct_corners)
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
 /// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece
@@ -67,16 +70,16 @@ pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
         .collect();
     uses.sort_unstable();
     for edge in uses.chunk_by(|a, b| a.0 == b.0) {
-        if let [(_, one), (_, other)] = edge {
-            let [one, other] = [one, other].map(|id| root(&mut parent, *id));
-            parent[one.max(other) as usize] = one.min(other);
+        if let [(_, first), (_, second)] = edge {
+            let [first, second] = [first, second].map(|id| root(&mut parent, *id));
+            parent[first.max(second) as usize] = first.min(second);
         }
     }
     let mut volumes = vec![0.0; parent.len()];
     for (id, corners) in (0..).zip(mesh.corners()) {
-        if let Some((share, normal)) = area_and_normal(&corners) {
-            let piece = root(&mut parent, id) as usize;
-            volumes[piece] += normal.dot(&(corners[0] - origin)) * share / 3.0;
+        if let Some((area, normal)) = area_and_normal(&corners) {
+            let component = root(&mut parent, id) as usize;
+            volumes[component] += normal.dot(&(corners[0] - origin)) * area / 3.0;
         }
     }
     (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
@@ -94,9 +97,9 @@ pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
             }
         }
         let [a, b, c] = triangle.map(|vertex| root(&mut parent, vertex));
-        let least = a.min(b).min(c);
+        let lowest = a.min(b).min(c);
         for vertex in [a, b, c] {
-            parent[vertex as usize] = least;
+            parent[vertex as usize] = lowest;
         }
     }
     // The root is the lowest vertex of its shell, so it is numbered before the others.
@@ -106,12 +109,12 @@ pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
         if parent[vertex] == UNUSED {
             continue;
         }
-        let top = root(&mut parent, vertex as u32) as usize;
-        if top == vertex {
+        let root_vertex = root(&mut parent, vertex as u32) as usize;
+        if root_vertex == vertex {
             shell_of[vertex] = count;
             count += 1;
         } else {
-            shell_of[vertex] = shell_of[top];
+            shell_of[vertex] = shell_of[root_vertex];
         }
     }
     (shell_of, count as usize)
@@ -119,9 +122,9 @@ pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
 
 fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
     while parent[vertex as usize] != vertex {
-        let above = parent[vertex as usize];
-        parent[vertex as usize] = parent[above as usize];
-        vertex = above;
+        let next = parent[vertex as usize];
+        parent[vertex as usize] = parent[next as usize];
+        vertex = next;
     }
     vertex
 }

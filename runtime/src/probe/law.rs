@@ -1,6 +1,6 @@
 //! The force laws of contacts.
 
-use crate::keywords::words;
+use crate::keywords::keyword_enum;
 
 /// The force on the tool as a function of a contact's magnitude. `m` is the magnitude, `w` the weight, `n` the part's
 /// outward normal, `u` the direction to the tool's nearest surface.
@@ -25,5 +25,5 @@ pub enum Weights {
     Unit,
 }
 
-words!(Law, "thesis, gradient, facing", Thesis "thesis", Gradient "gradient", Facing "facing");
-words!(Weights, "area, unit", Area "area", Unit "unit");
+keyword_enum!(Law, "thesis, gradient, facing", Thesis "thesis", Gradient "gradient", Facing "facing");
+keyword_enum!(Weights, "area, unit", Area "area", Unit "unit");

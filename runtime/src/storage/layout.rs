@@ -232,7 +232,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
         + sections.len() * size_of::<SectionHeader>();
     let length = records.next_multiple_of(ALIGN);
     let mut header = vec![0; size_of::<Start>()];
-    let surveyed = part.survey.as_ref().map_or_else(Surveyed::zeroed, Surveyed::of);
+    let surveyed = part.diagnostics.as_ref().map_or_else(Surveyed::zeroed, Surveyed::of);
     header.extend(bytemuck::bytes_of(&surveyed));
     let mut at = length;
     for (tree, lists) in &shapes {
@@ -253,7 +253,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
         file: at as u64,
         unit: code(part.unit),
         trees: u32::try_from(part.levels.len()).expect("fewer levels than 2^32"),
-        surveyed: u32::from(part.survey.is_some()),
+        surveyed: u32::from(part.diagnostics.is_some()),
         zero: [0; 3],
     };
     header[..size_of::<Start>()].copy_from_slice(bytemuck::bytes_of(&start));

@@ -44,7 +44,7 @@ pub(super) fn part(source: impl Read, length: u64, file: &str) -> Result<Part, S
     }
     let trees = outlines.iter().enumerate();
     let levels = trees.map(|(tree, outline)| about.tree(tree, outline, &mut rest));
-    Ok(Part { levels: levels.collect::<Result<_, _>>()?, unit, survey })
+    Ok(Part { levels: levels.collect::<Result<_, _>>()?, unit, diagnostics: survey })
 }
 
 /// The length and the name of the file, for checks and errors.

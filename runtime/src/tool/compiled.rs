@@ -35,7 +35,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn clearance(point: [f64; 3]) -> f64;
 
     /// Returns an enclosure of the evaluation over a box, for a tool without a profile; see [`Tool::enclose`].
-    fn enclose(_sides: [[f64; 2]; 3], _at: [f64; 3]) -> Option<EvaluationEnclosure> {
+    fn enclose(_sides: [[f64; 2]; 3], _reference: [f64; 3]) -> Option<EvaluationEnclosure> {
         None
     }
 
@@ -44,7 +44,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
         point: [L; 3],
         length: L,
         present: L::Mask,
-        ask: Outputs,
+        outputs: Outputs,
     ) -> LaneEvaluation<L>;
 }
 
@@ -98,14 +98,14 @@ impl<T: Evaluators> Tool for T {
     fn evaluate(
         &self,
         level: Level,
-        ask: Outputs,
+        outputs: Outputs,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     ) {
-        evaluations.reserve(points, ask);
-        on_vectors!(level, simd => lanes::<T, _>(simd, ask, points, length, evaluations));
-        one_by_one::<T>(ask, points, length, evaluations);
+        evaluations.reserve(points, outputs);
+        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, outputs, points, length, evaluations));
+        evaluate_points::<T>(outputs, points, length, evaluations);
     }
 
     fn enclose(
@@ -118,9 +118,10 @@ impl<T: Evaluators> Tool for T {
     }
 
     fn derivatives(&self, point: [f64; 3], length: f64, _: &mut Evaluations) -> Derivatives {
-        let ask = Outputs { direction: true, gradient: true, ..Outputs::INSIDE };
-        let here = T::evaluate_lanes(Dual::point(point), Dual::constant(length), true, ask);
-        Derivatives::of(here.direction, here.gradient, length)
+        let outputs = Outputs { direction: true, gradient: true, ..Outputs::INSIDE };
+        let evaluation =
+            T::evaluate_lanes(Dual::point(point), Dual::constant(length), true, outputs);
+        Derivatives::of(evaluation.direction, evaluation.gradient, length)
     }
 }
 
@@ -133,8 +134,8 @@ impl<T: Evaluators> BatchEvaluator for T {
         evaluations: &mut Evaluations,
     ) {
         evaluations.reserve(points, W::OUTPUTS);
-        on_vectors!(level, simd => lanes::<T, _>(simd, W::OUTPUTS, points, length, evaluations));
-        one_by_one::<T>(W::OUTPUTS, points, length, evaluations);
+        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, W::OUTPUTS, points, length, evaluations));
+        evaluate_points::<T>(W::OUTPUTS, points, length, evaluations);
     }
 }
 
@@ -148,81 +149,81 @@ fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: Range<usize>, values:
 /// Evaluates the points in blocks of eight. Vector code is kept in functions that are always inlined: a closure would
 /// be compiled without the vector instructions of its surroundings.
 #[inline(always)]
-fn lanes<T: Evaluators, S: Simd>(
+fn evaluate_blocks<T: Evaluators, S: Simd>(
     simd: S,
-    ask: Outputs,
+    outputs: Outputs,
     points: &PointBatch,
     length: f64,
     evaluations: &mut Evaluations,
 ) {
     let length = f64x8::splat(simd, length);
     let lists = points.coordinates();
-    for at in 0..evaluations.inside.len() {
-        let block = at * LANES..(at + 1) * LANES;
-        let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), at)));
+    for index in 0..evaluations.inside.len() {
+        let block = index * LANES..(index + 1) * LANES;
+        let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), index)));
         let p = [
             f64x8::from_slice(simd, &lists[0][block.clone()]),
             f64x8::from_slice(simd, &lists[1][block.clone()]),
             f64x8::from_slice(simd, &lists[2][block.clone()]),
         ];
-        let here = T::evaluate_lanes(p, length, present, ask);
-        evaluations.inside[at] = here.inside.to_bitmask() as u8;
-        if ask.depth {
-            here.depth.store_slice(&mut evaluations.depth[block.clone()]);
+        let evaluation = T::evaluate_lanes(p, length, present, outputs);
+        evaluations.inside[index] = evaluation.inside.to_bitmask() as u8;
+        if outputs.depth {
+            evaluation.depth.store_slice(&mut evaluations.depth[block.clone()]);
         }
-        if ask.magnitude {
-            here.magnitude.store_slice(&mut evaluations.magnitude[block.clone()]);
+        if outputs.magnitude {
+            evaluation.magnitude.store_slice(&mut evaluations.magnitude[block.clone()]);
         }
-        if ask.niceness {
-            here.niceness.store_slice(&mut evaluations.niceness[block.clone()]);
+        if outputs.niceness {
+            evaluation.niceness.store_slice(&mut evaluations.niceness[block.clone()]);
         }
-        if ask.direction {
-            store_vector(&mut evaluations.direction, block.clone(), here.direction);
+        if outputs.direction {
+            store_vector(&mut evaluations.direction, block.clone(), evaluation.direction);
         }
-        if ask.gradient {
-            store_vector(&mut evaluations.gradient, block.clone(), here.gradient);
+        if outputs.gradient {
+            store_vector(&mut evaluations.gradient, block.clone(), evaluation.gradient);
         }
-        if ask.region {
-            here.region.store_slice(&mut evaluations.region[block]);
+        if outputs.region {
+            evaluation.region.store_slice(&mut evaluations.region[block]);
         }
     }
 }
 
 /// Evaluates the points without vectors, by the functions of a single point.
-fn one_by_one<T: Evaluators>(
-    ask: Outputs,
+fn evaluate_points<T: Evaluators>(
+    outputs: Outputs,
     points: &PointBatch,
     length: f64,
     evaluations: &mut Evaluations,
 ) {
     let [x, y, z] = points.coordinates();
-    for at in 0..points.len() {
-        let p = [x[at], y[at], z[at]];
+    for index in 0..points.len() {
+        let p = [x[index], y[index], z[index]];
         if !T::contains(p) {
             continue;
         }
-        evaluations.inside[at / LANES] |= 1 << (at % LANES);
-        if ask.depth {
-            evaluations.depth[at] = T::depth(p);
+        evaluations.inside[index / LANES] |= 1 << (index % LANES);
+        if outputs.depth {
+            evaluations.depth[index] = T::depth(p);
         }
-        if ask.magnitude {
-            evaluations.magnitude[at] = T::magnitude(p, length);
+        if outputs.magnitude {
+            evaluations.magnitude[index] = T::magnitude(p, length);
         }
-        if ask.niceness {
-            evaluations.niceness[at] = T::niceness(p);
+        if outputs.niceness {
+            evaluations.niceness[index] = T::niceness(p);
         }
-        if ask.direction {
-            for (list, part) in evaluations.direction.iter_mut().zip(T::direction(p)) {
-                list[at] = part;
+        if outputs.direction {
+            for (list, component) in evaluations.direction.iter_mut().zip(T::direction(p)) {
+                list[index] = component;
             }
         }
-        if ask.gradient {
-            for (list, part) in evaluations.gradient.iter_mut().zip(T::gradient(p, length)) {
-                list[at] = part;
+        if outputs.gradient {
+            for (list, component) in evaluations.gradient.iter_mut().zip(T::gradient(p, length)) {
+                list[index] = component;
             }
         }
-        if ask.region {
-            evaluations.region[at] = T::owner(p).map_or(-1.0, |region| region as f64);
+        if outputs.region {
+            evaluations.region[index] = T::owner(p).map_or(-1.0, |region| region as f64);
         }
     }
 }

@@ -32,13 +32,13 @@ impl Dual {
     /// Returns a function of one number, given the function's value and derivative there.
     #[inline(always)]
     fn chain(self, value: f64, derivative: f64) -> Dual {
-        Dual { value, slope: self.slope.map(|part| derivative * part) }
+        Dual { value, slope: self.slope.map(|slope| derivative * slope) }
     }
 
-    /// Returns a function of two numbers, given its value and its partial derivatives `by`.
+    /// Returns a function of two numbers, given its value and its partial derivatives.
     #[inline(always)]
-    fn both(self, other: Dual, value: f64, by: [f64; 2]) -> Dual {
-        let slope = [0, 1, 2].map(|k| by[0] * self.slope[k] + by[1] * other.slope[k]);
+    fn combine(self, other: Dual, value: f64, partials: [f64; 2]) -> Dual {
+        let slope = [0, 1, 2].map(|k| partials[0] * self.slope[k] + partials[1] * other.slope[k]);
         Dual { value, slope }
     }
 }
@@ -47,7 +47,7 @@ impl Add for Dual {
     type Output = Dual;
     #[inline(always)]
     fn add(self, other: Dual) -> Dual {
-        self.both(other, self.value + other.value, [1.0, 1.0])
+        self.combine(other, self.value + other.value, [1.0, 1.0])
     }
 }
 
@@ -55,7 +55,7 @@ impl Sub for Dual {
     type Output = Dual;
     #[inline(always)]
     fn sub(self, other: Dual) -> Dual {
-        self.both(other, self.value - other.value, [1.0, -1.0])
+        self.combine(other, self.value - other.value, [1.0, -1.0])
     }
 }
 
@@ -63,7 +63,7 @@ impl Mul for Dual {
     type Output = Dual;
     #[inline(always)]
     fn mul(self, other: Dual) -> Dual {
-        self.both(other, self.value * other.value, [other.value, self.value])
+        self.combine(other, self.value * other.value, [other.value, self.value])
     }
 }
 
@@ -72,7 +72,7 @@ impl Div for Dual {
     #[inline(always)]
     fn div(self, other: Dual) -> Dual {
         let value = self.value / other.value;
-        self.both(other, value, [1.0 / other.value, -value / other.value])
+        self.combine(other, value, [1.0 / other.value, -value / other.value])
     }
 }
 

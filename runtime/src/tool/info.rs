@@ -63,7 +63,7 @@ impl ToolInfo {
         [name, title]: [&'static str; 2],
         unit: Unit,
         (surfaces, regions): (&'static [Surface], &'static [Region]),
-        (shape, envelope): (Symmetry, &'static [EnvelopeSlab]),
+        (symmetry, envelope): (Symmetry, &'static [EnvelopeSlab]),
         (outline, depth): (&'static [ProfileSegment], DepthBounds),
         digest: u64,
     ) -> ToolInfo {
@@ -74,7 +74,7 @@ impl ToolInfo {
             surfaces: Cow::Borrowed(surfaces),
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
-            symmetry: shape,
+            symmetry,
             outline: Cow::Borrowed(outline),
             depth,
             digest,

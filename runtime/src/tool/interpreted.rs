@@ -22,8 +22,8 @@ use tool_dsl::{Accepted, CheckedTool, compile_with, diagnostic, digest, model};
 pub struct Interpreted {
     info: ToolInfo,
     evaluations: Vec<Tape>,
-    walk: PlanWalk,
-    outside: Tape,
+    plan: PlanWalk,
+    clearance_tape: Tape,
     warnings: String,
 }
 
@@ -80,22 +80,22 @@ impl Interpreted {
     /// # Errors
     ///
     /// [`ToolError::Wrong`] with all diagnostics if the text or the arguments do not compile.
-    pub fn parse_with(source: &Source, given: &[Source]) -> Result<Interpreted, ToolError> {
-        let compiled = compile_with(source, given);
-        let said: Vec<String> =
+    pub fn parse_with(source: &Source, arguments: &[Source]) -> Result<Interpreted, ToolError> {
+        let compiled = compile_with(source, arguments);
+        let diagnostics: Vec<String> =
             compiled.diagnostics().iter().map(|r| r.render(&compiled.sources, false)).collect();
-        let said = said.join("\n\n");
+        let diagnostics = diagnostics.join("\n\n");
         match compiled.outcome {
             Ok(Accepted { tool, .. }) => Ok(Interpreted {
                 info: info(&tool),
                 evaluations: (0..tool.model.regions.len())
                     .map(|k| Tape::evaluation(&tool, k))
                     .collect(),
-                walk: PlanWalk::new(&tool),
-                outside: Tape::clearance(&tool),
-                warnings: said,
+                plan: PlanWalk::new(&tool),
+                clearance_tape: Tape::clearance(&tool),
+                warnings: diagnostics,
             }),
-            Err(_) => Err(ToolError::Wrong(said)),
+            Err(_) => Err(ToolError::Wrong(diagnostics)),
         }
     }
 
@@ -142,7 +142,7 @@ fn info(tool: &CheckedTool) -> ToolInfo {
             Domain::HalfPlane => Symmetry::Revolved,
             Domain::Space => Symmetry::Solid { across: across(&tool.extent) },
         },
-        outline: model.outline().map(piece).collect(),
+        outline: model.outline().map(profile_segment).collect(),
         depth: {
             let Bounds { min_slope, lipschitz, rounding } = tool.bounds();
             DepthBounds { min_slope, lipschitz, rounding }
@@ -151,8 +151,8 @@ fn info(tool: &CheckedTool) -> ToolInfo {
     }
 }
 
-fn piece(of: model::ProfileSegment) -> ProfileSegment {
-    let model::ProfileSegment { ends: [from, to], circle, surface } = of;
+fn profile_segment(segment: model::ProfileSegment) -> ProfileSegment {
+    let model::ProfileSegment { ends: [from, to], circle, surface } = segment;
     let circle = circle.map(|(centre, radius, convex)| Circle { centre, radius, convex });
     ProfileSegment { from, to, circle, surface: SurfaceId(surface) }
 }
@@ -164,59 +164,59 @@ impl Tool for Interpreted {
 
     fn clearance(&self, point: [f64; 3]) -> f64 {
         let mut owner = [0.0];
-        self.walk.run(point, 1.0, &mut Scratch::default(), &mut owner);
+        self.plan.run(point, 1.0, &mut Scratch::default(), &mut owner);
         if owner[0] >= 0.0 {
             return 0.0;
         }
-        let block = point.map(|part| [part; BLOCK]);
+        let block = point.map(|coordinate| [coordinate; BLOCK]);
         let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
-        self.outside.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
+        self.clearance_tape.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
         results[0][0]
     }
 
     fn evaluate(
         &self,
         level: Level,
-        ask: Outputs,
+        outputs: Outputs,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     ) {
-        evaluations.reserve(points, ask);
+        evaluations.reserve(points, outputs);
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || self.all(ask, points, length, evaluations),
+            || self.evaluate_blocks(outputs, points, length, evaluations),
         ));
     }
 
     fn enclose(
         &self,
         sides: [[f64; 2]; 3],
-        at: [f64; 3],
-        room: &mut Evaluations,
+        reference: [f64; 3],
+        scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {
         if !self.info.outline.is_empty() {
             return None;
         }
-        let (point, one) = (Enclosure::of_box(sides, at), Enclosure::constant(1.0));
-        let mut found = EvaluationEnclosure::nothing();
-        let visit = |owner, test| found.take(owner, test);
-        self.walk.each_owner(point, one, &mut room.enclosures, visit);
-        Some(found)
+        let (point, one) = (Enclosure::of_box(sides, reference), Enclosure::constant(1.0));
+        let mut enclosure = EvaluationEnclosure::empty();
+        let visit = |owner, test| enclosure.include(owner, test);
+        self.plan.each_owner(point, one, &mut scratch.enclosures, visit);
+        Some(enclosure)
     }
 
-    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives {
+    fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives {
         let mut results = [Dual::default(); OUTPUTS];
         let duals = (Dual::point(point), Dual::constant(length));
-        self.walk.run(duals.0, duals.1, &mut room.duals, &mut results);
-        let three = |from: usize| std::array::from_fn(|k| results[from + k]);
-        Derivatives::of(three(4), three(7), length)
+        self.plan.run(duals.0, duals.1, &mut scratch.duals, &mut results);
+        let vector = |from: usize| std::array::from_fn(|k| results[from + k]);
+        Derivatives::of(vector(4), vector(7), length)
     }
 
     fn reserve(&self, evaluations: &mut Evaluations) {
-        self.walk.reserve(&mut evaluations.scratch);
-        self.walk.reserve(&mut evaluations.duals);
-        self.walk.reserve_block(&mut evaluations.lanes);
+        self.plan.reserve(&mut evaluations.scratch);
+        self.plan.reserve(&mut evaluations.duals);
+        self.plan.reserve_block(&mut evaluations.lanes);
         for tape in &self.evaluations {
             tape.reserve(&mut evaluations.registers);
         }
@@ -290,9 +290,15 @@ impl BatchEvaluator for Interpreted {
 
 impl Interpreted {
     #[inline(always)]
-    fn all(&self, ask: Outputs, points: &PointBatch, length: f64, evaluations: &mut Evaluations) {
+    fn evaluate_blocks(
+        &self,
+        outputs: Outputs,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    ) {
         // Results are in this order: owner, depth, magnitude, niceness, direction, gradient.
-        let wanted = match ask {
+        let result_count = match outputs {
             Outputs { gradient: true, .. } => OUTPUTS,
             Outputs { direction: true, .. } => 7,
             Outputs { niceness: true, .. } => 4,
@@ -303,152 +309,162 @@ impl Interpreted {
         let coordinates = points.coordinates();
         for start in (0..points.len()).step_by(BLOCK) {
             let count = BLOCK.min(points.len() - start);
-            if count <= FEW {
-                self.one_by_one(
+            if count <= MAX_SEPARATE_POINTS {
+                self.evaluate_points(
                     start..start + count,
                     coordinates,
-                    (ask, wanted, length),
+                    (outputs, result_count, length),
                     evaluations,
                 );
             } else {
-                self.block(start, coordinates, (ask, wanted, length), points.len(), evaluations);
+                self.evaluate_block(
+                    start,
+                    coordinates,
+                    (outputs, result_count, length),
+                    points.len(),
+                    evaluations,
+                );
             }
         }
     }
 }
 
-/// Blocks with at most this many points are walked point by point, because a tape computes all lanes of a block.
-const FEW: usize = 8;
-/// From this many points of a region on, its tape is faster than a walk per point.
-const SEVERAL: usize = 8;
+/// Maximum number of points of a block that are evaluated one by one, because a tape computes all lanes of a block.
+const MAX_SEPARATE_POINTS: usize = 8;
+/// Minimum number of points of a region for which its tape is faster than an evaluation per point.
+const MIN_TAPE_POINTS: usize = 8;
 
 impl Interpreted {
-    fn one_by_one(
+    fn evaluate_points(
         &self,
-        places: std::ops::Range<usize>,
+        indices: std::ops::Range<usize>,
         [x, y, z]: [&[f64]; 3],
-        (ask, wanted, length): (Outputs, usize, f64),
+        (outputs, result_count, length): (Outputs, usize, f64),
         evaluations: &mut Evaluations,
     ) {
         let mut results = [0.0; OUTPUTS];
-        for at in places {
-            let point = [x[at], y[at], z[at]];
-            self.walk.run(point, length, &mut evaluations.scratch, &mut results[..wanted]);
+        for index in indices {
+            let point = [x[index], y[index], z[index]];
+            self.plan.run(point, length, &mut evaluations.scratch, &mut results[..result_count]);
             if results[0] < 0.0 {
                 continue;
             }
-            evaluations.inside[at / LANES] |= 1 << (at % LANES);
-            put(evaluations, ask, |list, result| list[at] = results[result]);
+            evaluations.inside[index / LANES] |= 1 << (index % LANES);
+            store(evaluations, outputs, |list, result| list[index] = results[result]);
         }
     }
 
     #[inline(always)]
-    fn block(
+    fn evaluate_block(
         &self,
         start: usize,
         coordinates: [&[f64]; 3],
-        (ask, wanted, length): (Outputs, usize, f64),
+        (outputs, result_count, length): (Outputs, usize, f64),
         total: usize,
         evaluations: &mut Evaluations,
     ) {
         let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
         let mut owners = [-1.0; BLOCK];
         let count = BLOCK.min(total - start);
-        for (part, list) in block.iter_mut().zip(coordinates) {
-            part[..count].copy_from_slice(&list[start..start + count]);
+        for (component, list) in block.iter_mut().zip(coordinates) {
+            component[..count].copy_from_slice(&list[start..start + count]);
         }
         let points = (block.each_ref(), count);
-        self.walk.owners(points, length, &mut evaluations.lanes, &mut owners);
-        for (at, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
-            evaluations.inside[(start + at) / LANES] |= 1 << (at % LANES);
+        self.plan.owners(points, length, &mut evaluations.lanes, &mut owners);
+        for (index, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
+            evaluations.inside[(start + index) / LANES] |= 1 << (index % LANES);
         }
-        if ask == Outputs::INSIDE {
+        if outputs == Outputs::INSIDE {
             return;
         }
         // Fixed-size lists, since a haptic loop may not allocate.
-        let (mut left, mut own) = ([0; BLOCK], [0; BLOCK]);
-        let mut many = 0;
-        for at in (0..count).filter(|at| owners[*at] >= 0.0) {
-            left[many] = at;
-            many += 1;
+        let (mut remaining, mut owned) = ([0; BLOCK], [0; BLOCK]);
+        let mut remaining_count = 0;
+        for index in (0..count).filter(|index| owners[*index] >= 0.0) {
+            remaining[remaining_count] = index;
+            remaining_count += 1;
         }
         let mut results = [[0.0; BLOCK]; OUTPUTS];
-        while many > 0 {
-            let region = owners[left[0]];
-            let (mut ours, mut rest) = (0, 0);
-            for k in 0..many {
-                let at = left[k];
-                let (list, place) = match owners[at] == region {
-                    true => (&mut own, &mut ours),
-                    false => (&mut left, &mut rest),
+        while remaining_count > 0 {
+            let region = owners[remaining[0]];
+            let (mut owned_count, mut other_count) = (0, 0);
+            for k in 0..remaining_count {
+                let index = remaining[k];
+                let (list, count_in_list) = match owners[index] == region {
+                    true => (&mut owned, &mut owned_count),
+                    false => (&mut remaining, &mut other_count),
                 };
-                list[*place] = at;
-                *place += 1;
+                list[*count_in_list] = index;
+                *count_in_list += 1;
             }
-            let own = &own[..ours];
+            let owned = &owned[..owned_count];
             let mut gathered: [Lanes; 3] = [[0.0; BLOCK]; 3];
-            for (lane, at) in own.iter().enumerate() {
-                for (part, list) in gathered.iter_mut().zip(&block) {
-                    part[lane] = list[*at];
+            for (lane, index) in owned.iter().enumerate() {
+                for (component, list) in gathered.iter_mut().zip(&block) {
+                    component[lane] = list[*index];
                 }
             }
             results[0] = [region; BLOCK];
-            if own.len() < SEVERAL {
-                let mut one = [0.0; OUTPUTS];
-                for lane in 0..own.len() {
+            if owned.len() < MIN_TAPE_POINTS {
+                let mut values = [0.0; OUTPUTS];
+                for lane in 0..owned.len() {
                     let point = [0, 1, 2].map(|k| gathered[k][lane]);
-                    let one = &mut one[..wanted - 1];
-                    self.walk.evaluate(
+                    let values = &mut values[..result_count - 1];
+                    self.plan.evaluate(
                         region as usize,
                         point,
                         length,
                         &mut evaluations.scratch,
-                        one,
+                        values,
                     );
-                    for (result, value) in results[1..].iter_mut().zip(one) {
+                    for (result, value) in results[1..].iter_mut().zip(values) {
                         result[lane] = *value;
                     }
                 }
             } else {
                 let tape = &self.evaluations[region as usize];
-                let results = &mut results[1..wanted];
+                let results = &mut results[1..result_count];
                 tape.run(
-                    (gathered.each_ref(), own.len()),
+                    (gathered.each_ref(), owned.len()),
                     length,
                     &mut evaluations.registers,
                     results,
                 );
             }
-            put(evaluations, ask, |list, result| {
-                for (lane, at) in own.iter().enumerate() {
-                    list[start + at] = results[result][lane];
+            store(evaluations, outputs, |list, result| {
+                for (lane, index) in owned.iter().enumerate() {
+                    list[start + index] = results[result][lane];
                 }
             });
-            many = rest;
+            remaining_count = other_count;
         }
     }
 }
 
 /// Calls `copy` for each component of the requested outputs, with its list and the index of its result.
-fn put(evaluations: &mut Evaluations, ask: Outputs, mut copy: impl FnMut(&mut Vec<f64>, usize)) {
-    if ask.depth {
+fn store(
+    evaluations: &mut Evaluations,
+    outputs: Outputs,
+    mut copy: impl FnMut(&mut Vec<f64>, usize),
+) {
+    if outputs.depth {
         copy(&mut evaluations.depth, 1);
     }
-    if ask.magnitude {
+    if outputs.magnitude {
         copy(&mut evaluations.magnitude, 2);
     }
-    if ask.niceness {
+    if outputs.niceness {
         copy(&mut evaluations.niceness, 3);
     }
-    for part in 0..3 {
-        if ask.direction {
-            copy(&mut evaluations.direction[part], 4 + part);
+    for axis in 0..3 {
+        if outputs.direction {
+            copy(&mut evaluations.direction[axis], 4 + axis);
         }
-        if ask.gradient {
-            copy(&mut evaluations.gradient[part], 7 + part);
+        if outputs.gradient {
+            copy(&mut evaluations.gradient[axis], 7 + axis);
         }
     }
-    if ask.region {
+    if outputs.region {
         copy(&mut evaluations.region, 0);
     }
 }

@@ -78,36 +78,36 @@ pub trait Tool: Send + Sync {
     fn evaluate(
         &self,
         level: Level,
-        ask: Outputs,
+        outputs: Outputs,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     );
 
     /// Returns the derivatives of the evaluation at a point inside, by the formulas of the region that owns the point,
-    /// also on borders between regions. `room` is scratch memory, kept between calls.
-    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives;
+    /// also on borders between regions. `scratch` is memory kept between calls.
+    fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives;
 
     /// Returns an enclosure of the evaluation over a box of the tool's frame, or `None`.
     ///
     /// The enclosure holds in real arithmetic for the expressions as they are evaluated. Its slopes are taken from the
-    /// point `_at`, which lies in the box. `_sides` has both ends of the box along x, y and z; for a tool with an axis
-    /// the box lies in the half plane `y = 0`, `x ≥ 0`. `_room` is scratch memory, kept between calls.
+    /// point `_reference`, which lies in the box. `_sides` has both ends of the box along x, y and z; for a tool with an
+    /// axis the box lies in the half plane `y = 0`, `x ≥ 0`. `_scratch` is memory kept between calls.
     ///
     /// Returns `None` for a tool with a profile, about which more is known, and for a tool that does not support
     /// enclosures.
     fn enclose(
         &self,
         _sides: [[f64; 2]; 3],
-        _at: [f64; 3],
-        _room: &mut Evaluations,
+        _reference: [f64; 3],
+        _scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {
         None
     }
 
-    /// Reserves in `_felt` the memory that the tool itself keeps there between calls of [`Tool::evaluate`] and
+    /// Reserves in `_evaluations` the memory that the tool itself keeps there between calls of [`Tool::evaluate`] and
     /// [`Tool::derivatives`], so that they do not allocate. A tool that keeps nothing need not implement it.
-    fn reserve(&self, _felt: &mut Evaluations) {}
+    fn reserve(&self, _evaluations: &mut Evaluations) {}
 }
 
 /// Derivatives with respect to the position in the part's unit, in the tool's frame. Each matrix has one row per
@@ -124,7 +124,8 @@ pub struct Derivatives {
 impl Derivatives {
     /// Converts results computed at a [`Dual::point`] of the tool's own unit to derivatives in the part's unit.
     pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
-        let rows = |parts: [Dual; 3]| parts.map(|part| part.slope.map(|slope| slope / length));
+        let rows =
+            |vector: [Dual; 3]| vector.map(|component| component.slope.map(|slope| slope / length));
         Derivatives { direction: rows(direction), gradient: rows(gradient) }
     }
 }
@@ -219,33 +220,33 @@ impl PointBatch {
     /// Appends a point.
     pub fn push(&mut self, point: [f64; 3]) {
         self.make_room(1);
-        for (list, part) in self.next(0, 1).into_iter().zip(point) {
-            list[0] = part;
+        for (list, coordinate) in self.next(0, 1).into_iter().zip(point) {
+            list[0] = coordinate;
         }
         self.advance(1);
     }
 
     /// Reserves memory for `count` points in all, without touching it.
     pub(crate) fn reserve(&mut self, count: usize) {
-        let wanted = count.next_multiple_of(LANES);
-        self.lists.iter_mut().for_each(|list| reserve(list, wanted));
+        let capacity = count.next_multiple_of(LANES);
+        self.lists.iter_mut().for_each(|list| reserve(list, capacity));
     }
 
-    /// Makes room for `more` further points.
-    pub(crate) fn make_room(&mut self, more: usize) {
-        let wanted = (self.count + more).next_multiple_of(LANES);
-        if self.lists[0].len() < wanted {
-            self.lists.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+    /// Makes room for `additional` further points.
+    pub(crate) fn make_room(&mut self, additional: usize) {
+        let padded = (self.count + additional).next_multiple_of(LANES);
+        if self.lists[0].len() < padded {
+            self.lists.iter_mut().for_each(|list| list.resize(padded, 0.0));
         }
     }
 
-    /// Returns the slots for `count` points, coordinate by coordinate, after the points so far and `after` more. There
-    /// has to be [room](PointBatch::room) for them.
+    /// Returns the slots for `count` points, coordinate by coordinate, starting `offset` slots after the last point.
+    /// [`PointBatch::make_room`] has to be called first.
     #[inline(always)]
-    pub(crate) fn next(&mut self, after: usize, count: usize) -> [&mut [f64]; 3] {
-        let place = self.count + after..self.count + after + count;
+    pub(crate) fn next(&mut self, offset: usize, count: usize) -> [&mut [f64]; 3] {
+        let range = self.count + offset..self.count + offset + count;
         let [x, y, z] = &mut self.lists;
-        [&mut x[place.clone()], &mut y[place.clone()], &mut z[place]]
+        [&mut x[range.clone()], &mut y[range.clone()], &mut z[range]]
     }
 
     /// Records that `count` of the slots from [`PointBatch::next`] were written.
@@ -319,28 +320,28 @@ impl Evaluations {
     /// Returns the indices of the points inside, in ascending order.
     pub(crate) fn inside_indices(&self) -> impl Iterator<Item = usize> {
         self.inside.iter().enumerate().flat_map(|(block, bits)| {
-            let mut left = *bits;
+            let mut remaining = *bits;
             std::iter::from_fn(move || {
-                let lane = (left != 0).then(|| left.trailing_zeros() as usize)?;
-                left &= left - 1;
+                let lane = (remaining != 0).then(|| remaining.trailing_zeros() as usize)?;
+                remaining &= remaining - 1;
                 Some(block * LANES + lane)
             })
         })
     }
 
     /// Reserves memory for the requested outputs of `count` points, without touching it.
-    pub(crate) fn reserve_for(&mut self, count: usize, ask: Outputs) {
+    pub(crate) fn reserve_for(&mut self, count: usize, outputs: Outputs) {
         let blocks = count.div_ceil(LANES);
         reserve(&mut self.inside, blocks);
-        self.for_each_requested(ask, |list| reserve(list, blocks * LANES));
+        self.for_each_requested(outputs, |list| reserve(list, blocks * LANES));
     }
 
     /// Resizes the requested lists for the points, and marks no point as inside.
-    pub(crate) fn reserve(&mut self, points: &PointBatch, ask: Outputs) {
+    pub(crate) fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
         self.inside.resize(blocks, 0);
-        self.for_each_requested(ask, |list| {
+        self.for_each_requested(outputs, |list| {
             if list.len() < blocks * LANES {
                 list.resize(blocks * LANES, 0.0);
             }
@@ -349,18 +350,18 @@ impl Evaluations {
 
     /// Calls a function on every requested list.
     #[inline]
-    fn for_each_requested(&mut self, ask: Outputs, mut each: impl FnMut(&mut Vec<f64>)) {
-        let mut list = |list: &mut Vec<f64>, wanted: bool| {
-            if wanted {
-                each(list);
+    fn for_each_requested(&mut self, outputs: Outputs, mut f: impl FnMut(&mut Vec<f64>)) {
+        let mut visit = |list: &mut Vec<f64>, requested: bool| {
+            if requested {
+                f(list);
             }
         };
-        list(&mut self.depth, ask.depth);
-        list(&mut self.magnitude, ask.magnitude);
-        list(&mut self.niceness, ask.niceness);
-        self.direction.iter_mut().for_each(|part| list(part, ask.direction));
-        self.gradient.iter_mut().for_each(|part| list(part, ask.gradient));
-        list(&mut self.region, ask.region);
+        visit(&mut self.depth, outputs.depth);
+        visit(&mut self.magnitude, outputs.magnitude);
+        visit(&mut self.niceness, outputs.niceness);
+        self.direction.iter_mut().for_each(|component| visit(component, outputs.direction));
+        self.gradient.iter_mut().for_each(|component| visit(component, outputs.gradient));
+        visit(&mut self.region, outputs.region);
     }
 }
 
@@ -373,7 +374,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
 /// Returns the bits of a block that are points and not padding.
 pub(crate) fn present(count: usize, block: usize) -> u8 {
     match count - block * LANES {
-        full if full >= LANES => u8::MAX,
-        rest => (1 << rest) - 1,
+        remaining if remaining >= LANES => u8::MAX,
+        remaining => (1 << remaining) - 1,
     }
 }

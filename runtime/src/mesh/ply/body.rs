@@ -2,7 +2,7 @@
 
 use super::PlyError;
 use super::header::{self, Element, Encoding, Header, Property, Type};
-use crate::mesh::location::{SourceLocation, Tokens, number, shown};
+use crate::mesh::location::{SourceLocation, Tokens, number, printable};
 
 /// One element: the requested numbers and the items of the requested list.
 pub(super) struct Record<'r, const N: usize> {
@@ -16,38 +16,38 @@ pub(super) struct Record<'r, const N: usize> {
 pub(super) struct Body<'a, 'n> {
     name: &'n str,
     encoding: Encoding,
-    words: Tokens<'a>,
+    tokens: Tokens<'a>,
     length: usize,
     index: usize,
 }
 
 impl<'a, 'n> Body<'a, 'n> {
     pub(super) fn new(bytes: &'a [u8], name: &'n str) -> Result<(Header<'a>, Self), PlyError> {
-        let (header, words) = header::read(bytes, name)?;
+        let (header, tokens) = header::read(bytes, name)?;
         let encoding = header.encoding;
-        Ok((header, Body { name, encoding, words, length: bytes.len(), index: 0 }))
+        Ok((header, Body { name, encoding, tokens, length: bytes.len(), index: 0 }))
     }
 
-    /// Reads all elements of one kind, which must be next in the file. `take` receives the numbers of
-    /// the properties at the indices `wanted` and the items of the list property at index `list`; `None`
-    /// requests nothing.
+    /// Reads all elements of one kind, which must be next in the file. `visit` receives the numbers of
+    /// the properties at the indices `requested` and the items of the list property at index `list`;
+    /// `None` requests nothing.
     pub(super) fn read<const N: usize>(
         &mut self,
         element: &Element,
-        wanted: [Option<usize>; N],
+        requested: [Option<usize>; N],
         list: Option<usize>,
-        mut take: impl FnMut(Record<N>) -> Result<(), PlyError>,
+        mut visit: impl FnMut(Record<N>) -> Result<(), PlyError>,
     ) -> Result<(), PlyError> {
-        let (least, found) = (element.least_bytes(self.encoding), self.words.rest.len());
+        let (least, found) = (element.min_bytes(self.encoding), self.tokens.rest.len());
         if least > found as u128 {
-            let (file, element, count) = (self.file(), shown(element.name), element.count);
+            let (file, element, count) = (self.file(), printable(element.name), element.count);
             return Err(PlyError::Promised { file, element, count, least, found });
         }
         if element.properties.is_empty() {
             return Ok(());
         }
         let slots: Vec<Option<usize>> = (0..element.properties.len())
-            .map(|property| wanted.iter().position(|&wanted| wanted == Some(property)))
+            .map(|property| requested.iter().position(|&requested| requested == Some(property)))
             .collect();
         let mut items = Vec::new();
         for index in 0..element.count {
@@ -58,8 +58,8 @@ impl<'a, 'n> Body<'a, 'n> {
             for (at, (property, slot)) in element.properties.iter().zip(&slots).enumerate() {
                 match (property.length, slot) {
                     (Some(length), _) => {
-                        let into = (list == Some(at)).then_some(&mut items);
-                        self.list(element, property, length, place, into)?;
+                        let output = (list == Some(at)).then_some(&mut items);
+                        self.list(element, property, length, place, output)?;
                     }
                     (None, Some(slot)) => {
                         numbers[*slot] = self.number(element, property, property.value)?;
@@ -68,7 +68,7 @@ impl<'a, 'n> Body<'a, 'n> {
                 }
             }
             self.end_line()?;
-            take(Record { place, index, numbers, items: &items })?;
+            visit(Record { place, index, numbers, items: &items })?;
         }
         Ok(())
     }
@@ -76,7 +76,7 @@ impl<'a, 'n> Body<'a, 'n> {
     /// Checks that the file ends here.
     pub(super) fn end(mut self) -> Result<(), PlyError> {
         let place = self.start();
-        if self.words.rest.is_empty() {
+        if self.tokens.rest.is_empty() {
             Ok(())
         } else {
             Err(PlyError::Trailing { file: self.file(), place })
@@ -89,21 +89,21 @@ impl<'a, 'n> Body<'a, 'n> {
 
     fn start(&mut self) -> SourceLocation {
         if self.encoding == Encoding::Ascii {
-            self.words.skip_space();
+            self.tokens.skip_space();
         }
         self.place()
     }
 
     fn place(&self) -> SourceLocation {
         match self.encoding {
-            Encoding::Ascii => SourceLocation::Line(self.words.line),
-            _ => SourceLocation::Byte(self.length - self.words.rest.len()),
+            Encoding::Ascii => SourceLocation::Line(self.tokens.line),
+            _ => SourceLocation::Byte(self.length - self.tokens.rest.len()),
         }
     }
 
     fn end_line(&mut self) -> Result<(), PlyError> {
         if self.encoding == Encoding::Ascii
-            && let Some(word) = self.words.next_on_line()
+            && let Some(word) = self.tokens.next_on_line()
         {
             return Err(self.expected("the end of the line".to_owned(), Some(word)));
         }
@@ -116,21 +116,21 @@ impl<'a, 'n> Body<'a, 'n> {
         property: &Property,
         length: Type,
         place: SourceLocation,
-        into: Option<&mut Vec<f64>>,
+        output: Option<&mut Vec<f64>>,
     ) -> Result<(), PlyError> {
         let value = self.number(element, property, length)?;
-        let Some(count) = whole(value) else {
+        let Some(count) = to_u32(value) else {
             return Err(PlyError::Value {
                 file: self.file(),
                 place,
-                element: shown(element.name),
+                element: printable(element.name),
                 index: self.index,
-                property: format!("the length of {}", shown(property.name)),
+                property: format!("the length of {}", printable(property.name)),
                 value,
                 rule: "a whole number, 0 or more, below 2^32",
             });
         };
-        match into {
+        match output {
             None => self.skip(element, property, count as usize),
             Some(items) => (0..count).try_for_each(|_| {
                 items.push(self.number(element, property, property.value)?);
@@ -143,13 +143,13 @@ impl<'a, 'n> Body<'a, 'n> {
         &mut self,
         element: &Element,
         property: &Property,
-        of: Type,
+        kind: Type,
     ) -> Result<f64, PlyError> {
         if self.encoding == Encoding::Ascii {
             let word = self.word(element, property)?;
             return number(word).ok_or_else(|| self.no_number(property, Some(word)));
         }
-        Ok(match of {
+        Ok(match kind {
             Type::I8 => f64::from(i8::from_le_bytes(self.bytes(element)?)),
             Type::U8 => f64::from(u8::from_le_bytes(self.bytes(element)?)),
             Type::I16 => f64::from(i16::from_le_bytes(self.bytes(element)?)),
@@ -172,24 +172,24 @@ impl<'a, 'n> Body<'a, 'n> {
             return (0..count).try_for_each(|_| self.word(element, property).map(drop));
         }
         let bytes = count.saturating_mul(property.value.bytes());
-        self.words.rest = self.words.rest.get(bytes..).ok_or_else(|| self.ended(element))?;
+        self.tokens.rest = self.tokens.rest.get(bytes..).ok_or_else(|| self.truncated(element))?;
         Ok(())
     }
 
     fn word(&mut self, element: &Element, property: &Property) -> Result<&'a [u8], PlyError> {
-        match self.words.next_on_line() {
+        match self.tokens.next_on_line() {
             Some(word) => Ok(word),
-            None if self.words.rest.trim_ascii().is_empty() => Err(self.ended(element)),
+            None if self.tokens.rest.trim_ascii().is_empty() => Err(self.truncated(element)),
             None => Err(self.no_number(property, None)),
         }
     }
 
     /// Reads the next `N` bytes and returns them in little-endian order.
     fn bytes<const N: usize>(&mut self, element: &Element) -> Result<[u8; N], PlyError> {
-        let Some((bytes, rest)) = self.words.rest.split_first_chunk() else {
-            return Err(self.ended(element));
+        let Some((bytes, rest)) = self.tokens.rest.split_first_chunk() else {
+            return Err(self.truncated(element));
         };
-        self.words.rest = rest;
+        self.tokens.rest = rest;
         let mut bytes = *bytes;
         if self.encoding == Encoding::BigEndian {
             bytes.reverse();
@@ -198,15 +198,16 @@ impl<'a, 'n> Body<'a, 'n> {
     }
 
     fn no_number(&self, property: &Property, found: Option<&[u8]>) -> PlyError {
-        self.expected(format!("a number for `{}`", shown(property.name)), found)
+        self.expected(format!("a number for `{}`", printable(property.name)), found)
     }
 
     fn expected(&self, expected: String, found: Option<&[u8]>) -> PlyError {
-        let found = found.map_or("the end of the line".to_owned(), |w| format!("`{}`", shown(w)));
-        PlyError::Expected { file: self.file(), line: self.words.line, expected, found }
+        let found =
+            found.map_or("the end of the line".to_owned(), |w| format!("`{}`", printable(w)));
+        PlyError::Expected { file: self.file(), line: self.tokens.line, expected, found }
     }
 
-    fn ended(&self, element: &Element) -> PlyError {
+    fn truncated(&self, element: &Element) -> PlyError {
         let place = match self.place() {
             SourceLocation::Byte(_) => SourceLocation::Byte(self.length),
             line => line,
@@ -214,7 +215,7 @@ impl<'a, 'n> Body<'a, 'n> {
         PlyError::Ended {
             file: self.file(),
             place,
-            element: shown(element.name),
+            element: printable(element.name),
             index: self.index,
             count: element.count,
         }
@@ -222,7 +223,7 @@ impl<'a, 'n> Body<'a, 'n> {
 }
 
 /// Converts a number to `u32`, if it is integral and in range.
-pub(super) fn whole(value: f64) -> Option<u32> {
-    let whole = value as u32;
-    (f64::from(whole) == value).then_some(whole)
+pub(super) fn to_u32(value: f64) -> Option<u32> {
+    let integer = value as u32;
+    (f64::from(integer) == value).then_some(integer)
 }

@@ -1,7 +1,7 @@
 //! Reader of a PLY file's header.
 
 use super::PlyError;
-use crate::mesh::location::{Tokens, shown};
+use crate::mesh::location::{Tokens, printable};
 use std::collections::HashSet;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -65,19 +65,19 @@ pub(super) struct Element<'a> {
 impl Element<'_> {
     /// Returns the index of the scalar property with the given name.
     pub(super) fn number(&self, name: &str) -> Option<usize> {
-        let is_it = |p: &Property| p.name == name.as_bytes() && p.length.is_none();
-        self.properties.iter().position(is_it)
+        let matches = |p: &Property| p.name == name.as_bytes() && p.length.is_none();
+        self.properties.iter().position(matches)
     }
 
     /// Returns the index of the list property with the given name.
     pub(super) fn list(&self, name: &str) -> Option<usize> {
-        let is_it = |p: &Property| p.name == name.as_bytes() && p.length.is_some();
-        self.properties.iter().position(is_it)
+        let matches = |p: &Property| p.name == name.as_bytes() && p.length.is_some();
+        self.properties.iter().position(matches)
     }
 
     /// Returns the minimum number of bytes for all of these elements, to check `count` against the file
     /// length.
-    pub(super) fn least_bytes(&self, encoding: Encoding) -> u128 {
+    pub(super) fn min_bytes(&self, encoding: Encoding) -> u128 {
         let count = self.count as u128;
         if encoding == Encoding::Ascii {
             // A digit and a separator per value, except that the last value of the file needs no
@@ -102,8 +102,10 @@ impl<'a> Header<'a> {
 
 /// Returns whether a file begins as PLY does.
 pub(in crate::mesh) fn begins(bytes: &[u8]) -> bool {
-    let mut words = Tokens::new(bytes);
-    words.rest.starts_with(b"ply") && words.next() == Some(b"ply") && words.next_on_line().is_none()
+    let mut tokens = Tokens::new(bytes);
+    tokens.rest.starts_with(b"ply")
+        && tokens.next() == Some(b"ply")
+        && tokens.next_on_line().is_none()
 }
 
 /// Reads the header and returns it with the tokens that follow it.
@@ -111,24 +113,24 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Token
     if !begins(bytes) {
         return Err(PlyError::NotPly { file: name.to_owned() });
     }
-    let mut lines = Lines { words: Tokens::new(bytes), name };
-    lines.words.skip_line();
-    let ends_in_cr = matches!(lines.words.rest, [b'\r', next, ..] if *next != b'\n');
+    let mut lines = Lines { tokens: Tokens::new(bytes), name };
+    lines.tokens.skip_line();
+    let ends_in_cr = matches!(lines.tokens.rest, [b'\r', next, ..] if *next != b'\n');
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
     // The names of all elements, and of the properties of the last.
     let (mut names, mut properties) = (HashSet::new(), HashSet::new());
     loop {
-        lines.words.skip_space();
-        let keyword = lines.words.next_on_line();
+        lines.tokens.skip_space();
+        let keyword = lines.tokens.next_on_line();
         match keyword {
-            Some(b"comment" | b"obj_info") => lines.words.skip_line(),
-            Some(b"format") if encoding.is_some() => return Err(lines.twice(b"format")),
+            Some(b"comment" | b"obj_info") => lines.tokens.skip_line(),
+            Some(b"format") if encoding.is_some() => return Err(lines.duplicate(b"format")),
             Some(b"format") => encoding = Some(lines.format()?),
             Some(b"element") => {
                 let element = lines.element()?;
                 if !names.insert(element.name) {
-                    return Err(lines.twice(element.name));
+                    return Err(lines.duplicate(element.name));
                 }
                 properties.clear();
                 elements.push(element);
@@ -139,7 +141,7 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Token
                     return Err(lines.expected("`element` before the first `property`", keyword));
                 };
                 if !properties.insert(property.name) {
-                    return Err(lines.twice(property.name));
+                    return Err(lines.duplicate(property.name));
                 }
                 element.properties.push(property);
             }
@@ -156,51 +158,56 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Token
     } else {
         // The first byte of the body may look like part of the line end, so strip exactly one.
         let line_end: &[u8] = if ends_in_cr { b"\r" } else { b"\r\n" };
-        let blanks = |byte: &u8| *byte == b' ' || *byte == b'\t';
-        let rest = lines.words.rest;
-        let rest = &rest[rest.iter().take_while(|byte| blanks(byte)).count()..];
+        let is_blank = |byte: &u8| *byte == b' ' || *byte == b'\t';
+        let rest = lines.tokens.rest;
+        let rest = &rest[rest.iter().take_while(|byte| is_blank(byte)).count()..];
         let body = rest.strip_prefix(line_end).or_else(|| rest.strip_prefix(b"\n"));
         let Some(body) = body else {
             return Err(lines.expected("the end of the line", Some(rest)));
         };
-        lines.words.rest = body;
+        lines.tokens.rest = body;
     }
-    Ok((Header { encoding, elements }, lines.words))
+    Ok((Header { encoding, elements }, lines.tokens))
 }
 
 /// A parser for the header's lines, with one function per phrase of the grammar.
 struct Lines<'a, 'n> {
-    words: Tokens<'a>,
+    tokens: Tokens<'a>,
     name: &'n str,
 }
 
 impl<'a> Lines<'a, '_> {
     fn expected(&self, expected: &str, found: Option<&[u8]>) -> PlyError {
-        let place = if self.words.rest.is_empty() { "the file" } else { "the line" };
+        let place = if self.tokens.rest.is_empty() { "the file" } else { "the line" };
         PlyError::Expected {
             file: self.name.to_owned(),
-            line: self.words.line,
+            line: self.tokens.line,
             expected: expected.to_owned(),
-            found: found.map_or(format!("the end of {place}"), |word| format!("`{}`", shown(word))),
+            found: found
+                .map_or(format!("the end of {place}"), |word| format!("`{}`", printable(word))),
         }
     }
 
-    fn twice(&self, name: &[u8]) -> PlyError {
-        PlyError::Twice { file: self.name.to_owned(), line: self.words.line, name: shown(name) }
+    fn duplicate(&self, name: &[u8]) -> PlyError {
+        PlyError::Twice {
+            file: self.name.to_owned(),
+            line: self.tokens.line,
+            name: printable(name),
+        }
     }
 
-    /// Reads a word and converts it with `meaning`, or returns an error that names the expected content.
+    /// Reads a word and converts it with `parse`, or returns an error that names the expected content.
     fn word<T>(
         &mut self,
         expected: &str,
-        meaning: impl FnOnce(&'a [u8]) -> Option<T>,
+        parse: impl FnOnce(&'a [u8]) -> Option<T>,
     ) -> Result<T, PlyError> {
-        let word = self.words.next_on_line();
-        word.and_then(meaning).ok_or_else(|| self.expected(expected, word))
+        let word = self.tokens.next_on_line();
+        word.and_then(parse).ok_or_else(|| self.expected(expected, word))
     }
 
     fn end(&mut self) -> Result<(), PlyError> {
-        match self.words.next_on_line() {
+        match self.tokens.next_on_line() {
             None => Ok(()),
             word => Err(self.expected("the end of the line", word)),
         }
@@ -219,8 +226,8 @@ impl<'a> Lines<'a, '_> {
 
     fn element(&mut self) -> Result<Element<'a>, PlyError> {
         let name = self.word("the element's name", Some)?;
-        let parse = |word: &[u8]| str::from_utf8(word).ok()?.parse().ok();
-        let count = self.word("how many elements there are", parse)?;
+        let parse_count = |word: &[u8]| str::from_utf8(word).ok()?.parse().ok();
+        let count = self.word("how many elements there are", parse_count)?;
         Ok(Element { name, count, properties: Vec::new() })
     }
 

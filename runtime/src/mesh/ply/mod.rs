@@ -10,10 +10,10 @@ mod tests;
 
 use nalgebra::{Point3, Vector3};
 
-use self::body::{Body, Record, whole};
+use self::body::{Body, Record, to_u32};
 use self::header::{Element, Header};
 use super::faces::Faces;
-use super::location::shown;
+use super::location::printable;
 use super::outlier::{Outlier, find_outlier};
 use super::{Mesh, is_valid_coordinate};
 use crate::unit::Unit;
@@ -22,10 +22,10 @@ pub use self::error::PlyError;
 pub(super) use self::header::begins;
 
 /// Names that exporters give to the list of a face's corners.
-const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Elements that describe surfaces too, but are not supported.
-const STRIPS: [&[u8]; 3] = [b"tristrips", b"trifans", b"patches"];
+const UNSUPPORTED_ELEMENTS: [&[u8]; 3] = [b"tristrips", b"trifans", b"patches"];
 
 const COORDINATE_RULE: &str = "finite and within 1e60";
 
@@ -75,7 +75,7 @@ impl OrientedPoints {
                 continue;
             }
             body.read(element, [x, y, z, nx, ny, nz, face, area], None, |record| {
-                points.places.push(place(&record, name)?);
+                points.places.push(position(&record, name)?);
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
                 let normal = Vector3::new(nx, ny, nz);
                 let norm = normal.norm();
@@ -86,13 +86,13 @@ impl OrientedPoints {
                 points.normals.push(normal / norm);
                 if let Some(faces) = &mut points.faces {
                     let rule = "a whole number, 0 or more, below 2^32";
-                    let odd = || value(&record, "vertex", "face", face, rule, name);
-                    faces.push(whole(face).ok_or_else(odd)?);
+                    let error = || invalid_value(&record, "vertex", "face", face, rule, name);
+                    faces.push(to_u32(face).ok_or_else(error)?);
                 }
                 if let Some(areas) = &mut points.areas {
                     if !(is_valid_coordinate(area) && area >= 0.0) {
                         let rule = "a finite area from 0 to 1e60";
-                        return Err(value(&record, "vertex", "area", area, rule, name));
+                        return Err(invalid_value(&record, "vertex", "area", area, rule, name));
                     }
                     areas.push(area);
                 }
@@ -125,15 +125,17 @@ impl Mesh {
         let (vertex, xyz) = vertex(&header, name)?;
         let face = header.element("face");
         let list = face.and_then(|face| {
-            let name = LISTS.into_iter().find(|name| face.list(name).is_some())?;
+            let name = CORNER_LISTS.into_iter().find(|name| face.list(name).is_some())?;
             Some((face, name))
         });
         let Some((face, list)) = list else {
             return Err(PlyError::NoFaces { file: file() });
         };
-        let strips = header.elements.iter().find(|element| STRIPS.contains(&element.name));
-        let second = LISTS.into_iter().find(|other| *other != list && face.list(other).is_some());
-        let unread = strips.map(|strips| shown(strips.name)).or(second.map(str::to_owned));
+        let strips =
+            header.elements.iter().find(|element| UNSUPPORTED_ELEMENTS.contains(&element.name));
+        let second =
+            CORNER_LISTS.into_iter().find(|other| *other != list && face.list(other).is_some());
+        let unread = strips.map(|strips| printable(strips.name)).or(second.map(str::to_owned));
         if let Some(unread) = unread {
             return Err(PlyError::Unread { file: file(), unread });
         }
@@ -143,7 +145,7 @@ impl Mesh {
         for element in &header.elements {
             if element.name == vertex.name {
                 body.read(element, xyz, None, |record| {
-                    vertices.push(place(&record, name)?);
+                    vertices.push(position(&record, name)?);
                     Ok(())
                 })?;
             } else if element.name == face.name {
@@ -163,9 +165,9 @@ impl Mesh {
         if let Some(place) = faces.folded(&vertices) {
             return Err(PlyError::Folded { file: file(), place });
         }
-        let (used, corners) = faces.used(&vertices);
-        if let Some((at, _, stray)) = find_outlier(&corners) {
-            return Err(stray_vertex(bytes, name, used[at], stray));
+        let (used_vertices, corners) = faces.used_vertices(&vertices);
+        if let Some((index, _, stray)) = find_outlier(&corners) {
+            return Err(stray_vertex(bytes, name, used_vertices[index], stray));
         }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| PlyError::Mesh { file: file(), source })
@@ -174,7 +176,7 @@ impl Mesh {
 
 /// Returns the error for a vertex far outside the others in a valid file.
 fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Outlier) -> PlyError {
-    let found = |record: Record<0>| match record.index == vertex {
+    let check = |record: Record<0>| match record.index == vertex {
         true => Err(PlyError::Stray { file: name.to_owned(), place: record.place, vertex, stray }),
         false => Ok(()),
     };
@@ -182,15 +184,15 @@ fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Outlier) -> PlyE
         let (header, mut body) = Body::new(bytes, name)?;
         for element in &header.elements {
             if element.name == b"vertex" {
-                body.read(element, [], None, found)?;
+                body.read(element, [], None, check)?;
             } else {
                 body.read(element, [], None, |_| Ok(()))?;
             }
         }
         Ok(())
     };
-    let nowhere = PlyError::NoPoints { file: name.to_owned() };
-    search().err().unwrap_or(nowhere)
+    let fallback = PlyError::NoPoints { file: name.to_owned() };
+    search().err().unwrap_or(fallback)
 }
 
 /// Returns whether a PLY file holds faces; if so it is a mesh, otherwise points.
@@ -213,16 +215,16 @@ fn vertex<'h, 'a>(
 }
 
 /// Returns the position of a vertex, from the first three numbers of its record.
-fn place<const N: usize>(record: &Record<N>, name: &str) -> Result<Point3<f64>, PlyError> {
+fn position<const N: usize>(record: &Record<N>, name: &str) -> Result<Point3<f64>, PlyError> {
     let axes = ["x", "y", "z"].iter().zip(record.numbers);
     for (axis, coordinate) in axes.clone() {
         if !is_valid_coordinate(coordinate) {
-            return Err(value(record, "vertex", axis, coordinate, COORDINATE_RULE, name));
+            return Err(invalid_value(record, "vertex", axis, coordinate, COORDINATE_RULE, name));
         }
     }
-    let mut place = Point3::origin();
-    place.iter_mut().zip(axes).for_each(|(into, (_, coordinate))| *into = coordinate);
-    Ok(place)
+    let mut position = Point3::origin();
+    position.iter_mut().zip(axes).for_each(|(target, (_, coordinate))| *target = coordinate);
+    Ok(position)
 }
 
 /// Collects the vertex indices of a face and checks them against the number of vertices.
@@ -237,9 +239,9 @@ fn corners_of(
     let file = || name.to_owned();
     corners.clear();
     for &item in record.items {
-        let Some(vertex) = whole(item) else {
+        let Some(vertex) = to_u32(item) else {
             let rule = "the number of a vertex, counted from 0";
-            return Err(value(record, "face", list, item, rule, name));
+            return Err(invalid_value(record, "face", list, item, rule, name));
         };
         if vertex as usize >= vertices {
             return Err(PlyError::Index { file: file(), place, face, vertex, vertices });
@@ -252,7 +254,7 @@ fn corners_of(
     }
 }
 
-fn value<const N: usize>(
+fn invalid_value<const N: usize>(
     record: &Record<N>,
     element: &str,
     property: &str,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::id::TriangleId;
 use crate::mesh::shapes;
-use crate::mesh::tests::mangled;
+use crate::mesh::tests::damaged;
 use rand_core::SeedableRng;
 
 const UNIT: Unit = Unit::Millimetre;
@@ -105,14 +105,14 @@ fn cloud_file(encoding: &'static str, points: &[([f32; 6], i32, f64)]) -> Vec<u8
     file.bytes
 }
 
-/// Returns a triangle in ASCII with `change` replaced by `into` in its header or body.
-fn ascii(change: &str, into: &str) -> String {
+/// Returns a triangle in ASCII with `original` replaced by `replacement` in its header or body.
+fn ascii(original: &str, replacement: &str) -> String {
     let file = format!(
         "ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 1\nproperty list uchar int \
          vertex_index\nend_header\n0 0 0\n.5 0 0\n0 2. 1e-1\n3 0 1 2\n"
     );
-    assert!(file.contains(change));
-    file.replacen(change, into, 1)
+    assert!(file.contains(original));
+    file.replacen(original, replacement, 1)
 }
 
 fn refusal(bytes: impl AsRef<[u8]>) -> String {
@@ -166,7 +166,7 @@ fn reads_points_in_every_encoding() {
 }
 
 #[test]
-fn reads_ascii_in_every_dress() {
+fn reads_ascii_variants() {
     let expected = Mesh::from_ply(ascii("ply", "ply").as_bytes(), "", UNIT).expect("plain");
     assert_eq!(expected.triangle(TriangleId(0))[2], Point3::new(0.0, 2.0, 0.1));
     for text in [
@@ -185,7 +185,7 @@ fn reads_ascii_in_every_dress() {
 }
 
 #[test]
-fn binary_begins_after_one_end_of_line() {
+fn binary_body_begins_after_one_line_end() {
     // The first byte after the header could be taken for a part of it.
     for end in ["\n", "\r\n", "\r"] {
         let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex 1\n{CLOUD}");
@@ -199,7 +199,7 @@ fn binary_begins_after_one_end_of_line() {
 }
 
 #[test]
-fn polygons_are_fanned_unless_that_folds_them() {
+fn fans_polygons_unless_they_fold() {
     let with = |corners: &str, y: f64| {
         format!(
             "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\nelement \
@@ -218,7 +218,7 @@ fn polygons_are_fanned_unless_that_folds_them() {
 }
 
 #[test]
-fn doubled_vertices_are_one() {
+fn welds_duplicate_vertices() {
     let mesh = cuboid();
     let mut file = "ply\nformat ascii 1.0\nelement vertex 36\n".to_owned()
         + XYZ
@@ -230,10 +230,10 @@ fn doubled_vertices_are_one() {
 }
 
 #[test]
-fn says_what_is_wrong_with_a_header_and_where() {
+fn header_errors_name_the_defect_and_the_line() {
     assert!(refusal("").contains("part.ply is no PLY file"));
     assert!(refusal("plyformat ascii").contains("is no PLY file"));
-    for (change, into, line, says) in [
+    for (original, replacement, line, expected) in [
         ("format ascii", "format utf8", 2, "`binary_big_endian`, found `utf8`"),
         ("1.0", "2.0", 2, "the version 1.0, found `2.0`"),
         (" 1.0", "", 2, "the version 1.0, found the end of the line"),
@@ -254,17 +254,20 @@ fn says_what_is_wrong_with_a_header_and_where() {
         ("uchar int", "uchar bit", 8, "the type of the list's items, found `bit`"),
         ("end_header", "end_header 1", 9, "the end of the line, found `1`"),
     ] {
-        let message = refusal(ascii(change, into));
-        assert!(message.starts_with(&format!("part.ply, line {line}: ")), "{into}: {message}");
-        assert!(message.contains(says), "{into}: {message}");
+        let message = refusal(ascii(original, replacement));
+        assert!(
+            message.starts_with(&format!("part.ply, line {line}: ")),
+            "{replacement}: {message}"
+        );
+        assert!(message.contains(expected), "{replacement}: {message}");
     }
     let cut = refusal("ply\nformat ascii 1.0");
     assert!(cut.contains("line 2: expected a line of the header") && cut.contains("the file"));
 }
 
 #[test]
-fn says_what_is_missing() {
-    for (change, into, says) in [
+fn errors_name_missing_elements() {
+    for (original, replacement, expected) in [
         ("float x", "float u", "has no points"),
         ("element vertex", "element vertices", "has no points"),
         ("vertex_index", "corners", "has no faces"),
@@ -272,8 +275,8 @@ fn says_what_is_missing() {
         ("element face 1", "element face 0", "goes on at line 13"),
         ("element face 1", "element edge 1", "has no faces"),
     ] {
-        let message = refusal(ascii(change, into));
-        assert!(message.contains(says), "{into}: {message}");
+        let message = refusal(ascii(original, replacement));
+        assert!(message.contains(expected), "{replacement}: {message}");
     }
     let no_faces = ascii("element face 1", "element face 0").replace("3 0 1 2\n", "");
     assert!(refusal(&no_faces).contains("has no faces"));
@@ -282,8 +285,8 @@ fn says_what_is_missing() {
 }
 
 #[test]
-fn says_what_is_wrong_with_a_body_and_where() {
-    for (change, into, says) in [
+fn body_errors_name_the_defect_and_the_location() {
+    for (original, replacement, expected) in [
         (".5 0 0", ".5 0 zero", "line 11: expected a number for `z`, found `zero`"),
         (".5 0 0", ".5 0", "line 11: expected a number for `z`, found the end of the line"),
         (".5 0 0", ".5 0 0 0", "line 11: expected the end of the line, found `0`"),
@@ -300,11 +303,11 @@ fn says_what_is_wrong_with_a_body_and_where() {
         ("3 0 1 2", "3 0 1 1", "part.ply: none of the mesh's 1 triangles"),
         ("vertex 3", "vertex 1000000000000000000", "1000000000000000000 of `vertex` take 59999"),
     ] {
-        let message = refusal(ascii(change, into));
-        assert!(message.contains(says), "{into}: {message}");
+        let message = refusal(ascii(original, replacement));
+        assert!(message.contains(expected), "{replacement}: {message}");
     }
     let (good, inf) = ([1.0, 0.0, 0.0, 0.0, 0.0, 1.0], f32::INFINITY);
-    for (normal, face, area, says) in [
+    for (normal, face, area, expected) in [
         (
             [0.0, 0.0, 0.0],
             0,
@@ -319,27 +322,27 @@ fn says_what_is_wrong_with_a_body_and_where() {
         ([0.0, 0.0, 1.0], 0, 1e308, "but must be a finite area from 0 to 1e60"),
     ] {
         let [x, y, z] = normal;
-        let odd = [(good, 0, 1.0), ([0.0, 0.0, 0.0, x, y, z], face, area)];
+        let points = [(good, 0, 1.0), ([0.0, 0.0, 0.0, x, y, z], face, area)];
         for encoding in ENCODINGS {
-            let bytes = cloud_file(encoding, &odd);
-            let place = match encoding {
+            let bytes = cloud_file(encoding, &points);
+            let location = match encoding {
                 "ascii" => "line 16: ".to_owned(),
                 _ => format!("byte {}: ", bytes.len() - 36),
             };
             let message = cloud_refusal(bytes);
-            assert!(message.contains(says) && message.contains(&place), "{message}");
+            assert!(message.contains(expected) && message.contains(&location), "{message}");
         }
     }
 }
 
 #[test]
-fn huge_counts_allocate_nothing() {
-    for (count, least) in [("1000000000000000000", 36), ("18446744073709551615", 664)] {
+fn huge_counts_do_not_allocate() {
+    for (count, min_bytes) in [("1000000000000000000", 36), ("18446744073709551615", 664)] {
         for encoding in ENCODINGS {
             let header = format!("element vertex {count}\n{CLOUD}");
             let message = cloud_refusal(Writer::new(encoding, &header).bytes);
             assert!(message.contains(&format!("{count} of `vertex` take ")), "{message}");
-            let binary = message.contains(&format!("take {least}"));
+            let binary = message.contains(&format!("take {min_bytes}"));
             assert_eq!(binary, encoding != "ascii", "{message}");
         }
     }
@@ -355,7 +358,7 @@ fn huge_counts_allocate_nothing() {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_refused() {
+fn rejects_truncated_files() {
     for encoding in ENCODINGS {
         let mesh = mesh_file(encoding);
         let cloud = cloud_file(encoding, &[([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 1, 0.5)]);
@@ -373,17 +376,20 @@ fn a_file_cut_anywhere_is_refused() {
 }
 
 #[test]
-fn survives_any_bytes() {
+fn damaged_files_do_not_panic() {
     let mut random = rand_pcg::Pcg64::seed_from_u64(1);
     let words: [&[u8]; 8] =
         [b"9", b" ", b"\r\n", b"1e400", b"list", b"\0", b"element a 9\n", b"property int q\n"];
     for encoding in ENCODINGS {
         for seed in [mesh_file(encoding), cloud_file(encoding, &[([1.0; 6], 1, 0.5); 3])] {
             for _ in 0..2000 {
-                let bytes = mangled(&seed, &words, &mut random);
+                let bytes = damaged(&seed, &words, &mut random);
                 if let Ok(mesh) = Mesh::from_ply(&bytes, "", UNIT) {
-                    let survey = mesh.diagnostics();
-                    assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
+                    let diagnostics = mesh.diagnostics();
+                    assert!(
+                        diagnostics.area > 0.0 && diagnostics.area.is_finite(),
+                        "{diagnostics:?}"
+                    );
                 }
                 if let Ok(points) = OrientedPoints::from_ply(&bytes, "") {
                     assert!(points.normals.iter().all(|n| (n.norm() - 1.0).abs() < 1e-12));
@@ -396,18 +402,19 @@ fn survives_any_bytes() {
 
 /// Checks that triangle strips and a second list of corners are refused as unread surfaces.
 #[test]
-fn a_surface_that_is_not_read_is_refused() {
+fn rejects_unsupported_surfaces() {
     let vertices = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     let face = "element face 1\nproperty list uchar int vertex_index\n";
     let body = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    let refused = |header: String| {
-        let found = Mesh::from_ply(header.as_bytes(), "a.ply", Unit::Millimetre);
-        found.expect_err("a surface that is not read").to_string()
+    let refusal = |header: String| {
+        let result = Mesh::from_ply(header.as_bytes(), "a.ply", Unit::Millimetre);
+        result.expect_err("a surface that is not read").to_string()
     };
     let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
-    let said = refused(format!("{vertices}{face}{strips}{body}4 0 1 2 -1\n"));
-    assert!(said.contains("`tristrips`"), "{said}");
+    let message = refusal(format!("{vertices}{face}{strips}{body}4 0 1 2 -1\n"));
+    assert!(message.contains("`tristrips`"), "{message}");
     let lists = format!("{face}property list uchar int vertex_indices\n");
-    let said = refused(format!("{vertices}{lists}{}", body.replace("3 0 1 2", "3 0 1 2 3 0 1 2")));
-    assert!(said.contains("has a surface in `vertex_ind"), "{said}");
+    let message =
+        refusal(format!("{vertices}{lists}{}", body.replace("3 0 1 2", "3 0 1 2 3 0 1 2")));
+    assert!(message.contains("has a surface in `vertex_ind"), "{message}");
 }

@@ -8,8 +8,8 @@ pub(super) struct Interval {
 }
 
 pub(super) const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
-pub(super) const NOTHING: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
-pub(super) const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+pub(super) const EMPTY: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
+pub(super) const ENTIRE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
 impl Interval {
     pub(super) fn point(value: f64) -> Interval {
@@ -17,9 +17,9 @@ impl Interval {
     }
 
     /// Rounds outward. Returns all numbers if an end is NaN.
-    pub(super) fn out(low: f64, high: f64) -> Interval {
+    pub(super) fn outward(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
-            return EVERYTHING;
+            return ENTIRE;
         }
         Interval { low: low.next_down(), high: high.next_up() }
     }
@@ -32,7 +32,7 @@ impl Interval {
         // A sum with 0 is exact.
         match (self, other) {
             (ZERO, sum) | (sum, ZERO) => sum,
-            _ => Interval::out(self.low + other.low, self.high + other.high),
+            _ => Interval::outward(self.low + other.low, self.high + other.high),
         }
     }
 
@@ -53,27 +53,27 @@ impl Interval {
             product(self.high, other.high),
         ];
         // A product with ±1 is exact, and many slopes are ±1.
-        if [self, other].iter().any(|one| one.low == one.high && one.low.abs() == 1.0) {
+        if [self, other].iter().any(|factor| factor.low == factor.high && factor.low.abs() == 1.0) {
             return Interval { low: ends[0].min(ends[3]), high: ends[0].max(ends[3]) };
         }
         let low = ends.into_iter().fold(f64::INFINITY, f64::min);
-        Interval::out(low, ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
+        Interval::outward(low, ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
     pub(super) fn reciprocal(self) -> Interval {
         if self.low <= 0.0 && self.high >= 0.0 {
-            return EVERYTHING;
+            return ENTIRE;
         }
-        Interval::out(1.0 / self.high, 1.0 / self.low)
+        Interval::outward(1.0 / self.high, 1.0 / self.low)
     }
 
     /// Returns the square root. The argument is taken as non-negative, even if rounding made its lower end negative.
     pub(super) fn sqrt(self) -> Interval {
-        let root = Interval::out(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
+        let root = Interval::outward(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
         Interval { low: root.low.max(0.0), ..root }
     }
 
-    pub(super) fn lesser(self, other: Interval) -> Interval {
+    pub(super) fn min(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 

@@ -13,7 +13,7 @@ pub use enclosed::EvaluationEnclosure;
 pub use ternary::Ternary;
 
 use super::Lane;
-use interval::{Interval, NOTHING, ZERO};
+use interval::{EMPTY, Interval, ZERO};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use ternary::{Choice, Choices, LinearEnclosure};
 
@@ -32,7 +32,7 @@ enum Form {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     value: Interval,
-    course: LinearEnclosure,
+    linear: LinearEnclosure,
     /// The alternatives, if an undecided comparison selected the value.
     choices: Choices,
     /// For region indices: the possible regions up to 63, one bit each; the last bit stands for all larger ones.
@@ -41,10 +41,10 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    const NOTHING: Enclosure = {
-        let course = LinearEnclosure { at: NOTHING, slope: [NOTHING; 3] };
+    const EMPTY: Enclosure = {
+        let linear = LinearEnclosure { at: EMPTY, slope: [EMPTY; 3] };
         let choices = Choices::None;
-        Enclosure { value: NOTHING, course, choices, regions: 0, form: Form::Any }
+        Enclosure { value: EMPTY, linear, choices, regions: 0, form: Form::Any }
     };
 
     /// Returns an enclosure of a constant.
@@ -54,13 +54,13 @@ impl Enclosure {
     }
 
     /// Returns the coordinates of a box, given both ends of each side and a reference point in the box.
-    pub fn of_box(sides: [[f64; 2]; 3], at: [f64; 3]) -> [Enclosure; 3] {
+    pub fn of_box(sides: [[f64; 2]; 3], reference: [f64; 3]) -> [Enclosure; 3] {
         [0, 1, 2].map(|axis| {
             let [low, high] = sides[axis];
             if [low, high] == [0.0; 2] {
                 return Enclosure::constant(0.0);
             }
-            Enclosure::coordinate(axis, Interval { low, high }, Interval::point(at[axis]))
+            Enclosure::coordinate(axis, Interval { low, high }, Interval::point(reference[axis]))
         })
     }
 
@@ -73,45 +73,45 @@ impl Enclosure {
         }
     }
 
-    fn new(value: Interval, course: LinearEnclosure) -> Enclosure {
-        Enclosure { value, course, choices: Choices::None, regions: 0, form: Form::Any }
+    fn new(value: Interval, linear: LinearEnclosure) -> Enclosure {
+        Enclosure { value, linear, choices: Choices::None, regions: 0, form: Form::Any }
     }
 
     /// Returns a function of `self`, given its values, its value at the reference point, and its derivative.
-    fn chain(self, value: Interval, at: Interval, by: Interval) -> Enclosure {
-        let slope = self.course.slope.map(|part| part.times(by));
+    fn chain(self, value: Interval, at: Interval, derivative: Interval) -> Enclosure {
+        let slope = self.linear.slope.map(|slope| slope.times(derivative));
         Enclosure::new(value, LinearEnclosure { at, slope })
     }
 
     /// Returns the hull of both enclosures.
     pub fn hull(self, other: Enclosure) -> Enclosure {
-        let slope = [0, 1, 2].map(|k| self.course.slope[k].hull(other.course.slope[k]));
-        let course = LinearEnclosure { at: self.course.at.hull(other.course.at), slope };
+        let slope = [0, 1, 2].map(|k| self.linear.slope[k].hull(other.linear.slope[k]));
+        let linear = LinearEnclosure { at: self.linear.at.hull(other.linear.at), slope };
         let regions = self.regions | other.regions;
-        Enclosure { regions, ..Enclosure::new(self.value.hull(other.value), course) }
+        Enclosure { regions, ..Enclosure::new(self.value.hull(other.value), linear) }
     }
 
     /// Returns the value as an alternative that holds where `gap` is at most 0.
     fn choices(self, gap: Option<LinearEnclosure>) -> Choices {
         match (self.choices, gap) {
-            _ if self == Enclosure::NOTHING => Choices::None,
-            (Choices::None, Some(gap)) => Choices::One(Choice { value: self.course, gap }),
+            _ if self == Enclosure::EMPTY => Choices::None,
+            (Choices::None, Some(gap)) => Choices::One(Choice { value: self.linear, gap }),
             (Choices::None, None) => Choices::Many,
             (choices, _) => choices,
         }
     }
 
     /// Returns the smaller of two values.
-    fn lesser(a: Enclosure, b: Enclosure) -> Enclosure {
+    fn smaller(a: Enclosure, b: Enclosure) -> Enclosure {
         if a.value.high <= b.value.low {
             return a;
         }
         if b.value.high <= a.value.low {
             return b;
         }
-        let LinearEnclosure { slope, .. } = a.hull(b).course;
-        let at = a.course.at.lesser(b.course.at);
-        Enclosure::new(a.value.lesser(b.value), LinearEnclosure { at, slope })
+        let LinearEnclosure { slope, .. } = a.hull(b).linear;
+        let at = a.linear.at.min(b.linear.at);
+        Enclosure::new(a.value.min(b.value), LinearEnclosure { at, slope })
     }
 }
 
@@ -122,7 +122,7 @@ impl Add for Enclosure {
         if other == Enclosure::constant(0.0) {
             return self;
         }
-        let (a, b) = (self.course, other.course);
+        let (a, b) = (self.linear, other.linear);
         let slope = [0, 1, 2].map(|k| a.slope[k].plus(b.slope[k]));
         Enclosure::new(self.value.plus(other.value), LinearEnclosure { at: a.at.plus(b.at), slope })
     }
@@ -131,7 +131,7 @@ impl Add for Enclosure {
 impl Neg for Enclosure {
     type Output = Enclosure;
     fn neg(self) -> Enclosure {
-        Enclosure::new(self.value.negated(), self.course.negated())
+        Enclosure::new(self.value.negated(), self.linear.negated())
     }
 }
 
@@ -145,7 +145,7 @@ impl Sub for Enclosure {
 impl Mul for Enclosure {
     type Output = Enclosure;
     fn mul(self, other: Enclosure) -> Enclosure {
-        let (a, b) = (self.course, other.course);
+        let (a, b) = (self.linear, other.linear);
         let (value, at) = (self.value.times(other.value), a.at.times(b.at));
         if let (Form::Coordinate(axis), true) = (self.form, self == other)
             && self.value.low >= 0.0
@@ -162,11 +162,11 @@ impl Mul for Enclosure {
 impl Div for Enclosure {
     type Output = Enclosure;
     fn div(self, other: Enclosure) -> Enclosure {
-        let (a, b) = (self.course, other.course);
-        let per = other.value.reciprocal();
-        let value = self.value.times(per);
+        let (a, b) = (self.linear, other.linear);
+        let reciprocal = other.value.reciprocal();
+        let value = self.value.times(reciprocal);
         let slope =
-            [0, 1, 2].map(|k| a.slope[k].plus(value.times(b.slope[k]).negated()).times(per));
+            [0, 1, 2].map(|k| a.slope[k].plus(value.times(b.slope[k]).negated()).times(reciprocal));
         Enclosure::new(value, LinearEnclosure { at: a.at.times(b.at.reciprocal()), slope })
     }
 }
@@ -199,26 +199,26 @@ impl Lane for Enclosure {
         Enclosure::constant(value)
     }
     fn none(self) -> Enclosure {
-        Enclosure::NOTHING
+        Enclosure::EMPTY
     }
     fn sqrt(self) -> Enclosure {
         if let Form::Square(axis, value, at) = self.form {
             return Enclosure::coordinate(axis, value, at);
         }
         let root = self.value.sqrt();
-        let twice = root.plus(root);
-        let by =
-            Interval { low: (1.0 / twice.high).next_down(), high: (1.0 / twice.low).next_up() };
-        self.chain(root, self.course.at.sqrt(), by)
+        let doubled = root.plus(root);
+        let derivative =
+            Interval { low: (1.0 / doubled.high).next_down(), high: (1.0 / doubled.low).next_up() };
+        self.chain(root, self.linear.at.sqrt(), derivative)
     }
     fn abs(self) -> Enclosure {
         match self.value {
             Interval { low, .. } if low >= 0.0 => self,
             Interval { high, .. } if high <= 0.0 => -self,
             value => {
-                let course =
-                    LinearEnclosure { at: self.course.at.abs(), ..self.hull(-self).course };
-                Enclosure::new(value.abs(), course)
+                let linear =
+                    LinearEnclosure { at: self.linear.at.abs(), ..self.hull(-self).linear };
+                Enclosure::new(value.abs(), linear)
             }
         }
     }
@@ -242,10 +242,10 @@ impl Lane for Enclosure {
         }
     }
     fn min(a: Enclosure, b: Enclosure) -> Enclosure {
-        Enclosure::lesser(a, b)
+        Enclosure::smaller(a, b)
     }
     fn max(a: Enclosure, b: Enclosure) -> Enclosure {
-        -Enclosure::lesser(-a, -b)
+        -Enclosure::smaller(-a, -b)
     }
     fn pick(mask: Ternary, region: Enclosure, before: Enclosure) -> Enclosure {
         let regions = bit(region.value.low as usize);

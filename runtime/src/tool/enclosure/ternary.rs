@@ -18,12 +18,12 @@ impl LinearEnclosure {
 
     /// Returns the function's values at a point whose displacement from the reference point lies between `[low, high]`
     /// along each axis.
-    pub(super) fn values(&self, way: [[f64; 2]; 3]) -> Interval {
-        let parts = (0..3).map(|k| {
-            let [low, high] = way[k];
+    pub(super) fn values(&self, displacement: [[f64; 2]; 3]) -> Interval {
+        let terms = (0..3).map(|k| {
+            let [low, high] = displacement[k];
             self.slope[k].times(Interval { low, high })
         });
-        parts.fold(self.at, Interval::plus)
+        terms.fold(self.at, Interval::plus)
     }
 }
 
@@ -46,8 +46,8 @@ pub(super) enum Choices {
 impl Choices {
     pub(super) fn and(self, other: Choices) -> Choices {
         match (self, other) {
-            (Choices::None, all) | (all, Choices::None) => all,
-            (Choices::One(one), Choices::One(other)) => Choices::Two([one, other]),
+            (Choices::None, choices) | (choices, Choices::None) => choices,
+            (Choices::One(first), Choices::One(second)) => Choices::Two([first, second]),
             _ => Choices::Many,
         }
     }
@@ -65,12 +65,11 @@ pub struct Ternary {
 }
 
 impl Ternary {
-    /// Returns the outcome of the comparison `less ≤ more`, given whether it may be true and whether it may be false.
-    pub(super) fn of([yes, no]: [bool; 2], less: &Enclosure, more: &Enclosure) -> Ternary {
+    /// Returns the outcome of the comparison `a ≤ b`, given whether it may be true and whether it may be false.
+    pub(super) fn of([yes, no]: [bool; 2], a: &Enclosure, b: &Enclosure) -> Ternary {
         let gap = || {
-            let slope =
-                [0, 1, 2].map(|k| less.course.slope[k].plus(more.course.slope[k].negated()));
-            LinearEnclosure { at: less.course.at.plus(more.course.at.negated()), slope }
+            let slope = [0, 1, 2].map(|k| a.linear.slope[k].plus(b.linear.slope[k].negated()));
+            LinearEnclosure { at: a.linear.at.plus(b.linear.at.negated()), slope }
         };
         let gap = (yes && no).then(gap);
         Ternary { yes, no, gaps: [gap, gap.map(LinearEnclosure::negated)] }
