@@ -106,7 +106,7 @@ fn writes_programs_in_the_usual_form() {
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
     assert_eq!(read.check_cutter(Flat.info(), Unit::Inch).expect("the same"), None);
     assert_eq!(read.unit, Some(Unit::Inch));
-    assert_eq!(read.locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [6, 7]);
+    assert_eq!(read.locations.iter().map(|location| location.line).collect::<Vec<_>>(), [6, 7]);
 }
 
 #[test]

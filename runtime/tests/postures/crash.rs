@@ -1,6 +1,6 @@
 //! A recording process is killed at random moments: every batch that it acknowledged is on disk.
 //!
-//! It is killed twenty times, or as often as `TOUCHOFF_KILLS` says.
+//! The environment variable `TOUCHOFF_KILLS` sets the number of kills; the default is 20.
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};

@@ -112,7 +112,7 @@ fn batches_do_not_depend_on_their_order() {
     for order in orders {
         assert!(run(&sweep, triangles, order) == (rows.clone(), stats), "{order:?}");
     }
-    // The sweep stops when told, and the batches so far are the same.
+    // The sweep stops at a `Break`, and the batches until then are the same.
     let mut first = Vec::new();
     let stopped = sweep.run(&[0, 1, 2, 3, 4], |batch| {
         first.extend(batch.rows);

@@ -256,10 +256,10 @@ fn tools_by_regions_and_by_profile_give_the_same_findings() {
             FindingKind::Deep { depth, .. } => Some(*depth),
             _ => None,
         };
-        if let (Some(Interval { low, high }), Some(Interval { low: least, high: most })) =
+        if let (Some(Interval { low, high }), Some(Interval { low: other_low, high: other_high })) =
             (depth(&first.kind), depth(&second.kind))
         {
-            assert!(low <= most && least <= high, "{first:?}, {second:?}");
+            assert!(low <= other_high && other_low <= high, "{first:?}, {second:?}");
         }
     }
 }
