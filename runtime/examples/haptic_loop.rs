@@ -22,29 +22,30 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (rate, cycles) = (1000.0, 3000);
     let tremor = Tremor { size: 0.02, frequency: 10.0, seed: 1 };
     let upright = |z| Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z());
-    let (over, into) = (upright(1.0)?, upright(-2.0)?);
-    let wish = move |time: f64| if time.fract() < 0.5 { over } else { into };
-    let mut hand = SimulatedHand::new(DeviceLimits::default(), rate, wish)?.with_tremor(&tremor)?;
+    let (above, pressed) = (upright(1.0)?, upright(-2.0)?);
+    let target_pose = move |time: f64| if time.fract() < 0.5 { above } else { pressed };
+    let mut hand =
+        SimulatedHand::new(DeviceLimits::default(), rate, target_pose)?.with_tremor(&tremor)?;
     let mut session = Session::new(probe, &SessionSettings::new(rate), hand.limits())?;
 
-    let (mut watch, mut latest, samples) = state_channel(10_000);
+    let (mut publisher, mut latest, samples) = state_channel(10_000);
     let stop = AtomicBool::new(false);
     let report = std::thread::scope(|scope| {
-        let looped = scope.spawn(|| {
+        let session_thread = scope.spawn(|| {
             for refused in (Realtime { priority: Some(80), core: None, locked: true }).apply() {
                 eprintln!("{refused}");
             }
             let clock = &mut MonotonicClock::new(Duration::from_micros(60));
-            session.run(&mut hand, clock, cycles, &mut watch, &stop)
+            session.run(&mut hand, clock, cycles, &mut publisher, &stop)
         });
-        while !looped.is_finished() {
+        while !session_thread.is_finished() {
             std::thread::sleep(Duration::from_millis(250));
             if let Some(state) = latest.read() {
                 let (tip, force) = (state.tool.tip(), state.wrench_on_hand.force);
                 println!("tip at {:.3} mm, {:.3} N up", tip.z, force.z);
             }
         }
-        looped.join().expect("the loop panics at nothing")
+        session_thread.join().expect("the loop panics at nothing")
     });
     println!(
         "{} cycles, {} missed, half of them within {:.1} µs; {} states recorded",

@@ -42,32 +42,32 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut device = ScriptedDevice::new(limits, |cycle| {
         let time = cycle as f64 / rate;
         let (sin, cos) = (3.0 * time).sin_cos();
-        let high = 0.1 * time - 1.0;
-        let flat = (1.0 - high * high).max(0.0).sqrt();
-        let out = Vector3::new(flat * cos, flat * sin, high);
-        let axis = (out + 0.4 * Vector3::new(sin, cos, (5.0 * time).sin())).normalize();
-        let tip = Point3::from(out * (20.0 + 3.0 - 0.05) - axis * 3.0);
+        let height = 0.1 * time - 1.0;
+        let radius = (1.0 - height * height).max(0.0).sqrt();
+        let outward = Vector3::new(radius * cos, radius * sin, height);
+        let axis = (outward + 0.4 * Vector3::new(sin, cos, (5.0 * time).sin())).normalize();
+        let tip = Point3::from(outward * (20.0 + 3.0 - 0.05) - axis * 3.0);
         Ok(Pose::from_axis(tip, axis)?)
     });
     let mut session =
         Session::new(Probe::new(&part, &BallMill), &SessionSettings::new(rate), limits)?;
 
-    let (mut watch, _, mut samples) = state_channel(cycles as usize);
-    let (report, recorded) = std::thread::scope(|scope| {
+    let (mut publisher, _, mut samples) = state_channel(cycles as usize);
+    let (report, stats) = std::thread::scope(|scope| {
         // The publisher moves into the thread. When it is dropped, the recorder knows that the loop is over.
-        let looped = scope.spawn(move || {
+        let session_thread = scope.spawn(move || {
             let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
-            session.run(&mut device, clock, cycles, &mut watch, &stop)
+            session.run(&mut device, clock, cycles, &mut publisher, &stop)
         });
-        let recorded = Recorder::new(&map, &part, &bvh, &BallMill)
+        let stats = Recorder::new(&map, &part, &bvh, &BallMill)
             .map_err(Box::<dyn std::error::Error>::from)
             .and_then(|mut recorder| Ok(recorder.follow(&mut samples)?));
-        (looped.join().expect("the loop panics at nothing"), recorded)
+        (session_thread.join().expect("the loop panics at nothing"), stats)
     });
-    let recorded = recorded?;
+    let stats = stats?;
     println!(
         "{} cycles; {} poses judged, {} of them acceptable",
-        report.cycles, recorded.judged, recorded.accepted
+        report.cycles, stats.judged, stats.accepted
     );
     let coverage = map.coverage()?;
     println!("{} of {} triangles have a posture", coverage.covered, coverage.triangles);

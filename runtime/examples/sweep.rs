@@ -55,13 +55,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         NonZeroU16::MIN,
     )?;
 
-    let mut tally = SweepStats::default();
+    let mut stats = SweepStats::default();
     let mut best = [0; 2];
     // Directions from which the slim tool reaches each triangle.
     let mut access = vec![Vec::new(); tube.triangles().len()];
-    let all: Vec<usize> = (0..sweep.batches()).collect();
-    let _: ControlFlow<()> = sweep.run(&all, |batch| {
-        tally += batch.stats;
+    let batches: Vec<usize> = (0..sweep.batches()).collect();
+    let _: ControlFlow<()> = sweep.run(&batches, |batch| {
+        stats += batch.stats;
         for (triangle, row) in batch.rows {
             if let Some(record) = row.best.first() {
                 best[usize::from(record.tool)] += 1;
@@ -70,11 +70,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         ControlFlow::Continue(())
     });
-    println!("{} postures, {} of them acceptable", tally.postures(), tally.acceptable);
+    println!("{} postures, {} of them acceptable", stats.postures(), stats.acceptable);
     println!("of {} triangles Slim is best at {}, Stout at {}", access.len(), best[0], best[1]);
 
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 0.5 };
-    let led = PathRequest {
+    let path = PathRequest {
         mesh: &tube,
         bvh: &bvh,
         tool: &Slim,
@@ -86,10 +86,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     .plan()?;
     println!(
         "a path of {} stops, {} of them on the surface",
-        led.locations.len(),
-        led.contact_points
+        path.locations.len(),
+        path.contact_points
     );
-    let program = Program::new("tube", Some(Unit::Millimetre), led.locations)?;
+    let program = Program::new("tube", Some(Unit::Millimetre), path.locations)?;
     let report = Verifier::new(&bvh, &Slim)?.with_tolerance(rules.tolerance)?.check(&program)?;
     println!("{} findings", report.findings.len());
     Ok(())

@@ -62,9 +62,9 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
 }
 
-fn apt(program: &Program, heading: &AptHeader<'_>) -> String {
+fn apt(program: &Program, header: &AptHeader<'_>) -> String {
     let mut out = Vec::new();
-    program.write_apt(&mut out, heading).expect("it can be written");
+    program.write_apt(&mut out, header).expect("it can be written");
     String::from_utf8(out).expect("UTF-8")
 }
 
@@ -75,16 +75,16 @@ fn csv(program: &Program) -> String {
 }
 
 /// Returns the largest difference between the entries of two poses' rotations.
-fn turned(one: &Pose, other: &Pose) -> f64 {
-    (one.rotation() - other.rotation()).amax()
+fn rotation_difference(first: &Pose, second: &Pose) -> f64 {
+    (first.rotation() - second.rotation()).amax()
 }
 
-fn same_bits(one: Point3<f64>, other: Point3<f64>) -> bool {
-    one.iter().zip(other.iter()).all(|(one, other)| one.to_bits() == other.to_bits())
+fn same_bits(first: Point3<f64>, second: Point3<f64>) -> bool {
+    first.iter().zip(second.iter()).all(|(first, second)| first.to_bits() == second.to_bits())
 }
 
 #[test]
-fn a_program_is_written_as_people_write_it() {
+fn writes_programs_in_the_usual_form() {
     let poses = [
         (pose([1.0, 2.5, 0.0], [0.0, 0.0, 1.0]), true),
         (pose([1e-7, -2.0, 1e9], [0.6, 0.0, 0.8]), false),
@@ -106,34 +106,34 @@ fn a_program_is_written_as_people_write_it() {
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
     assert_eq!(read.check_cutter(Flat.info(), Unit::Inch).expect("the same"), None);
     assert_eq!(read.unit, Some(Unit::Inch));
-    assert_eq!(read.locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [6, 7]);
+    assert_eq!(read.locations.iter().map(|location| location.line).collect::<Vec<_>>(), [6, 7]);
 }
 
 #[test]
-fn what_apt_cannot_say_is_refused() {
-    let here = [(pose([0.0; 3], [0.0, 0.0, 1.0]), false)];
-    let metre = Program::new("made", Some(Unit::Metre), here).expect("a pose");
+fn rejects_programs_that_apt_cannot_express() {
+    let poses = [(pose([0.0; 3], [0.0, 0.0, 1.0]), false)];
+    let metre = Program::new("made", Some(Unit::Metre), poses).expect("a pose");
     let error = metre.write_apt(&mut Vec::new(), &AptHeader::default()).expect_err("no such unit");
     assert_eq!(
         error.to_string(),
         "APT-CL has no word for m: write the program in mm or inch, or as a table"
     );
-    let program = Program::new("made", None, here).expect("a pose");
+    let program = Program::new("made", None, poses).expect("a pose");
     for part in ["A\nGOTO/1,2,3", "A\r", "\u{1b}[2J"] {
-        let heading = AptHeader { part, cutter: None };
-        let error = program.write_apt(&mut Vec::new(), &heading).expect_err("no line");
+        let header = AptHeader { part, cutter: None };
+        let error = program.write_apt(&mut Vec::new(), &header).expect_err("no line");
         assert!(matches!(error, WriteError::Part { .. }), "{error}");
     }
     assert!(!apt(&program, &AptHeader::default()).contains("UNITS"));
     let error = Program::new("made", None, []).expect_err("no pose").to_string();
     assert!(error.starts_with("made: holds no position"), "{error}");
-    let inch = Program::new("made", Some(Unit::Inch), here).expect("a pose");
+    let inch = Program::new("made", Some(Unit::Inch), poses).expect("a pose");
     let error = inch.check_unit(Unit::Millimetre).expect_err("they differ").to_string();
     assert!(error.starts_with("made: UNITS says inch"), "{error}");
 }
 
 #[test]
-fn cutters_are_described_where_two_numbers_do() {
+fn describes_cutters_that_two_numbers_define() {
     let mm = |tool: &dyn Tool| Cutter::of(tool.info(), Unit::Millimetre);
     assert_eq!(mm(&Ball), Some(Cutter { diameter: 6.0, corner: 3.0 }));
     assert_eq!(mm(&Flat), Some(Cutter { diameter: 12.0, corner: 0.0 }));
@@ -158,51 +158,52 @@ fn poses() -> impl Strategy<Value = Vec<(Pose, bool)>> {
     )
 }
 
-/// Bound on the change of an axis by reading, per coordinate: normalising errs by 3.5 u (2.5 u of the norm, u of the quotient), making the
-/// rotation orthonormal moves it by half of 6 u and rounds once. That is 7.5 u, and u is half of this ε.
-const READ: f64 = 4.0 * f64::EPSILON;
+/// Bound on the change of an axis by reading, per coordinate. Normalising errs by 3.5 u (2.5 u of the norm, u of
+/// the quotient); making the rotation orthonormal moves it by half of 6 u and rounds once. The sum is 7.5 u, with
+/// u = ε/2.
+const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 proptest! {
     #[test]
-    fn what_is_read_is_what_was_written(poses in poses(), inches in any::<Option<bool>>()) {
+    fn written_programs_are_read_back(poses in poses(), inches in any::<Option<bool>>()) {
         let unit = inches.map(|inches| if inches { Unit::Inch } else { Unit::Millimetre });
-        let made = Program::new("made", unit, poses).expect("a pose at least");
-        let text = apt(&made, &AptHeader { part: "A", cutter: None });
+        let program = Program::new("made", unit, poses).expect("a pose at least");
+        let text = apt(&program, &AptHeader { part: "A", cutter: None });
         prop_assert!(text.lines().all(|line| line.len() <= 72), "{}", text);
         let read = Program::parse(&text, "again").expect("it is a program");
         prop_assert_eq!(read.unit, unit);
         prop_assert_eq!(&read.ignored, &[(1, "PARTNO".to_owned())]);
-        let table = Program::parse(csv(&made), "again").expect("it is a table");
-        prop_assert_eq!((read.locations.len(), table.locations.len()), (made.locations.len(), made.locations.len()));
-        for ((one, other), row) in made.locations.iter().zip(&read.locations).zip(&table.locations) {
-            prop_assert_eq!(one.rapid, other.rapid);
-            for pose in [&other.pose, &row.pose] {
-                prop_assert!(same_bits(one.pose.tip(), pose.tip()));
-                prop_assert!((one.pose.axis() - pose.axis()).amax() <= READ);
+        let table = Program::parse(csv(&program), "again").expect("it is a table");
+        prop_assert_eq!((read.locations.len(), table.locations.len()), (program.locations.len(), program.locations.len()));
+        for ((original, copy), row) in program.locations.iter().zip(&read.locations).zip(&table.locations) {
+            prop_assert_eq!(original.rapid, copy.rapid);
+            for pose in [&copy.pose, &row.pose] {
+                prop_assert!(same_bits(original.pose.tip(), pose.tip()));
+                prop_assert!((original.pose.axis() - pose.axis()).amax() <= AXIS_ROUNDING);
             }
         }
         // A program that was read once is written the same, except for that rounding of an axis.
-        let again = Program::parse(apt(&read, &AptHeader { part: "A", cutter: None }), "again");
-        let again = again.expect("it is a program");
-        for (one, other) in read.locations.iter().zip(&again.locations) {
-            prop_assert_eq!((one.line, one.rapid), (other.line, other.rapid));
-            prop_assert!(same_bits(one.pose.tip(), other.pose.tip()));
-            prop_assert!((one.pose.axis() - other.pose.axis()).amax() <= READ);
+        let read_twice = Program::parse(apt(&read, &AptHeader { part: "A", cutter: None }), "again");
+        let read_twice = read_twice.expect("it is a program");
+        for (original, copy) in read.locations.iter().zip(&read_twice.locations) {
+            prop_assert_eq!((original.line, original.rapid), (copy.line, copy.rapid));
+            prop_assert!(same_bits(original.pose.tip(), copy.pose.tip()));
+            prop_assert!((original.pose.axis() - copy.pose.axis()).amax() <= AXIS_ROUNDING);
         }
     }
 
     #[test]
-    fn spins_that_were_given_are_written(turns in prop::collection::vec(prop::array::uniform4(-1.0f64..1.0), 1..9)) {
-        let full = turns.into_iter().filter_map(|turn| {
-            let norm = turn.iter().map(|c| c * c).sum::<f64>().sqrt();
+    fn given_spins_are_written(quaternions in prop::collection::vec(prop::array::uniform4(-1.0f64..1.0), 1..9)) {
+        let poses = quaternions.into_iter().filter_map(|quaternion| {
+            let norm = quaternion.iter().map(|c| c * c).sum::<f64>().sqrt();
             let tip = Point3::new(0.1, -2.0, 1.0 / 3.0);
-            (norm > 1e-2).then(|| Pose::from_quaternion(tip, turn.map(|c| c / norm)).expect("a turn"))
+            (norm > 1e-2).then(|| Pose::from_quaternion(tip, quaternion.map(|c| c / norm)).expect("a turn"))
         });
-        let Ok(made) = Program::new("made", None, full.map(|pose| (pose, false))) else { return Ok(()) };
-        let read = Program::parse(csv(&made), "again").expect("it is a table");
-        for (one, other) in made.locations.iter().zip(&read.locations) {
-            prop_assert!(other.pose.has_spin());
-            prop_assert!(turned(&one.pose, &other.pose) < 1e-14);
+        let Ok(program) = Program::new("made", None, poses.map(|pose| (pose, false))) else { return Ok(()) };
+        let read = Program::parse(csv(&program), "again").expect("it is a table");
+        for (original, copy) in program.locations.iter().zip(&read.locations) {
+            prop_assert!(copy.pose.has_spin());
+            prop_assert!(rotation_difference(&original.pose, &copy.pose) < 1e-14);
         }
     }
 }

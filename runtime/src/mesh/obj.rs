@@ -71,14 +71,14 @@ pub enum ObjError {
     },
     /// The fan of triangles from the first corner of a polygon does not fill it.
     #[error(
-        "{file}, {place}: the polygon is too hollow or too bent to be cut into triangles from its \
+        "{file}, {location}: the polygon is too hollow or too bent to be cut into triangles from its \
          first corner: export the part in triangles"
     )]
     Folded {
         /// The file name.
         file: String,
         /// The location of the face in the file.
-        place: SourceLocation,
+        location: SourceLocation,
     },
     /// The file has no faces.
     #[error(
@@ -90,14 +90,14 @@ pub enum ObjError {
         file: String,
     },
     /// A vertex is far outside the rest of the part.
-    #[error("{file}, {place}: {stray}: mend the coordinate, or export or copy the part again")]
+    #[error("{file}, {location}: {outlier}: mend the coordinate, or export or copy the part again")]
     Stray {
         /// The file name.
         file: String,
         /// The location of the vertex in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The outlying coordinate and its statistics.
-        stray: Outlier,
+        outlier: Outlier,
     },
     /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]
@@ -138,9 +138,9 @@ impl Mesh {
             match lines.word() {
                 Some(b"v") => vertices.push(lines.vertex()?),
                 Some(b"f") => {
-                    let place = SourceLocation::Line(lines.tokens.line);
+                    let location = SourceLocation::Line(lines.tokens.line);
                     lines.face(vertices.len(), &mut corners)?;
-                    faces.push(place, &corners);
+                    faces.push(location, &corners);
                 }
                 Some(word) if !SKIPPED.contains(&word) => {
                     let (file, line, word) = (file(), lines.tokens.line, printable(word));
@@ -153,15 +153,15 @@ impl Mesh {
         if faces.is_empty() {
             return Err(ObjError::NoFaces { file: file() });
         }
-        if let Some(place) = faces.folded(&vertices) {
-            return Err(ObjError::Folded { file: file(), place });
+        if let Some(location) = faces.folded(&vertices) {
+            return Err(ObjError::Folded { file: file(), location });
         }
         let (used_vertices, corners) = faces.used_vertices(&vertices);
-        if let Some((index, _, stray)) = find_outlier(&corners) {
+        if let Some((index, _, outlier)) = find_outlier(&corners) {
             return Err(ObjError::Stray {
                 file: file(),
-                place: line_of(bytes, used_vertices[index]),
-                stray,
+                location: line_of(bytes, used_vertices[index]),
+                outlier,
             });
         }
         let mesh = faces.weld(&vertices, unit);

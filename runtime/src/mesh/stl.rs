@@ -131,7 +131,7 @@ pub enum StlError {
     },
     /// A vertex is far outside the rest of the part.
     #[error(
-        "{file}, triangle {triangle} (from 0), {place}: {stray}: mend the coordinate, or export or copy the part again"
+        "{file}, triangle {triangle} (from 0), {location}: {outlier}: mend the coordinate, or export or copy the part again"
     )]
     Stray {
         /// The file name.
@@ -139,9 +139,9 @@ pub enum StlError {
         /// The triangle's index, from 0.
         triangle: usize,
         /// The location of the vertex in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The outlying coordinate and its statistics.
-        stray: Outlier,
+        outlier: Outlier,
     },
     /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]
@@ -183,16 +183,16 @@ impl StlFacets {
 /// A vertex far outside all others is refused.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let (facets, is_text) = facets(bytes, name)?;
-    let Some((corner, axis, stray)) = find_outlier(facets.corners.as_flattened()) else {
+    let Some((corner, axis, outlier)) = find_outlier(facets.corners.as_flattened()) else {
         return Ok(facets);
     };
     let triangle = corner / 3;
-    let place = if is_text {
+    let location = if is_text {
         line_of(bytes, corner)
     } else {
         SourceLocation::Byte(HEADER + RECORD * triangle + 4 * (3 + 3 * (corner % 3) + axis))
     };
-    Err(StlError::Stray { file: name.to_owned(), triangle, place, stray })
+    Err(StlError::Stray { file: name.to_owned(), triangle, location, outlier })
 }
 
 /// Returns the line of a corner in a valid text file.

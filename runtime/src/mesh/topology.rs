@@ -24,9 +24,9 @@ impl Edges {
             starts[vertex] += starts[vertex - 1];
         }
         let mut uses = vec![0u64; starts[starts.len() - 1]];
-        let mut next_slot = starts.clone();
+        let mut next_slots = starts.clone();
         for [from, to] in edge_uses(mesh) {
-            let slot = &mut next_slot[from.min(to) as usize];
+            let slot = &mut next_slots[from.min(to) as usize];
             uses[*slot] = u64::from(from.max(to)) << 1 | u64::from(from < to);
             *slot += 1;
         }

@@ -126,16 +126,16 @@ impl<T: Evaluators> Tool for T {
 }
 
 impl<T: Evaluators> BatchEvaluator for T {
-    fn evaluate_outputs<W: OutputSelection>(
+    fn evaluate_outputs<O: OutputSelection>(
         &self,
         level: Level,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     ) {
-        evaluations.reserve(points, W::OUTPUTS);
-        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, W::OUTPUTS, points, length, evaluations));
-        evaluate_points::<T>(W::OUTPUTS, points, length, evaluations);
+        evaluations.reserve(points, O::OUTPUTS);
+        on_vectors!(level, simd => evaluate_blocks::<T, _>(simd, O::OUTPUTS, points, length, evaluations));
+        evaluate_points::<T>(O::OUTPUTS, points, length, evaluations);
     }
 }
 

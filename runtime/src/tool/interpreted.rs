@@ -277,14 +277,14 @@ impl Value for Enclosure {
 }
 
 impl BatchEvaluator for Interpreted {
-    fn evaluate_outputs<W: OutputSelection>(
+    fn evaluate_outputs<O: OutputSelection>(
         &self,
         level: Level,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     ) {
-        self.evaluate(level, W::OUTPUTS, points, length, evaluations);
+        self.evaluate(level, O::OUTPUTS, points, length, evaluations);
     }
 }
 

@@ -139,8 +139,8 @@ pub trait OutputSelection {
 /// A tool whose outputs are selected at compile time, so that no code is generated for outputs that nobody requests.
 /// Every compiled tool implements it; a `dyn Tool` receives the selection at run time.
 pub trait BatchEvaluator: Tool {
-    /// Does the same as [`Tool::evaluate`], for the outputs that `W` selects.
-    fn evaluate_outputs<W: OutputSelection>(
+    /// Does the same as [`Tool::evaluate`], for the outputs that `O` selects.
+    fn evaluate_outputs<O: OutputSelection>(
         &self,
         level: Level,
         points: &PointBatch,
@@ -150,14 +150,14 @@ pub trait BatchEvaluator: Tool {
 }
 
 impl BatchEvaluator for dyn Tool + '_ {
-    fn evaluate_outputs<W: OutputSelection>(
+    fn evaluate_outputs<O: OutputSelection>(
         &self,
         level: Level,
         points: &PointBatch,
         length: f64,
         evaluations: &mut Evaluations,
     ) {
-        self.evaluate(level, W::OUTPUTS, points, length, evaluations);
+        self.evaluate(level, O::OUTPUTS, points, length, evaluations);
     }
 }
 

@@ -1,11 +1,11 @@
 //! Validated and recorded postures: comparisons with sample points of triangles, and a running loop.
 
-mod apart;
-mod judged;
-mod killed;
-mod led;
-mod recorded;
-mod swept;
+mod clearance;
+mod crash;
+mod path;
+mod recorder;
+mod sweep;
+mod validator;
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
@@ -48,27 +48,27 @@ const NECK: [[f64; 2]; 3] = [[3.0, 12.0], [2.5, 12.0], [2.5, 20.0]];
 const HOLDER: [[f64; 2]; 4] = [[2.5, 20.0], [9.0, 20.0], [9.0, 40.0], [0.0, 40.0]];
 
 /// Returns the distance of a point to a polyline of the profile.
-fn away(line: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
-    let one = |ends: &[[f64; 2]]| {
+fn polyline_distance(polyline: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
+    let segment_distance = |ends: &[[f64; 2]]| {
         let [[fd, fz], [td, tz]] = [ends[0], ends[1]];
-        let (wd, wz) = (td - fd, tz - fz);
-        let t = (((d - fd) * wd + (z - fz) * wz) / (wd * wd + wz * wz)).clamp(0.0, 1.0);
-        (d - fd - t * wd).hypot(z - fz - t * wz)
+        let (dd, dz) = (td - fd, tz - fz);
+        let t = (((d - fd) * dd + (z - fz) * dz) / (dd * dd + dz * dz)).clamp(0.0, 1.0);
+        (d - fd - t * dd).hypot(z - fz - t * dz)
     };
-    line.windows(2).map(one).fold(f64::INFINITY, f64::min)
+    polyline.windows(2).map(segment_distance).fold(f64::INFINITY, f64::min)
 }
 
 /// Returns whether a point is inside a [`Mill`].
-fn inside([d, z]: [f64; 2]) -> bool {
+fn is_inside([d, z]: [f64; 2]) -> bool {
     let ball = z <= 3.0 && d.hypot(z - 3.0) <= 3.0;
     let stem = |radius: f64, low: f64, high: f64| d <= radius && low <= z && z <= high;
     ball || stem(3.0, 3.0, 12.0) || stem(2.5, 12.0, 20.0) || stem(9.0, 20.0, 40.0)
 }
 
 /// Returns the distance of a point to the cutting surfaces of a [`Mill`].
-fn from_cutting([d, z]: [f64; 2]) -> f64 {
-    let ball = if z <= 3.0 { (d.hypot(z - 3.0) - 3.0).abs() } else { f64::INFINITY };
-    ball.min(away(&[[3.0, 3.0], [3.0, 12.0]], [d, z]))
+fn cutting_distance([d, z]: [f64; 2]) -> f64 {
+    let to_ball = if z <= 3.0 { (d.hypot(z - 3.0) - 3.0).abs() } else { f64::INFINITY };
+    to_ball.min(polyline_distance(&[[3.0, 3.0], [3.0, 12.0]], [d, z]))
 }
 
 fn parts() -> Vec<Mesh> {
@@ -80,15 +80,15 @@ fn parts() -> Vec<Mesh> {
     ]
 }
 
-fn draws(seed: u64) -> impl FnMut(f64, f64) -> f64 {
+fn random_numbers(seed: u64) -> impl FnMut(f64, f64) -> f64 {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     move |low, high| low + (high - low) * (random.next_u64() as f64 / u64::MAX as f64)
 }
 
-fn any_pose(draw: &mut impl FnMut(f64, f64) -> f64, size: f64) -> Pose {
+fn random_pose(random: &mut impl FnMut(f64, f64) -> f64, size: f64) -> Pose {
     loop {
-        let axis = nalgebra::Vector3::from_fn(|_, _| draw(-1.0, 1.0));
-        let tip = Point3::from(nalgebra::Vector3::from_fn(|_, _| draw(-size, size)));
+        let axis = nalgebra::Vector3::from_fn(|_, _| random(-1.0, 1.0));
+        let tip = Point3::from(nalgebra::Vector3::from_fn(|_, _| random(-size, size)));
         if axis.norm() > 0.1
             && let Ok(pose) = Pose::from_axis(tip, axis.normalize())
         {
@@ -98,25 +98,25 @@ fn any_pose(draw: &mut impl FnMut(f64, f64) -> f64, size: f64) -> Pose {
 }
 
 /// Number of divisions of a triangle's sides.
-const RASTER: u32 = 16;
+const DIVISIONS: u32 = 16;
 
 /// Returns sample points of a mesh in the half plane of a tool at a pose, and the largest distance between
 /// neighbours.
-fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
-    let back = pose.rotation().transpose();
-    let (mut all, mut apart) = (Vec::new(), 0f64);
+fn sample_points(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
+    let to_tool = pose.rotation().transpose();
+    let (mut points, mut spacing) = (Vec::new(), 0f64);
     for id in 0..mesh.triangles().len() as u32 {
         let [a, b, c] = mesh.triangle(TriangleId(id));
-        let (u, v) = ((b - a) / f64::from(RASTER), (c - a) / f64::from(RASTER));
-        apart = apart.max(u.norm()).max(v.norm()).max((v - u).norm());
-        for i in 0..=RASTER {
-            for j in 0..=RASTER - i {
-                let p = back * (a + u * f64::from(i) + v * f64::from(j) - pose.tip());
-                all.push([p.x.hypot(p.y), p.z]);
+        let (u, v) = ((b - a) / f64::from(DIVISIONS), (c - a) / f64::from(DIVISIONS));
+        spacing = spacing.max(u.norm()).max(v.norm()).max((v - u).norm());
+        for i in 0..=DIVISIONS {
+            for j in 0..=DIVISIONS - i {
+                let p = to_tool * (a + u * f64::from(i) + v * f64::from(j) - pose.tip());
+                points.push([p.x.hypot(p.y), p.z]);
             }
         }
     }
-    (all, apart)
+    (points, spacing)
 }
 
 fn surface(tool: &dyn Tool, name: &str) -> SurfaceId {

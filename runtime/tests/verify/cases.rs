@@ -8,7 +8,7 @@ use touchoff::verify::{FindingKind, Verifier, VerifyReport};
 use touchoff::{Interval, Mesh, Program, SurfaceId, Unit};
 
 touchoff::tool! {
-    tool ByHand "a ball without a profile" {
+    tool BallByRegions "a ball without a profile" {
         units mm;
         region ball as ball cutting where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
         niceness cutting: 1;
@@ -16,7 +16,7 @@ touchoff::tool! {
 }
 
 touchoff::tool! {
-    tool Drawn "the same by its profile" {
+    tool BallByProfile "the same by its profile" {
         units mm;
         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
         niceness cutting: 1;
@@ -32,29 +32,29 @@ touchoff::tool! {
 }
 
 /// Checks a program with a tolerance and allowances.
-fn check(mesh: &Mesh, text: &str, tolerance: f64, allowed: &[(&str, f64)]) -> VerifyReport {
+fn check(mesh: &Mesh, text: &str, tolerance: f64, allowances: &[(&str, f64)]) -> VerifyReport {
     let bvh = TriangleBvh::new(mesh);
     let program = Program::parse(text, "part.cl").expect("a program");
     let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
     let verifier = verifier.with_tolerance(tolerance).expect("a length");
-    let verifier = allowed.iter().fold(verifier, |verifier, (name, allowed)| {
-        verifier.with_allowance(name, *allowed).expect("a surface")
+    let verifier = allowances.iter().fold(verifier, |verifier, (name, allowance)| {
+        verifier.with_allowance(name, *allowance).expect("a surface")
     });
     verifier.check(&program).expect("it can be checked")
 }
 
 /// Returns the line, the kind and the surface of each finding.
-fn briefly(report: &VerifyReport) -> Vec<(usize, &'static str, Option<usize>)> {
-    let word = |kind: &FindingKind| match kind {
+fn summary(report: &VerifyReport) -> Vec<(usize, &'static str, Option<usize>)> {
+    let keyword = |kind: &FindingKind| match kind {
         FindingKind::Deep { .. } => "deep",
         FindingKind::Near { .. } => "near",
         FindingKind::Inside { .. } => "inside",
         FindingKind::Undecided { .. } => "undecided",
         FindingKind::Ambiguous(_) => "ambiguous",
     };
-    let brief =
-        report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface().map(|id| id.0)));
-    brief.collect()
+    let entries =
+        report.findings.iter().map(|f| (f.line, keyword(&f.kind), f.kind.surface().map(|id| id.0)));
+    entries.collect()
 }
 
 /// Returns a block of 10 by 10 by 50 mm whose top is at z = 0.
@@ -63,7 +63,7 @@ fn pillar() -> Mesh {
 }
 
 #[test]
-fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
+fn finds_a_gouge_between_two_locations_at_its_deepest() {
     let text = "MULTAX/ON\nGOTO/-30,0,-0.5,0,0,1\nGOTO/30,0,-0.5,0,0,1\nFINI\n";
     let report = check(&pillar(), text, 0.01, &[]);
     let [found] = &report.findings[..] else { panic!("{report:?}") };
@@ -87,40 +87,37 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
     );
     assert_eq!(check(&pillar(), text, 0.5, &[]).findings, []);
     assert_eq!(check(&pillar(), text, 0.0, &[("ball", 0.5)]).findings, []);
-    assert_eq!(briefly(&check(&pillar(), text, 0.5, &[("ball", 0.4)])), [(3, "deep", Some(0))]);
+    assert_eq!(summary(&check(&pillar(), text, 0.5, &[("ball", 0.4)])), [(3, "deep", Some(0))]);
 }
 
 #[test]
-fn a_flute_that_gouges_does_not_hide_what_rubs() {
+fn findings_of_cutting_surfaces_do_not_hide_others() {
     // The tool is beside the pillar and 0.2 in it; the nut reaches over the top.
     let text = "GOTO/-20,0,-26,0,0,1\nGOTO/-7.8,0,-26,0,0,1\nFINI\n";
-    let all =
+    let expected =
         [(2, "deep", Some(0)), (2, "deep", Some(1)), (2, "deep", Some(2)), (2, "deep", Some(3))];
-    assert_eq!(briefly(&check(&pillar(), text, 0.0, &[])), all);
-    let cut = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
-    assert_eq!(briefly(&check(&pillar(), text, 0.0, &cut)), all[2..]);
+    assert_eq!(summary(&check(&pillar(), text, 0.0, &[])), expected);
+    let unlimited = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
+    assert_eq!(summary(&check(&pillar(), text, 0.0, &unlimited)), expected[2..]);
     // Over the top, the corner of shank and nut is nearest to the points under the axis.
-    let rub = [cut[0], cut[1], ("shank", 2.0)];
-    assert_eq!(briefly(&check(&pillar(), text, 0.0, &rub)), all[3..]);
+    let with_shank = [unlimited[0], unlimited[1], ("shank", 2.0)];
+    assert_eq!(summary(&check(&pillar(), text, 0.0, &with_shank)), expected[3..]);
     // Here the nut is above the top: a distance of 0.5 violates a margin of 1, and 2 does not.
-    let higher = |z: f64| format!("GOTO/-20,0,{z},0,0,1\nGOTO/-7.8,0,{z},0,0,1\nFINI\n");
-    let margin = [rub[0], rub[1], rub[2], ("nut", -1.0)];
-    let near = check(&pillar(), &higher(-24.5), 0.0, &margin);
-    assert_eq!(briefly(&near), [(2, "near", Some(3))]);
-    let FindingKind::Near { distance: Interval { low, high }, min_distance, margin: kept, .. } =
+    let raised = |z: f64| format!("GOTO/-20,0,{z},0,0,1\nGOTO/-7.8,0,{z},0,0,1\nFINI\n");
+    let with_margin = [with_shank[0], with_shank[1], with_shank[2], ("nut", -1.0)];
+    let near = check(&pillar(), &raised(-24.5), 0.0, &with_margin);
+    assert_eq!(summary(&near), [(2, "near", Some(3))]);
+    let FindingKind::Near { distance: Interval { low, high }, min_distance, margin: gap, .. } =
         near.findings[0].kind
     else {
         panic!("{near:?}")
     };
-    assert!(
-        kept == 1.0 && low <= 0.5 && 0.5 <= high && min_distance > 0.4 && min_distance <= low,
-        "{near:?}"
-    );
-    assert_eq!(check(&pillar(), &higher(-23.0), 0.0, &margin).findings, []);
+    assert!(gap == 1.0 && low <= 0.5 && 0.5 <= high && min_distance > 0.4 && min_distance <= low, "{near:?}");
+    assert_eq!(check(&pillar(), &raised(-23.0), 0.0, &with_margin).findings, []);
 }
 
 #[test]
-fn what_goes_right_through_says_so() {
+fn reports_a_tool_axis_that_passes_through_the_part() {
     // The axis of the upright tool passes through the pillar from side to side, 6 below its top.
     let text = "GOTO/-30,0,-6,0,0,1\nGOTO/30,0,-6,0,0,1\nFINI\n";
     let report = check(&pillar(), text, 0.01, &[]);
@@ -138,18 +135,18 @@ fn what_goes_right_through_says_so() {
 }
 
 #[test]
-fn in_rapid_traverse_nothing_cuts() {
-    let cut = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
+fn no_surface_may_cut_in_rapid_traverse() {
+    let unlimited = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
     let feed = "GOTO/-30,0,-9,0,0,1\nGOTO/30,0,-9,0,0,1\nFINI\n";
-    assert_eq!(check(&pillar(), feed, 0.01, &cut).findings, []);
+    assert_eq!(check(&pillar(), feed, 0.01, &unlimited).findings, []);
     let rapid = "GOTO/-30,0,-9,0,0,1\nRAPID\nGOTO/30,0,-9,0,0,1\nFINI\n";
-    let report = check(&pillar(), rapid, 0.01, &cut);
-    assert_eq!(briefly(&report), [(3, "deep", Some(0)), (3, "deep", Some(1))]);
+    let report = check(&pillar(), rapid, 0.01, &unlimited);
+    assert_eq!(summary(&report), [(3, "deep", Some(0)), (3, "deep", Some(1))]);
     assert!(report.findings.iter().all(|found| found.rapid));
 }
 
 #[test]
-fn the_first_stop_is_checked_by_itself() {
+fn checks_the_first_location_by_itself() {
     let report = check(&pillar(), "0,0,-0.5,0,0,1\n", 0.0, &[]);
     let [found] = &report.findings[..] else { panic!("{report:?}") };
     assert_eq!((report.motions, found.from, found.location, found.line), (0, None, 0, 1));
@@ -157,20 +154,20 @@ fn the_first_stop_is_checked_by_itself() {
 }
 
 #[test]
-fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
+fn finds_a_tool_inside_a_closed_part() {
     let large = block([-200.0; 3], [200.0; 3]);
     let text = "0,0,0,0,0,1\n9,0,0,0,0,1\n";
     let report = check(&large, text, 0.1, &[]);
-    assert_eq!(briefly(&report), [(1, "inside", None), (2, "inside", None)]);
-    let any = [("ball", f64::INFINITY), ("flute", f64::INFINITY)];
+    assert_eq!(summary(&report), [(1, "inside", None), (2, "inside", None)]);
+    let unlimited = [("ball", f64::INFINITY), ("flute", f64::INFINITY)];
     assert_eq!(
-        briefly(&check(&large, text, 0.1, &any)),
+        summary(&check(&large, text, 0.1, &unlimited)),
         [(1, "inside", None), (2, "inside", None)]
     );
     // All surfaces but the shank may be at any depth, and the nut ends in the open.
     let deep = block([-200.0, -200.0, -200.0], [200.0, 200.0, 38.0]);
-    let limits = [any[0], any[1], ("nut", f64::INFINITY)];
-    let shank = briefly(&check(&deep, text, 0.1, &limits));
+    let limits = [unlimited[0], unlimited[1], ("nut", f64::INFINITY)];
+    let shank = summary(&check(&deep, text, 0.1, &limits));
     assert_eq!(shank, [(1, "inside", Some(2)), (2, "inside", Some(2))]);
     let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
     let below = check(&sheet, "0,0,-90,0,0,1\n", 0.0, &[]);
@@ -178,19 +175,19 @@ fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
 }
 
 #[test]
-fn an_axis_that_turns_to_its_opposite_is_found() {
+fn finds_motions_between_opposite_axes() {
     let text = "0,0,20,0,0,1\n0,0,60,0,0,-1\n0,0,2,0,0,1\n";
     let report = check(&pillar(), text, 0.0, &[]);
     // The inverted tool reaches from 60 down to 20.
-    assert_eq!(briefly(&report), [(2, "ambiguous", None), (3, "ambiguous", None)]);
+    assert_eq!(summary(&report), [(2, "ambiguous", None), (3, "ambiguous", None)]);
     let into = check(&pillar(), "0,0,20,0,0,1\n0,0,30,0,0,-1\n", 0.0, &[]);
     // Over the pillar the corner between shank and nut is nearest, so both are equally deep.
     let both = [(2, "ambiguous", None), (2, "deep", Some(2)), (2, "deep", Some(3))];
-    assert_eq!(briefly(&into), both);
+    assert_eq!(summary(&into), both);
 }
 
 #[test]
-fn what_is_not_decided_is_said() {
+fn reports_undecided_motions() {
     let bvh = TriangleBvh::new(&pillar());
     let program =
         Program::parse("-30,0,1e-7,0,0,1\n30,0,1e-7,0.01,0,1\n", "a.csv").expect("two stops");
@@ -202,31 +199,33 @@ fn what_is_not_decided_is_said() {
 }
 
 #[test]
-fn what_cannot_be_checked_is_refused() {
+fn rejects_unsupported_tools_and_arguments() {
     let bvh = TriangleBvh::new(&pillar());
     let spinless = Program::parse("-30,0,9,0,0,1\n30,0,9,0,0,1\n", "a.csv").expect("two stops");
     let error = Verifier::new(&bvh, &Brick).expect("proved").check(&spinless).err();
     assert!(error.is_some_and(|error| error.to_string().contains("an axis does not place")));
-    let margin = Verifier::new(&bvh, &ByHand).expect("proved").with_allowance("ball", -0.1).err();
+    let margin =
+        Verifier::new(&bvh, &BallByRegions).expect("proved").with_allowance("ball", -0.1).err();
     assert!(margin.is_some_and(|error| error.to_string().contains("has no profile")));
     let verifier = || Verifier::new(&bvh, &Mounted).expect("a profile");
-    let said = verifier().with_allowance("fluet", 0.1).expect_err("no such surface").to_string();
-    assert!(said.contains("no surface `fluet`; it has `ball`, `flute`"), "{said}");
-    for wrong in [f64::NAN, f64::NEG_INFINITY] {
-        assert!(verifier().with_allowance("flute", wrong).is_err());
+    let message = verifier().with_allowance("fluet", 0.1).expect_err("no such surface").to_string();
+    assert!(message.contains("no surface `fluet`; it has `ball`, `flute`"), "{message}");
+    for invalid in [f64::NAN, f64::NEG_INFINITY] {
+        assert!(verifier().with_allowance("flute", invalid).is_err());
     }
-    for wrong in [f64::NAN, -1.0, f64::INFINITY] {
+    for invalid in [f64::NAN, -1.0, f64::INFINITY] {
         assert!(
-            verifier().with_tolerance(wrong).is_err() && verifier().with_resolution(wrong).is_err()
+            verifier().with_tolerance(invalid).is_err()
+                && verifier().with_resolution(invalid).is_err()
         );
     }
     let inch = Program::parse("UNITS/INCHES\nGOTO/1,2,3\nFINI\n", "inch.cl").expect("a program");
-    let said = verifier().check(&inch).expect_err("another unit").to_string();
-    assert!(said.starts_with("inch.cl:1: UNITS says inch"), "{said}");
+    let message = verifier().check(&inch).expect_err("another unit").to_string();
+    assert!(message.starts_with("inch.cl:1: UNITS says inch"), "{message}");
 }
 
 #[test]
-fn findings_come_in_the_programs_order_and_are_the_same_again() {
+fn findings_are_ordered_and_reproducible() {
     let rows: String = (0..150)
         .map(|k| format!("{},0,{},0,0,1\n", k % 7, 0.1 - 0.002 * f64::from(k % 97)))
         .collect();
@@ -237,7 +236,7 @@ fn findings_come_in_the_programs_order_and_are_the_same_again() {
 
 /// A tool defined by regions is checked like one defined by a profile: the findings and their depths agree.
 #[test]
-fn a_ball_by_hand_is_checked_as_one_by_its_profile() {
+fn tools_by_regions_and_by_profile_give_the_same_findings() {
     let bvh = TriangleBvh::new(&pillar());
     let text =
         "-30,0,-0.5,0,0,1\n30,0,-0.5,0,0,1\n30,0,8,0,0.6,0.8\n0,0,-0.25,0,0,1\n0,0,-20,0,0,1\n";
@@ -246,21 +245,21 @@ fn a_ball_by_hand_is_checked_as_one_by_its_profile() {
         let verifier = verifier.with_tolerance(0.01).expect("a length");
         verifier.check(&program).expect("it can be checked")
     };
-    let [hand, drawn] = [
-        check(Verifier::new(&bvh, &ByHand).expect("proved")),
-        check(Verifier::new(&bvh, &Drawn).expect("a profile")),
+    let [by_regions, by_profile] = [
+        check(Verifier::new(&bvh, &BallByRegions).expect("proved")),
+        check(Verifier::new(&bvh, &BallByProfile).expect("a profile")),
     ];
-    assert_eq!(briefly(&hand), briefly(&drawn));
-    assert!(hand.findings.len() > 2, "{hand:?}");
-    for (one, other) in hand.findings.iter().zip(&drawn.findings) {
+    assert_eq!(summary(&by_regions), summary(&by_profile));
+    assert!(by_regions.findings.len() > 2, "{by_regions:?}");
+    for (first, second) in by_regions.findings.iter().zip(&by_profile.findings) {
         let depth = |kind: &FindingKind| match kind {
             FindingKind::Deep { depth, .. } => Some(*depth),
             _ => None,
         };
-        if let (Some(Interval { low, high }), Some(Interval { low: least, high: most })) =
-            (depth(&one.kind), depth(&other.kind))
+        if let (Some(Interval { low, high }), Some(Interval { low: other_low, high: other_high })) =
+            (depth(&first.kind), depth(&second.kind))
         {
-            assert!(low <= most && least <= high, "{one:?}, {other:?}");
+            assert!(low <= other_high && other_low <= high, "{first:?}, {second:?}");
         }
     }
 }

@@ -5,7 +5,7 @@ mod cases;
 mod oracle;
 
 use nalgebra::Point3;
-use oracle::{Draw, Mounted, SURFACES, Stand, Worst, along, places};
+use oracle::{Mounted, Random, SURFACES, ToolPose, Worst, interpolate, sample_points};
 use touchoff::certify::{TriangleBvh, Witness};
 use touchoff::mesh::shapes;
 use touchoff::verify::{Finding, FindingKind, Verifier};
@@ -17,48 +17,54 @@ pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
 
 const RESOLUTION: f64 = 1e-3;
 /// Distance between sample points of triangles, in mm.
-const STEP: f64 = 0.6;
+const SAMPLE_SPACING: f64 = 0.6;
 /// Number of time steps per motion.
-const TIMES: u32 = 24;
+const TIME_STEPS: u32 = 24;
 
 /// Returns a random walk of poses about a block, each with a flag for rapid traverse.
-fn walk(draw: &mut Draw, stops: usize) -> Vec<(Stand, bool)> {
-    let mut tip = Point3::from(draw.vector(12.0));
-    let mut axis = draw.vector(1.0).normalize();
+fn walk(random: &mut Random, count: usize) -> Vec<(ToolPose, bool)> {
+    let mut tip = Point3::from(random.vector(12.0));
+    let mut axis = random.vector(1.0).normalize();
     let mut walk = Vec::new();
-    for _ in 0..stops {
-        walk.push(((tip, axis), draw.between(0.0, 1.0) < 0.2));
-        let size = if draw.between(0.0, 1.0) < 0.3 { 9.0 } else { 1.5 };
+    for _ in 0..count {
+        walk.push(((tip, axis), random.between(0.0, 1.0) < 0.2));
+        let step = if random.between(0.0, 1.0) < 0.3 { 9.0 } else { 1.5 };
         // The factor keeps the walk near the block.
-        tip = Point3::from((tip.coords + draw.vector(size)) * 0.95);
-        axis = (axis + draw.vector(0.25)).normalize();
+        tip = Point3::from((tip.coords + random.vector(step)) * 0.95);
+        axis = (axis + random.vector(0.25)).normalize();
     }
     walk
 }
 
-/// Returns the depth that each surface is allowed in the motion to a stop.
-fn limits(given: &[(&str, f64)], tolerance: f64, rapid: bool) -> [f64; 4] {
+/// Returns the depth that each surface is allowed in the motion to a cutter location.
+fn limits(allowances: &[(&str, f64)], tolerance: f64, rapid: bool) -> [f64; 4] {
     SURFACES.map(|name| {
-        let own = given.iter().find(|(known, _)| *known == name).map(|(_, allowed)| *allowed);
-        let allowed = own.unwrap_or(tolerance);
+        let own_limit =
+            allowances.iter().find(|(surface, _)| *surface == name).map(|(_, allowed)| *allowed);
+        let allowed = own_limit.unwrap_or(tolerance);
         if rapid { allowed.min(tolerance) } else { allowed }
     })
 }
 
 /// Checks a finding at the witness that it names.
-fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &Stand)) {
-    let (tip, axis) = along((from, to), found.time);
-    assert!((found.pose.tip() - tip).norm() < 1e-9 && (found.pose.axis() - axis).norm() < 1e-9);
-    let stand = (tip, axis);
-    let on = |witness: &Witness| {
+fn check_finding(
+    finding: &Finding,
+    mesh: &Mesh,
+    limits: &[f64; 4],
+    (start, end): (&ToolPose, &ToolPose),
+) {
+    let (tip, axis) = interpolate((start, end), finding.time);
+    assert!((finding.pose.tip() - tip).norm() < 1e-9 && (finding.pose.axis() - axis).norm() < 1e-9);
+    let pose = (tip, axis);
+    let worst_at = |witness: &Witness| {
         let [a, b, c] = mesh.triangle(witness.triangle);
         let normal = (b - a).cross(&(c - a)).normalize();
-        assert!((witness.point - a).dot(&normal).abs() < 1e-9, "{found:?}");
-        let mut there = Worst::none();
-        there.add(&witness.point, &stand);
-        there
+        assert!((witness.point - a).dot(&normal).abs() < 1e-9, "{finding:?}");
+        let mut actual = Worst::none();
+        actual.add(&witness.point, &pose);
+        actual
     };
-    match &found.kind {
+    match &finding.kind {
         FindingKind::Deep {
             surface,
             allowed,
@@ -67,105 +73,101 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
             witness,
             ..
         } => {
-            let there = on(witness).depth[surface.0];
+            let actual = worst_at(witness).depth[surface.0];
             assert_eq!(*allowed, limits[surface.0]);
-            assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
+            assert!(*low <= actual + 1e-9 && actual <= high + 1e-9, "{actual}: {finding:?}");
             assert!(
-                there > allowed.max(0.0) && high - low < RESOLUTION && max_depth >= high,
-                "{found:?}"
+                actual > allowed.max(0.0) && high - low < RESOLUTION && max_depth >= high,
+                "{finding:?}"
             );
         }
-        FindingKind::Near {
-            surface,
-            margin,
-            distance: Interval { low, high },
-            min_distance,
-            witness,
-        } => {
-            let there = on(witness).distance[surface.0];
+        FindingKind::Near { surface, margin, distance: Interval { low, high }, min_distance, witness } => {
+            let actual = worst_at(witness).distance[surface.0];
             assert_eq!(-margin, limits[surface.0]);
-            assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
-            assert!(there < *margin && high - low < RESOLUTION && min_distance <= low, "{found:?}");
+            assert!(*low <= actual + 1e-9 && actual <= high + 1e-9, "{actual}: {finding:?}");
+            assert!(actual < *margin && high - low < RESOLUTION && min_distance <= low, "{finding:?}");
         }
-        other => panic!("{other:?} at {found:?}"),
+        other => panic!("{other:?} at {finding:?}"),
     }
 }
 
 /// Compares the findings of a motion with the result of brute force.
-fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
+fn compare_with_brute_force(findings: &[Finding], limits: &[f64; 4], worst: &Worst) {
     for (surface, limit) in limits.iter().enumerate() {
         let found: Vec<_> =
-            of.iter().filter(|f| f.kind.surface() == Some(SurfaceId(surface))).collect();
+            findings.iter().filter(|f| f.kind.surface() == Some(SurfaceId(surface))).collect();
         assert!(found.len() <= 1, "{found:?}");
         let (depth, distance) = (worst.depth[surface], worst.distance[surface]);
-        let deep = depth > limit.max(0.0) + RESOLUTION;
-        let near = *limit < 0.0 && distance < -limit - RESOLUTION;
+        let is_too_deep = depth > limit.max(0.0) + RESOLUTION;
+        let is_too_near = *limit < 0.0 && distance < -limit - RESOLUTION;
         match found.first().map(|found| found.kind) {
             Some(FindingKind::Deep { max_depth, .. }) => {
                 assert!(depth <= max_depth + 1e-9, "{depth}: {found:?}");
             }
             Some(FindingKind::Near { min_distance, .. }) => {
-                assert!(!deep && distance >= min_distance - 1e-9, "{distance}: {found:?}");
+                assert!(!is_too_deep && distance >= min_distance - 1e-9, "{distance}: {found:?}");
             }
-            _ => assert!(!deep && !near, "{surface}: {limit}, {worst:?}, {of:?}"),
+            _ => {
+                assert!(!is_too_deep && !is_too_near, "{surface}: {limit}, {worst:?}, {findings:?}")
+            }
         }
     }
 }
 
 #[test]
-fn brute_force_finds_nothing_else() {
+fn findings_agree_with_brute_force() {
     let meshes = [
         block([-8.0, -8.0, -8.0], [8.0, 8.0, 8.0]),
         shapes::plane(18.0, 6, Unit::Millimetre).expect("a sheet"),
     ];
-    let cut = f64::INFINITY;
+    let unlimited = f64::INFINITY;
     let allowances: [&[(&str, f64)]; 5] = [
         &[],
-        &[("flute", cut), ("ball", 1.5)],
+        &[("flute", unlimited), ("ball", 1.5)],
         &[("nut", -1.0), ("shank", -0.3)],
-        &[("nut", -0.5), ("flute", 0.7), ("ball", cut)],
-        &[("ball", cut), ("flute", cut), ("shank", -3.0), ("nut", -6.0)],
+        &[("nut", -0.5), ("flute", 0.7), ("ball", unlimited)],
+        &[("ball", unlimited), ("flute", unlimited), ("shank", -3.0), ("nut", -6.0)],
     ];
     let [mut deep, mut near, mut clear] = [0; 3];
     for (k, mesh) in meshes.iter().enumerate() {
-        let (bvh, places) = (TriangleBvh::new(mesh), places(mesh, STEP));
-        for (seed, given) in (10 * k as u64..).zip(allowances) {
+        let (bvh, points) = (TriangleBvh::new(mesh), sample_points(mesh, SAMPLE_SPACING));
+        for (seed, allowances) in (10 * k as u64..).zip(allowances) {
             let tolerance = if seed % 2 == 0 { 0.0 } else { 0.05 };
-            let walk = walk(&mut Draw::new(seed + 1), 60);
-            let pose = |(tip, axis): &Stand| Pose::from_axis(*tip, *axis).expect("an axis");
-            let poses = walk.iter().map(|(stand, rapid)| (pose(stand), *rapid));
+            let walk = walk(&mut Random::new(seed + 1), 60);
+            let pose = |(tip, axis): &ToolPose| Pose::from_axis(*tip, *axis).expect("an axis");
+            let poses = walk.iter().map(|(state, rapid)| (pose(state), *rapid));
             let program = Program::new("walk", None, poses).expect("stops");
             let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
             let verifier = verifier.with_tolerance(tolerance).expect("a length");
             let verifier = verifier.with_resolution(RESOLUTION).expect("a length");
-            let verifier = given.iter().fold(verifier, |verifier, (name, to)| {
+            let verifier = allowances.iter().fold(verifier, |verifier, (name, to)| {
                 verifier.with_allowance(name, *to).expect("a surface")
             });
             let report = verifier.check(&program).expect("it can be checked");
             assert_eq!((report.motions, report.inside_known), (59, k == 0));
-            for (stop, (to, rapid)) in walk.iter().enumerate() {
-                let from = &walk[stop.saturating_sub(1)].0;
-                let limits = limits(given, tolerance, *rapid);
+            for (location, (to, rapid)) in walk.iter().enumerate() {
+                let from = &walk[location.saturating_sub(1)].0;
+                let limits = limits(allowances, tolerance, *rapid);
                 let found: Vec<Finding> = report
                     .findings
                     .iter()
-                    .filter(|found| found.location == stop)
+                    .filter(|found| found.location == location)
                     .copied()
                     .collect();
                 for finding in
                     found.iter().filter(|found| !matches!(found.kind, FindingKind::Inside { .. }))
                 {
-                    assert_eq!((finding.line, finding.rapid), (stop + 1, *rapid));
-                    judge(finding, mesh, &limits, (from, to));
+                    assert_eq!((finding.line, finding.rapid), (location + 1, *rapid));
+                    check_finding(finding, mesh, &limits, (from, to));
                     deep += usize::from(matches!(finding.kind, FindingKind::Deep { .. }));
                     near += usize::from(matches!(finding.kind, FindingKind::Near { .. }));
                 }
-                let mut worst = Worst::none();
-                for time in 0..=TIMES {
-                    let stand = along((from, to), f64::from(time) / f64::from(TIMES));
-                    places.iter().for_each(|place| worst.add(place, &stand));
+                let mut expected = Worst::none();
+                for time in 0..=TIME_STEPS {
+                    let pose = interpolate((from, to), f64::from(time) / f64::from(TIME_STEPS));
+                    points.iter().for_each(|point| expected.add(point, &pose));
                 }
-                hold(&found, &limits, &worst);
+                compare_with_brute_force(&found, &limits, &expected);
                 clear += usize::from(found.is_empty());
             }
         }

@@ -1,5 +1,5 @@
 //! A brute-force oracle: sample points of triangles, sample times of motions, and the distance to each segment
-//! of one profile in closed form. It shares nothing with the code under test.
+//! of one profile in closed form. It shares no code with the library.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, TriangleId};
@@ -22,7 +22,7 @@ touchoff::tool! {
 }
 
 /// A tip and an axis.
-pub(crate) type Stand = (Point3<f64>, Vector3<f64>);
+pub(crate) type ToolPose = (Point3<f64>, Vector3<f64>);
 
 /// Returns the distance of a point in the half plane to each surface.
 fn distances([d, z]: [f64; 2]) -> [f64; 4] {
@@ -42,7 +42,7 @@ fn distances([d, z]: [f64; 2]) -> [f64; 4] {
     ]
 }
 
-fn inside([d, z]: [f64; 2]) -> bool {
+fn is_inside([d, z]: [f64; 2]) -> bool {
     match z {
         0.0..3.0 => d.hypot(z - 3.0) <= 3.0,
         3.0..25.0 => d <= 3.0,
@@ -51,10 +51,11 @@ fn inside([d, z]: [f64; 2]) -> bool {
     }
 }
 
-fn seen(place: &Point3<f64>, (tip, axis): &Stand) -> [f64; 2] {
-    let way = place - tip;
-    let z = way.dot(axis);
-    [(way - axis * z).norm(), z]
+/// Returns the coordinates `[d, z]` of a point in the half plane of a tool.
+fn half_plane_coordinates(point: &Point3<f64>, (tip, axis): &ToolPose) -> [f64; 2] {
+    let offset = point - tip;
+    let z = offset.dot(axis);
+    [(offset - axis * z).norm(), z]
 }
 
 /// Results of brute force per surface: the depth where it is the nearest, and the distance.
@@ -70,22 +71,22 @@ impl Worst {
     }
 
     /// Adds a point of the part, for a tip and an axis of the tool.
-    pub(crate) fn add(&mut self, place: &Point3<f64>, stand: &Stand) {
-        let seen = seen(place, stand);
+    pub(crate) fn add(&mut self, point: &Point3<f64>, pose: &ToolPose) {
+        let coordinates = half_plane_coordinates(point, pose);
         // No margin under test reaches farther.
-        if seen[0] > 15.0 || !(-7.0..47.0).contains(&seen[1]) {
+        if coordinates[0] > 15.0 || !(-7.0..47.0).contains(&coordinates[1]) {
             return;
         }
-        let far = distances(seen);
-        for (least, far) in self.distance.iter_mut().zip(far) {
-            *least = least.min(far);
+        let distances = distances(coordinates);
+        for (min_distance, distance) in self.distance.iter_mut().zip(distances) {
+            *min_distance = min_distance.min(distance);
         }
-        if inside(seen) {
-            let nearest = far.iter().copied().fold(f64::INFINITY, f64::min);
-            for (most, far) in self.depth.iter_mut().zip(far) {
+        if is_inside(coordinates) {
+            let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+            for (max_depth, distance) in self.depth.iter_mut().zip(distances) {
                 // On a seam both surfaces are equally near.
-                if far - nearest <= 1e-9 {
-                    *most = most.max(nearest);
+                if distance - nearest <= 1e-9 {
+                    *max_depth = max_depth.max(nearest);
                 }
             }
         }
@@ -93,19 +94,19 @@ impl Worst {
 }
 
 /// Returns tip and axis at a time of a motion from 0 to 1: the tip moves straight, the axis turns evenly.
-pub(crate) fn along((from, to): (&Stand, &Stand), part: f64) -> Stand {
-    let tip = from.0 + (to.0 - from.0) * part;
+pub(crate) fn interpolate((from, to): (&ToolPose, &ToolPose), fraction: f64) -> ToolPose {
+    let tip = from.0 + (to.0 - from.0) * fraction;
     let angle = from.1.cross(&to.1).norm().atan2(from.1.dot(&to.1));
     if angle < 1e-9 {
         return (tip, from.1);
     }
-    let axis = from.1 * ((1.0 - part) * angle).sin() + to.1 * (part * angle).sin();
+    let axis = from.1 * ((1.0 - fraction) * angle).sin() + to.1 * (fraction * angle).sin();
     (tip, axis.normalize())
 }
 
 /// Returns sample points of all triangles, at most `step` apart along their edges.
-pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
-    let mut places = Vec::new();
+pub(crate) fn sample_points(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
+    let mut points = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let [a, b, c] = mesh.triangle(TriangleId(id));
         let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
@@ -113,19 +114,19 @@ pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
         for i in 0..=n {
             for j in 0..=n - i {
                 let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(n));
-                places.push(a + (b - a) * u + (c - a) * v);
+                points.push(a + (b - a) * u + (c - a) * v);
             }
         }
     }
-    places
+    points
 }
 
 /// A reproducible generator of random numbers.
-pub(crate) struct Draw(u64);
+pub(crate) struct Random(u64);
 
-impl Draw {
-    pub(crate) fn new(seed: u64) -> Draw {
-        Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+impl Random {
+    pub(crate) fn new(seed: u64) -> Random {
+        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
     /// Returns a number that is uniformly distributed between two bounds.

@@ -6,7 +6,7 @@ use crate::mesh::location::{SourceLocation, Tokens, number, printable};
 
 /// One element: the requested numbers and the items of the requested list.
 pub(super) struct Record<'r, const N: usize> {
-    pub(super) place: SourceLocation,
+    pub(super) location: SourceLocation,
     pub(super) index: usize,
     pub(super) numbers: [f64; N],
     pub(super) items: &'r [f64],
@@ -52,14 +52,14 @@ impl<'a, 'n> Body<'a, 'n> {
         let mut items = Vec::new();
         for index in 0..element.count {
             self.index = index;
-            let place = self.start();
+            let location = self.start();
             let mut numbers = [0.0; N];
             items.clear();
             for (at, (property, slot)) in element.properties.iter().zip(&slots).enumerate() {
                 match (property.length, slot) {
                     (Some(length), _) => {
                         let output = (list == Some(at)).then_some(&mut items);
-                        self.list(element, property, length, place, output)?;
+                        self.list(element, property, length, location, output)?;
                     }
                     (None, Some(slot)) => {
                         numbers[*slot] = self.number(element, property, property.value)?;
@@ -68,18 +68,18 @@ impl<'a, 'n> Body<'a, 'n> {
                 }
             }
             self.end_line()?;
-            visit(Record { place, index, numbers, items: &items })?;
+            visit(Record { location, index, numbers, items: &items })?;
         }
         Ok(())
     }
 
     /// Checks that the file ends here.
     pub(super) fn end(mut self) -> Result<(), PlyError> {
-        let place = self.start();
+        let location = self.start();
         if self.tokens.rest.is_empty() {
             Ok(())
         } else {
-            Err(PlyError::Trailing { file: self.file(), place })
+            Err(PlyError::Trailing { file: self.file(), location })
         }
     }
 
@@ -91,10 +91,10 @@ impl<'a, 'n> Body<'a, 'n> {
         if self.encoding == Encoding::Ascii {
             self.tokens.skip_space();
         }
-        self.place()
+        self.location()
     }
 
-    fn place(&self) -> SourceLocation {
+    fn location(&self) -> SourceLocation {
         match self.encoding {
             Encoding::Ascii => SourceLocation::Line(self.tokens.line),
             _ => SourceLocation::Byte(self.length - self.tokens.rest.len()),
@@ -115,14 +115,14 @@ impl<'a, 'n> Body<'a, 'n> {
         element: &Element,
         property: &Property,
         length: Type,
-        place: SourceLocation,
+        location: SourceLocation,
         output: Option<&mut Vec<f64>>,
     ) -> Result<(), PlyError> {
         let value = self.number(element, property, length)?;
         let Some(count) = to_u32(value) else {
             return Err(PlyError::Value {
                 file: self.file(),
-                place,
+                location,
                 element: printable(element.name),
                 index: self.index,
                 property: format!("the length of {}", printable(property.name)),
@@ -208,13 +208,13 @@ impl<'a, 'n> Body<'a, 'n> {
     }
 
     fn truncated(&self, element: &Element) -> PlyError {
-        let place = match self.place() {
+        let location = match self.location() {
             SourceLocation::Byte(_) => SourceLocation::Byte(self.length),
             line => line,
         };
         PlyError::Ended {
             file: self.file(),
-            place,
+            location,
             element: printable(element.name),
             index: self.index,
             count: element.count,

@@ -66,14 +66,14 @@ pub enum PlyError {
     },
     /// The file ends within an element.
     #[error(
-        "{file} ends at {place}, within `{element}` {index} (from 0) of {count}: it was cut off; \
+        "{file} ends at {location}, within `{element}` {index} (from 0) of {count}: it was cut off; \
          export or copy it again"
     )]
     Ended {
         /// The file name.
         file: String,
         /// The location at which it ends.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The element's name.
         element: String,
         /// The index of the element, from 0.
@@ -83,25 +83,25 @@ pub enum PlyError {
     },
     /// The file continues after its last element.
     #[error(
-        "{file} goes on at {place}, after all that its header promises, and what follows is \
+        "{file} goes on at {location}, after all that its header promises, and what follows is \
          unknown: export it again, one part to a file"
     )]
     Trailing {
         /// The file name.
         file: String,
         /// The location at which it continues.
-        place: SourceLocation,
+        location: SourceLocation,
     },
     /// A number is not valid for its property.
     #[error(
-        "{file}, {place}: `{property}` of `{element}` {index} (from 0) is {value:?}, but must be \
+        "{file}, {location}: `{property}` of `{element}` {index} (from 0) is {value:?}, but must be \
          {rule}: repair the part where it was made"
     )]
     Value {
         /// The file name.
         file: String,
         /// The location of the element in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The element's name.
         element: String,
         /// The index of the element, from 0.
@@ -115,14 +115,14 @@ pub enum PlyError {
     },
     /// A face names a vertex that does not exist.
     #[error(
-        "{file}, {place}: face {face} (from 0) names vertex {vertex}, but there are {vertices}, \
+        "{file}, {location}: face {face} (from 0) names vertex {vertex}, but there are {vertices}, \
          counted from 0: export the part again"
     )]
     Index {
         /// The file name.
         file: String,
         /// The location of the face in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The face's index, from 0.
         face: usize,
         /// The vertex index in the face.
@@ -132,14 +132,14 @@ pub enum PlyError {
     },
     /// A face has fewer than three corners.
     #[error(
-        "{file}, {place}: face {face} (from 0) has {corners} corners: a face has three at least; \
+        "{file}, {location}: face {face} (from 0) has {corners} corners: a face has three at least; \
          repair the mesh where it was made"
     )]
     Corners {
         /// The file name.
         file: String,
         /// The location of the face in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The face's index, from 0.
         face: usize,
         /// The number of corners.
@@ -147,25 +147,25 @@ pub enum PlyError {
     },
     /// The fan of triangles from the first corner of a polygon does not fill it.
     #[error(
-        "{file}, {place}: the polygon is too hollow or too bent to be cut into triangles from its \
+        "{file}, {location}: the polygon is too hollow or too bent to be cut into triangles from its \
          first corner: export the part in triangles"
     )]
     Folded {
         /// The file name.
         file: String,
         /// The location of the face in the file.
-        place: SourceLocation,
+        location: SourceLocation,
     },
     /// The normal of a point cannot be normalised.
     #[error(
-        "{file}, {place}: the normal of point {point} (from 0) is no direction: its norm is \
+        "{file}, {location}: the normal of point {point} (from 0) is no direction: its norm is \
          {norm:?}; remove the point, or compute the normals anew"
     )]
     Normal {
         /// The file name.
         file: String,
         /// The location of the point in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The point's index, from 0.
         point: usize,
         /// The normal's norm; NaN if a component is NaN.
@@ -200,17 +200,17 @@ pub enum PlyError {
     },
     /// A vertex is far outside the rest of the part.
     #[error(
-        "{file}, {place}: vertex {vertex} (from 0): {stray}: mend the coordinate, or export or copy the part again"
+        "{file}, {location}: vertex {vertex} (from 0): {outlier}: mend the coordinate, or export or copy the part again"
     )]
     Stray {
         /// The file name.
         file: String,
         /// The location of the vertex in the file.
-        place: SourceLocation,
+        location: SourceLocation,
         /// The vertex index, from 0.
         vertex: usize,
         /// The outlying coordinate and its statistics.
-        stray: Outlier,
+        outlier: Outlier,
     },
     /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]

@@ -178,13 +178,13 @@ struct Lines<'a, 'n> {
 
 impl<'a> Lines<'a, '_> {
     fn expected(&self, expected: &str, found: Option<&[u8]>) -> PlyError {
-        let place = if self.tokens.rest.is_empty() { "the file" } else { "the line" };
+        let location = if self.tokens.rest.is_empty() { "the file" } else { "the line" };
         PlyError::Expected {
             file: self.name.to_owned(),
             line: self.tokens.line,
             expected: expected.to_owned(),
             found: found
-                .map_or(format!("the end of {place}"), |word| format!("`{}`", printable(word))),
+                .map_or(format!("the end of {location}"), |word| format!("`{}`", printable(word))),
         }
     }
 

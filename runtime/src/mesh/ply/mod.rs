@@ -80,8 +80,8 @@ impl OrientedPoints {
                 let normal = Vector3::new(nx, ny, nz);
                 let norm = normal.norm();
                 if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
-                    let (file, place, point) = (file(), record.place, record.index);
-                    return Err(PlyError::Normal { file, place, point, norm });
+                    let (file, location, point) = (file(), record.location, record.index);
+                    return Err(PlyError::Normal { file, location, point, norm });
                 }
                 points.normals.push(normal / norm);
                 if let Some(faces) = &mut points.faces {
@@ -102,7 +102,7 @@ impl OrientedPoints {
         body.end()?;
         match find_outlier(&points.places) {
             None => Ok(points),
-            Some((vertex, _, stray)) => Err(stray_vertex(bytes, name, vertex, stray)),
+            Some((vertex, _, outlier)) => Err(stray_vertex(bytes, name, vertex, outlier)),
         }
     }
 }
@@ -151,7 +151,7 @@ impl Mesh {
             } else if element.name == face.name {
                 body.read(element, [], element.list(list), |record| {
                     corners_of(&record, list, vertex.count, name, &mut corners)?;
-                    faces.push(record.place, &corners);
+                    faces.push(record.location, &corners);
                     Ok(())
                 })?;
             } else {
@@ -162,12 +162,12 @@ impl Mesh {
         if faces.is_empty() {
             return Err(PlyError::NoFaces { file: file() });
         }
-        if let Some(place) = faces.folded(&vertices) {
-            return Err(PlyError::Folded { file: file(), place });
+        if let Some(location) = faces.folded(&vertices) {
+            return Err(PlyError::Folded { file: file(), location });
         }
         let (used_vertices, corners) = faces.used_vertices(&vertices);
-        if let Some((index, _, stray)) = find_outlier(&corners) {
-            return Err(stray_vertex(bytes, name, used_vertices[index], stray));
+        if let Some((index, _, outlier)) = find_outlier(&corners) {
+            return Err(stray_vertex(bytes, name, used_vertices[index], outlier));
         }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| PlyError::Mesh { file: file(), source })
@@ -175,9 +175,9 @@ impl Mesh {
 }
 
 /// Returns the error for a vertex far outside the others in a valid file.
-fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Outlier) -> PlyError {
+fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, outlier: Outlier) -> PlyError {
     let check = |record: Record<0>| match record.index == vertex {
-        true => Err(PlyError::Stray { file: name.to_owned(), place: record.place, vertex, stray }),
+        true => Err(PlyError::Stray { file: name.to_owned(), location: record.location, vertex, outlier }),
         false => Ok(()),
     };
     let search = || {
@@ -235,7 +235,7 @@ fn corners_of(
     name: &str,
     corners: &mut Vec<u32>,
 ) -> Result<(), PlyError> {
-    let (place, face) = (record.place, record.index);
+    let (location, face) = (record.location, record.index);
     let file = || name.to_owned();
     corners.clear();
     for &item in record.items {
@@ -244,12 +244,12 @@ fn corners_of(
             return Err(invalid_value(record, "face", list, item, rule, name));
         };
         if vertex as usize >= vertices {
-            return Err(PlyError::Index { file: file(), place, face, vertex, vertices });
+            return Err(PlyError::Index { file: file(), location, face, vertex, vertices });
         }
         corners.push(vertex);
     }
     match corners.len() {
-        0..=2 => Err(PlyError::Corners { file: file(), place, face, corners: corners.len() }),
+        0..=2 => Err(PlyError::Corners { file: file(), location, face, corners: corners.len() }),
         _ => Ok(()),
     }
 }
@@ -264,7 +264,7 @@ fn invalid_value<const N: usize>(
 ) -> PlyError {
     PlyError::Value {
         file: name.to_owned(),
-        place: record.place,
+        location: record.location,
         element: element.to_owned(),
         index: record.index,
         property: property.to_owned(),

@@ -1,6 +1,6 @@
 //! A recording process is killed at random moments: every batch that it acknowledged is on disk.
 //!
-//! It is killed twenty times, or as often as `TOUCHOFF_KILLS` says.
+//! The environment variable `TOUCHOFF_KILLS` sets the number of kills; the default is 20.
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
@@ -23,11 +23,11 @@ touchoff::tool! {
 }
 
 /// Environment variable for the path of the map that the killed process records into.
-const MAP: &str = "TOUCHOFF_KILLED_MAP";
+const MAP_PATH_VARIABLE: &str = "TOUCHOFF_KILLED_MAP";
 /// Environment variable for the number of its first batch.
-const FIRST: &str = "TOUCHOFF_KILLED_FIRST";
+const FIRST_BATCH_VARIABLE: &str = "TOUCHOFF_KILLED_FIRST";
 /// Number of triangles per batch.
-const BATCH: u32 = 40;
+const TRIANGLES_PER_BATCH: u32 = 40;
 
 fn sphere() -> Mesh {
     shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere")
@@ -54,7 +54,10 @@ fn batch(k: u32, triangles: u32) -> Vec<(u32, MapRow)> {
         let access = Accessibility { tool: 0, directions, stickout: Some(f64::from(triangle)) };
         MapRow { best: vec![record], access: vec![access] }
     };
-    (0..BATCH).map(|at| (k * 7 + at * 3) % triangles).map(|at| (at, row(at))).collect()
+    (0..TRIANGLES_PER_BATCH)
+        .map(|index| (k * 7 + index * 3) % triangles)
+        .map(|id| (id, row(id)))
+        .collect()
 }
 
 /// Records one batch after another and acknowledges each, until it is killed. Run by itself it does nothing:
@@ -62,7 +65,10 @@ fn batch(k: u32, triangles: u32) -> Vec<(u32, MapRow)> {
 #[test]
 #[ignore = "the process that is killed"]
 fn records_until_it_is_killed() {
-    let (Ok(path), Ok(first)) = (env::var(MAP), env::var(FIRST)) else { return };
+    let (Ok(path), Ok(first)) = (env::var(MAP_PATH_VARIABLE), env::var(FIRST_BATCH_VARIABLE))
+    else {
+        return;
+    };
     let map = PostureMap::open(path, &identity()).expect("a map");
     let triangles = map.identity().part.triangles;
     for k in first.parse().expect("a number").. {
@@ -72,13 +78,17 @@ fn records_until_it_is_killed() {
     }
 }
 
-/// Starts a process that records from batch `first` on, waits for `said` acknowledgements and then for the time
-/// `after`, and kills it. Returns the last batch that was acknowledged.
-fn killed(path: &Path, first: u32, (said, after): (u32, Duration)) -> Option<u32> {
+/// Starts a process that records from batch `first` on, waits for a number of acknowledgements and then for a delay,
+/// and kills it. Returns the last acknowledged batch.
+fn run_and_kill(
+    path: &Path,
+    first: u32,
+    (acknowledgements, delay): (u32, Duration),
+) -> Option<u32> {
     let mut child = Command::new(env::current_exe().expect("a path"))
-        .args(["--exact", "killed::records_until_it_is_killed", "--ignored", "--nocapture"])
-        .env(MAP, path)
-        .env(FIRST, first.to_string())
+        .args(["--exact", "crash::records_until_it_is_killed", "--ignored", "--nocapture"])
+        .env(MAP_PATH_VARIABLE, path)
+        .env(FIRST_BATCH_VARIABLE, first.to_string())
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process");
@@ -86,17 +96,17 @@ fn killed(path: &Path, first: u32, (said, after): (u32, Duration)) -> Option<u32
     let mut batches =
         lines.map_while(Result::ok).filter_map(|line| line.split_once("recorded ")?.1.parse().ok());
     let mut last = None;
-    for _ in 0..said {
+    for _ in 0..acknowledgements {
         last = batches.next();
     }
-    thread::sleep(after);
+    thread::sleep(delay);
     child.kill().expect("killed");
     child.wait().expect("over");
     batches.last().or(last)
 }
 
 #[test]
-fn what_was_acknowledged_outlives_the_process() {
+fn acknowledged_batches_survive_a_crash() {
     let kills = match env::var_os("TOUCHOFF_KILLS") {
         None => 20,
         Some(text) => match text.to_str().and_then(|text| text.parse().ok()) {
@@ -108,47 +118,47 @@ fn what_was_acknowledged_outlives_the_process() {
     let path = folder.path().join("killed.postures");
     let triangles = identity().part.triangles;
     let mut random = Pcg64Mcg::seed_from_u64(1);
-    let mut known: Vec<Option<MapRow>> = vec![None; triangles as usize];
-    let (mut next, mut told, mut more, mut none) = (0, 0, 0, 0);
+    let mut expected: Vec<Option<MapRow>> = vec![None; triangles as usize];
+    let (mut next, mut acknowledged_total, mut unacknowledged, mut without_map) = (0, 0, 0, 0);
     for kill in 0..kills {
         // One kill of four comes while the map is created, the others while it is opened or during a batch.
-        let anew = kill % 4 == 0;
-        if anew && path.exists() {
+        let is_new_map = kill % 4 == 0;
+        if is_new_map && path.exists() {
             fs::remove_file(&path).expect("removed");
         }
-        if anew {
-            known.fill(None);
+        if is_new_map {
+            expected.fill(None);
             next = 0;
         }
-        let said = if anew { 0 } else { random.next_u32() % 10 };
-        let longest = if anew { 25_000 } else { 8_000 };
-        let after = Duration::from_micros(u64::from(random.next_u32() % longest));
-        let last = killed(&path, next, (said, after));
+        let acknowledgements = if is_new_map { 0 } else { random.next_u32() % 10 };
+        let max_delay = if is_new_map { 25_000 } else { 8_000 };
+        let delay = Duration::from_micros(u64::from(random.next_u32() % max_delay));
+        let last = run_and_kill(&path, next, (acknowledgements, delay));
         for k in next..last.map_or(next, |last| last + 1) {
-            batch(k, triangles).into_iter().for_each(|(at, row)| known[at as usize] = Some(row));
-            told += 1;
+            batch(k, triangles).into_iter().for_each(|(id, row)| expected[id as usize] = Some(row));
+            acknowledged_total += 1;
         }
         next = last.map_or(next, |last| last + 1);
         if last.is_none() && !path.exists() {
-            none += 1;
+            without_map += 1;
             continue;
         }
         let map = PostureMap::open(&path, &identity()).expect("it opens");
         let rows: Vec<(u32, MapRow)> =
             map.rows().expect("rows").map(|row| row.expect("whole")).collect();
         let mut found: Vec<Option<MapRow>> = vec![None; triangles as usize];
-        rows.into_iter().for_each(|(at, row)| found[at as usize] = Some(row));
-        if found != known {
+        rows.into_iter().for_each(|(id, row)| found[id as usize] = Some(row));
+        if found != expected {
             // One more batch may be on disk, whole, that could not be acknowledged.
-            let news = batch(next, triangles);
-            news.into_iter().for_each(|(at, row)| known[at as usize] = Some(row));
-            assert!(found == known, "kill {kill}, after batch {next}");
-            (next, more) = (next + 1, more + 1);
+            let extra_batch = batch(next, triangles);
+            extra_batch.into_iter().for_each(|(id, row)| expected[id as usize] = Some(row));
+            assert!(found == expected, "kill {kill}, after batch {next}");
+            (next, unacknowledged) = (next + 1, unacknowledged + 1);
         }
     }
     println!(
-        "{kills} kills, {none} before there was a map: {told} batches were acknowledged, all are there; \
-         {more} more are"
+        "{kills} kills, {without_map} before there was a map: {acknowledged_total} batches were acknowledged, and \
+         all are on disk, with {unacknowledged} more"
     );
-    assert!(told >= kills, "{told} batches in {kills} processes");
+    assert!(acknowledged_total >= kills, "{acknowledged_total} batches in {kills} processes");
 }

@@ -32,34 +32,34 @@ fn identity() -> MapIdentity {
 /// A hand that winds about the sphere and leans back and forth, at times too deep.
 fn pose(cycle: u64) -> Result<Pose, DeviceError> {
     let time = cycle as f64 / 1000.0;
-    let (high, round) = (0.9 * (0.7 * time).sin(), 1.3 * time);
-    let flat = (1.0 - high * high).sqrt();
-    let out = Vector3::new(flat * round.cos(), flat * round.sin(), high);
+    let (height, angle) = (0.9 * (0.7 * time).sin(), 1.3 * time);
+    let radius = (1.0 - height * height).sqrt();
+    let outward = Vector3::new(radius * angle.cos(), radius * angle.sin(), height);
     let lean = Vector3::new((2.0 * time).sin(), (3.0 * time).cos(), (5.0 * time).sin()) * 0.6;
-    let deep = 0.15 + 0.3 * (9.0 * time).sin();
-    let axis = (out + lean).normalize();
-    let tip = Point3::from(out * (12.0 - deep + 3.0) - axis * 3.0);
+    let depth = 0.15 + 0.3 * (9.0 * time).sin();
+    let axis = (outward + lean).normalize();
+    let tip = Point3::from(outward * (12.0 - depth + 3.0) - axis * 3.0);
     Ok(Pose::from_axis(tip, axis)?)
 }
 
-/// Runs the loop over some cycles as fast as possible, with a recorder if there is a map, and returns all
-/// states otherwise.
-fn looped(
+/// Runs the loop over a range of cycles as fast as possible. A recorder consumes the states if there is a map;
+/// otherwise all states are returned.
+fn run_loop(
     (part, bvh): (&Part, &TriangleBvh),
     cycles: std::ops::Range<u64>,
-    (map, room): (Option<&PostureMap>, usize),
+    (map, capacity): (Option<&PostureMap>, usize),
 ) -> (Vec<SessionState>, LoopReport, Option<RecorderStats>) {
     let limits = DeviceLimits::default();
     let mut device = ScriptedDevice::new(limits, move |cycle| pose(cycles.start + cycle));
     let probe = Probe::new(part, &Mill).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
-    let (mut watch, _, mut samples) = state_channel(room);
+    let (mut publisher, _, mut samples) = state_channel(capacity);
     let mut states = Vec::new();
     let count = cycles.end - cycles.start;
     std::thread::scope(|scope| {
-        let running = scope.spawn(move || {
+        let session_thread = scope.spawn(move || {
             let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
-            session.run(&mut device, clock, count, &mut watch, &stop)
+            session.run(&mut device, clock, count, &mut publisher, &stop)
         });
         let recorded = match map {
             Some(map) => {
@@ -74,7 +74,7 @@ fn looped(
                 None
             }
         };
-        (states, running.join().expect("it ends"), recorded)
+        (states, session_thread.join().expect("it ends"), recorded)
     })
 }
 
@@ -87,15 +87,15 @@ fn open(folder: &Path, name: &str) -> PostureMap {
 }
 
 #[test]
-fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
+fn a_session_fills_a_map_and_resumes() {
     let mesh = sphere();
     let (part, bvh) =
         (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
-    let (beside, room) = ((&part, &bvh), CYCLES as usize);
+    let (workpiece, capacity) = ((&part, &bvh), CYCLES as usize);
     let map = open(folder.path(), "whole");
-    let (_, report, recorded) = looped(beside, 0..CYCLES, (Some(&map), room));
-    let recorded = recorded.expect("what it saw");
+    let (_, report, recorded) = run_loop(workpiece, 0..CYCLES, (Some(&map), capacity));
+    let recorded = recorded.expect("statistics");
     assert_eq!((report.dropped_states, recorded.skipped, recorded.states), (0, 0, report.cycles));
     assert!(recorded.accepted > 100 && recorded.judged > recorded.accepted, "{recorded:?}");
     let whole = rows(&map);
@@ -126,27 +126,27 @@ fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
     // The same in sections, each with a map that is opened again: nothing is lost or duplicated.
     for cycles in [0..1500, 1500..1600, 1600..CYCLES] {
         let map = open(folder.path(), "pieces");
-        looped(beside, cycles, (Some(&map), room));
+        run_loop(workpiece, cycles, (Some(&map), capacity));
     }
-    let pieces = rows(&open(folder.path(), "pieces"));
+    let resumed = rows(&open(folder.path(), "pieces"));
     let covered = |rows: &[(u32, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
-    let shared = covered(&pieces).iter().filter(|id| covered(&whole).contains(id)).count();
+    let shared = covered(&resumed).iter().filter(|id| covered(&whole).contains(id)).count();
     // The loop's springs start anew with each section, so some cycles differ.
     assert!(shared * 10 > 9 * whole.len(), "{shared} of {}", whole.len());
-    let before = rows(&map);
-    looped(beside, 0..CYCLES, (Some(&map), room));
-    assert_eq!(rows(&map), before);
+    let rows_before = rows(&map);
+    run_loop(workpiece, 0..CYCLES, (Some(&map), capacity));
+    assert_eq!(rows(&map), rows_before);
 }
 
 #[test]
-fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
+fn the_recorder_does_not_change_the_loop() {
     let mesh = sphere();
     let (part, bvh) =
         (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
-    let (beside, room) = ((&part, &bvh), CYCLES as usize);
-    let (alone, ..) = looped(beside, 0..CYCLES, (None, room));
-    assert_eq!(alone.len() as u64, CYCLES);
+    let (workpiece, capacity) = ((&part, &bvh), CYCLES as usize);
+    let (expected_states, ..) = run_loop(workpiece, 0..CYCLES, (None, capacity));
+    assert_eq!(expected_states.len() as u64, CYCLES);
 
     // The recorder consumes the states of its loop. To compare them, run the cycles by hand.
     let map = open(folder.path(), "map");
@@ -155,17 +155,17 @@ fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     let probe = Probe::new(&part, &Mill).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
     let mut recorder = Recorder::new(&map, &part, &bvh, &Mill).expect("a recorder");
-    for (cycle, before) in alone.iter().enumerate() {
+    for (cycle, expected) in expected_states.iter().enumerate() {
         let state = session.cycle(&mut device).expect("a state");
         recorder.process(&state).expect("recorded");
-        assert!(bits(&state) == bits(before), "cycle {cycle}");
+        assert!(bits(&state) == bits(expected), "cycle {cycle}");
     }
     recorder.write().expect("recorded");
     let (_, report, recorded) =
-        looped(beside, 0..CYCLES, (Some(&open(folder.path(), "other")), room));
-    assert_eq!(recorded.map(|seen| seen.states), Some(CYCLES));
+        run_loop(workpiece, 0..CYCLES, (Some(&open(folder.path(), "other")), capacity));
+    assert_eq!(recorded.map(|stats| stats.states), Some(CYCLES));
     let last = report.last.expect("a state");
-    assert!(bits(&last) == bits(&alone[CYCLES as usize - 1]));
+    assert!(bits(&last) == bits(&expected_states[CYCLES as usize - 1]));
     assert_eq!(rows(&map), rows(&open(folder.path(), "other")));
 }
 
@@ -181,20 +181,20 @@ fn bits(state: &SessionState) -> Vec<u64> {
         state.wrench.torque,
     ];
     let numbers = [state.stiffest, state.wrench.integral, state.wrench.energy];
-    let all = vectors.iter().flat_map(|vector| vector.iter().copied()).chain(numbers);
-    all.map(f64::to_bits).collect()
+    let values = vectors.iter().flat_map(|vector| vector.iter().copied()).chain(numbers);
+    values.map(f64::to_bits).collect()
 }
 
 #[test]
-fn a_loop_that_is_too_fast_is_not_waited_for() {
+fn states_are_dropped_when_the_recorder_is_too_slow() {
     let mesh = sphere();
     let (part, bvh) =
         (Part::from_mesh(&mesh, Sampling::new(30_000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
     // Room for four states: most are lost, and all others are seen.
-    let (_, report, recorded) = looped((&part, &bvh), 0..CYCLES, (Some(&map), 4));
-    let recorded = recorded.expect("what it saw");
+    let (_, report, recorded) = run_loop((&part, &bvh), 0..CYCLES, (Some(&map), 4));
+    let recorded = recorded.expect("statistics");
     assert_eq!(report.cycles, CYCLES);
     assert_eq!(recorded.states + report.dropped_states, CYCLES);
     // Cycles after the last state that was seen are lost, but not counted as skipped.
@@ -206,26 +206,26 @@ fn a_loop_that_is_too_fast_is_not_waited_for() {
 }
 
 #[test]
-fn a_tool_of_another_version_or_a_part_in_another_unit_is_refused() {
+fn rejects_another_tool_version_and_another_unit() {
     let mesh = sphere();
     let (part, bvh) =
         (Part::from_mesh(&mesh, Sampling::new(1000)).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
-    let other = interpreted("1 - depth/2");
-    let refused = Recorder::new(&map, &part, &bvh, &other).expect_err("another version");
-    assert!(matches!(refused, RecorderError::Tool { .. }), "{refused:?}");
-    assert!(refused.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
+    let other_version = interpreted("1 - depth/2");
+    let error = Recorder::new(&map, &part, &bvh, &other_version).expect_err("another version");
+    assert!(matches!(error, RecorderError::Tool { .. }), "{error:?}");
+    assert!(error.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
     let inch = part.converted_to(Unit::Inch);
-    let refused = Recorder::new(&map, &inch, &bvh, &Mill).expect_err("another unit");
-    assert!(matches!(refused, RecorderError::Unit { .. }), "{refused:?}");
+    let error = Recorder::new(&map, &inch, &bvh, &Mill).expect_err("another unit");
+    assert!(matches!(error, RecorderError::Unit { .. }), "{error:?}");
 }
 
 #[test]
-fn a_tool_that_is_interpreted_is_the_one_that_is_compiled() {
-    let same = interpreted("1 - depth/3");
-    assert_eq!(same.info().digest, Mill.info().digest);
-    assert_eq!(identity().tool(same.info()), Some(1));
+fn interpreted_and_compiled_tools_have_the_same_digest() {
+    let interpreted_mill = interpreted("1 - depth/3");
+    assert_eq!(interpreted_mill.info().digest, Mill.info().digest);
+    assert_eq!(identity().tool(interpreted_mill.info()), Some(1));
     assert_ne!(interpreted("1 - depth/4").info().digest, Mill.info().digest);
     assert_ne!(Ball.info().digest, Mill.info().digest);
 }

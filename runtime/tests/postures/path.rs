@@ -1,6 +1,6 @@
 //! Paths: no cutter location and no motion is deeper than the tolerance at any sample point.
 
-use crate::{HOLDER, Mill, NECK, away, from_cutting, inside};
+use crate::{HOLDER, Mill, NECK, cutting_distance, is_inside, polyline_distance};
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
@@ -67,77 +67,87 @@ impl Case {
         }
     }
 
-    fn lead(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<ToolPath, PathError> {
+    fn plan(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<ToolPath, PathError> {
         self.request(tool, pattern).plan()
     }
 
     /// Plans a path over planes with a normal. Distances are in mm.
-    fn over(&self, tool: &dyn Tool, normal: [f64; 3], [stepover, step]: [f64; 2]) -> ToolPath {
-        let [stepover, step] = [stepover, step].map(|part| part * self.scale);
-        self.lead(tool, &Pattern { normal, stepover, step }).expect("a path")
+    fn plan_over_planes(
+        &self,
+        tool: &dyn Tool,
+        normal: [f64; 3],
+        [stepover, step]: [f64; 2],
+    ) -> ToolPath {
+        let [stepover, step] = [stepover, step].map(|length| length * self.scale);
+        self.plan(tool, &Pattern { normal, stepover, step }).expect("a path")
     }
 }
 
-/// Returns sample points of a mesh, at most `apart` from each other along the sides of each triangle.
-fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
-    let mut all = Vec::new();
+/// Returns sample points of a mesh, at most `spacing` from each other along the sides of each triangle.
+fn sample_mesh(mesh: &Mesh, spacing: f64) -> Vec<Point3<f64>> {
+    let mut points = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let [a, b, c] = mesh.triangle(TriangleId(id));
-        let size = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-        let count = (size / apart).ceil();
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let count = (longest / spacing).ceil();
         for i in 0..=count as u32 {
             for j in 0..=count as u32 - i {
-                all.push(a + (b - a) * (f64::from(i) / count) + (c - a) * (f64::from(j) / count));
+                points
+                    .push(a + (b - a) * (f64::from(i) / count) + (c - a) * (f64::from(j) / count));
             }
         }
     }
-    all
+    points
 }
 
 /// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces over a path, in mm: on
 /// feed moves, and on rapid moves.
-fn deepest(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
-    const TIMES: u32 = 6;
-    let places = raster(&case.mesh, 0.5 * case.scale);
-    let mut most = [[0f64; 2]; 2];
+fn max_depths(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
+    const TIME_STEPS: u32 = 6;
+    let points = sample_mesh(&case.mesh, 0.5 * case.scale);
+    let mut depths = [[0f64; 2]; 2];
     for pair in path.locations.windows(2) {
         let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
-        let about = from.axis().cross(&to.axis());
-        let turn = from.axis().angle(&to.axis());
-        for k in 0..=TIMES {
-            let part = f64::from(k) / f64::from(TIMES);
-            let tip = from.tip() + (to.tip() - from.tip()) * part;
-            let axis = match about.try_normalize(1e-12) {
-                Some(about) => {
-                    let about = nalgebra::Unit::new_unchecked(about);
-                    Rotation3::from_axis_angle(&about, turn * part) * from.axis()
+        let axis_of_rotation = from.axis().cross(&to.axis());
+        let angle = from.axis().angle(&to.axis());
+        for k in 0..=TIME_STEPS {
+            let fraction = f64::from(k) / f64::from(TIME_STEPS);
+            let tip = from.tip() + (to.tip() - from.tip()) * fraction;
+            let axis = match axis_of_rotation.try_normalize(1e-12) {
+                Some(axis_of_rotation) => {
+                    let axis_of_rotation = nalgebra::Unit::new_unchecked(axis_of_rotation);
+                    Rotation3::from_axis_angle(&axis_of_rotation, angle * fraction) * from.axis()
                 }
                 None => from.axis(),
             };
-            for place in &places {
-                let off = (place - tip) / case.scale;
-                let z = off.dot(&axis);
+            for point in &points {
+                let offset = (point - tip) / case.scale;
+                let z = offset.dot(&axis);
                 if !(0.0..=40.0).contains(&z) {
                     continue;
                 }
-                let place = [(off.norm_squared() - z * z).max(0.0).sqrt(), z];
-                if inside(place) {
-                    let (cuts, still) =
-                        (from_cutting(place), away(&NECK, place).min(away(&HOLDER, place)));
-                    let kind = usize::from(still < cuts);
-                    most[rapid][kind] = most[rapid][kind].max(cuts.min(still));
+                let point = [(offset.norm_squared() - z * z).max(0.0).sqrt(), z];
+                if is_inside(point) {
+                    let (cutting, non_cutting) = (
+                        cutting_distance(point),
+                        polyline_distance(&NECK, point).min(polyline_distance(&HOLDER, point)),
+                    );
+                    let surface_kind = usize::from(non_cutting < cutting);
+                    depths[rapid][surface_kind] =
+                        depths[rapid][surface_kind].max(cutting.min(non_cutting));
                 }
             }
         }
     }
-    most
+    depths
 }
 
 /// Returns a block with a step along y. Its corners are given as `[x, z]`.
 fn step() -> Mesh {
     let outline = [[-12.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0], [0.0, 14.0], [-12.0, 14.0]];
-    let place = |y: f64| move |[x, z]: [f64; 2]| Point3::new(x, y, z);
-    let vertices = outline.map(place(-10.0)).into_iter().chain(outline.map(place(10.0))).collect();
+    let point_at = |y: f64| move |[x, z]: [f64; 2]| Point3::new(x, y, z);
+    let vertices =
+        outline.map(point_at(-10.0)).into_iter().chain(outline.map(point_at(10.0))).collect();
     let mut triangles = Vec::new();
     for k in 0..6u32 {
         let next = (k + 1) % 6;
@@ -159,12 +169,12 @@ fn sphere() -> Mesh {
     shapes::sphere(10.0, 3, Unit::Millimetre).expect("a sphere")
 }
 
-fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> ToolPath {
+fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
     let case = Case::new(mesh, &Mill);
-    let path = case.over(&Mill, normal, apart);
-    let [feed, rapid] = deepest(&case, &path);
+    let path = case.plan_over_planes(&Mill, normal, spacing);
+    let [feed, rapid] = max_depths(&case, &path);
     println!(
-        "{} stops, {} places, {} left out, {} lifts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
+        "{} locations, {} contact points, {} left out, {} retracts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
         path.locations.len(),
         path.contact_points,
         path.left_out,
@@ -183,8 +193,8 @@ fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> ToolPath {
 }
 
 #[test]
-fn a_sphere_is_gone_over() {
-    let path = proved(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
+fn covers_a_sphere() {
+    let path = plan_and_check(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
     assert!(
         path.left_out * 20 < path.contact_points,
         "{} of {}",
@@ -202,16 +212,20 @@ fn a_sphere_is_gone_over() {
 }
 
 #[test]
-fn a_block_with_a_step_is_gone_over() {
+fn covers_a_block_with_a_step() {
     let mesh = step();
     assert!(mesh.diagnostics().is_solid(), "{:?}", mesh.diagnostics().findings());
-    proved(mesh, [0.0, 1.0, 0.0], [2.0, 1.0]);
+    plan_and_check(mesh, [0.0, 1.0, 0.0], [2.0, 1.0]);
 }
 
 #[test]
-fn an_open_sheet_and_a_bore_are_gone_over() {
-    proved(shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"), [1.0, 0.0, 0.0], [1.0, 1.0]);
-    let path = proved(
+fn covers_an_open_sheet_and_a_bore() {
+    plan_and_check(
+        shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"),
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0],
+    );
+    let path = plan_and_check(
         shapes::tube(6.0, 12.0, 16.0, 24, 4, Unit::Millimetre).expect("a tube"),
         [0.0, 1.0, 0.0],
         [2.0, 1.5],
@@ -220,29 +234,30 @@ fn an_open_sheet_and_a_bore_are_gone_over() {
 }
 
 #[test]
-fn the_same_path_comes_again_and_in_every_unit_and_place() {
-    let around = |scale: f64, unit: Unit, off: f64| {
+fn paths_are_reproducible_in_every_unit_and_position() {
+    let plan_on_sphere = |scale: f64, unit: Unit, offset: f64| {
         let mesh = sphere();
-        let moved = mesh.vertices().iter().map(|place| place * scale + Vector3::repeat(off));
-        let mesh = Mesh::new(moved.collect(), mesh.triangles().to_vec(), unit).expect("a mesh");
+        let vertices =
+            mesh.vertices().iter().map(|vertex| vertex * scale + Vector3::repeat(offset));
+        let mesh = Mesh::new(vertices.collect(), mesh.triangles().to_vec(), unit).expect("a mesh");
         let case = Case::new(mesh, &Mill);
-        let path = case.over(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
-        let [feed, rapid] = deepest(&case, &path);
-        let rounding = 1e-9 + 1e-13 * off;
-        let most = feed.into_iter().chain(rapid).fold(0.0, f64::max);
-        assert!(most <= TOLERANCE + rounding, "{unit} at {off}: {most}");
+        let path = case.plan_over_planes(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
+        let [feed, rapid] = max_depths(&case, &path);
+        let rounding = 1e-9 + 1e-13 * offset;
+        let max_depth = feed.into_iter().chain(rapid).fold(0.0, f64::max);
+        assert!(max_depth <= TOLERANCE + rounding, "{unit} at {offset}: {max_depth}");
         path
     };
-    let first = around(1.0, Unit::Millimetre, 0.0);
-    assert_eq!(around(1.0, Unit::Millimetre, 0.0).locations, first.locations);
-    for (scale, unit, off) in
+    let first = plan_on_sphere(1.0, Unit::Millimetre, 0.0);
+    assert_eq!(plan_on_sphere(1.0, Unit::Millimetre, 0.0).locations, first.locations);
+    for (scale, unit, offset) in
         [(1.0 / 25.4, Unit::Inch, 0.0), (1e-3, Unit::Metre, 0.0), (1.0, Unit::Millimetre, 1e6)]
     {
-        let path = around(scale, unit, off);
-        let share = path.contact_points as f64 / first.contact_points as f64;
+        let path = plan_on_sphere(scale, unit, offset);
+        let ratio = path.contact_points as f64 / first.contact_points as f64;
         assert!(
-            (0.9..1.1).contains(&share),
-            "{unit} at {off}: {} of {}",
+            (0.9..1.1).contains(&ratio),
+            "{unit} at {offset}: {} of {}",
             path.contact_points,
             first.contact_points
         );
@@ -250,65 +265,65 @@ fn the_same_path_comes_again_and_in_every_unit_and_place() {
 }
 
 #[test]
-fn a_pattern_that_is_none_is_refused() {
+fn rejects_invalid_patterns() {
     let case = Case::new(sphere(), &Mill);
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 2.0, step: 1.0 };
-    let refused = |pattern: Pattern| case.lead(&Mill, &pattern).expect_err("no path");
-    for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = refused(Pattern { stepover: none, ..pattern });
+    let error_of = |pattern: Pattern| case.plan(&Mill, &pattern).expect_err("no path");
+    for invalid in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = error_of(Pattern { stepover: invalid, ..pattern });
         assert!(matches!(error, PathError::Pattern { what: "a stepover", .. }), "{error}");
-        let error = refused(Pattern { step: none, ..pattern });
+        let error = error_of(Pattern { step: invalid, ..pattern });
         assert!(matches!(error, PathError::Pattern { what: "a step", .. }), "{error}");
     }
     for normal in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
-        assert_eq!(refused(Pattern { normal, ..pattern }), PathError::Normal);
+        assert_eq!(error_of(Pattern { normal, ..pattern }), PathError::Normal);
     }
     for stepover in [1e-6, 1e-300] {
-        let error = refused(Pattern { stepover, ..pattern });
+        let error = error_of(Pattern { stepover, ..pattern });
         assert!(matches!(error, PathError::TooMany { .. }), "{error}");
     }
     for (stepover, step) in [(2.0, 1e-9), (2.0, 1e-300), (1e9, 1e-9)] {
-        let error = refused(Pattern { stepover, step, ..pattern });
+        let error = error_of(Pattern { stepover, step, ..pattern });
         assert!(matches!(error, PathError::TooFine { .. }), "{error}");
     }
     // One plane, and one point on a line, are enough.
-    for coarse in [1e3, 1e300] {
-        let path = case.lead(&Mill, &Pattern { stepover: coarse, step: coarse, ..pattern });
+    for large in [1e3, 1e300] {
+        let path = case.plan(&Mill, &Pattern { stepover: large, step: large, ..pattern });
         assert!(path.expect("a path").contact_points > 0);
     }
     // The normal may have any length.
     for size in [1e-300, 1e300] {
         let path =
-            case.lead(&Mill, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
-        assert_eq!(path.locations, case.lead(&Mill, &pattern).expect("a path").locations, "{size}");
+            case.plan(&Mill, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
+        assert_eq!(path.locations, case.plan(&Mill, &pattern).expect("a path").locations, "{size}");
     }
-    let none = vec![Vec::new(); case.access.len()];
-    for access in [&none[..], &[], &vec![vec![0; 4]; case.access.len()]] {
-        let found = PathRequest { accessibility: access, ..case.request(&Mill, &pattern) }.plan();
-        assert_eq!(found.expect_err("no path"), PathError::NoPosture);
+    let empty = vec![Vec::new(); case.access.len()];
+    for access in [&empty[..], &[], &vec![vec![0; 4]; case.access.len()]] {
+        let result = PathRequest { accessibility: access, ..case.request(&Mill, &pattern) }.plan();
+        assert_eq!(result.expect_err("no path"), PathError::NoPosture);
     }
-    let wrong = Rules { tolerance: 0.0, ..case.rules.clone() };
-    let found = PathRequest { rules: &wrong, ..case.request(&Mill, &pattern) }.plan();
-    assert!(matches!(found, Err(PathError::Validator(_))));
+    let invalid_rules = Rules { tolerance: 0.0, ..case.rules.clone() };
+    let result = PathRequest { rules: &invalid_rules, ..case.request(&Mill, &pattern) }.plan();
+    assert!(matches!(result, Err(PathError::Validator(_))));
 }
 
 #[test]
-fn one_triangle_is_gone_over() {
+fn covers_a_single_triangle() {
     let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a mesh");
     let case = Case::new(mesh, &Mill);
-    let path = case.over(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
+    let path = case.plan_over_planes(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
     assert_eq!(path.left_out, 0);
     // Planes parallel to the triangle do not cut it.
     let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
-    assert_eq!(case.lead(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
+    assert_eq!(case.plan(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
 }
 
 #[test]
-fn a_tool_that_is_larger_than_the_part_comes_to_it() {
+fn a_tool_larger_than_the_part_reaches_it() {
     let case = Case::new(sphere(), &Wide);
     assert!(case.access.iter().flatten().any(|word| *word != 0));
-    let path = case.over(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
+    let path = case.plan_over_planes(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
     assert!(
         path.contact_points > 200 && path.left_out == 0,
         "{} of {}",

@@ -1,46 +1,54 @@
 //! Distances between surfaces of a tool and a part, compared with a fine raster of its triangles.
 
-use crate::{Ball, HOLDER, Mill, NECK, Plain, any_pose, away, draws, from_cutting, inside};
-use crate::{parts, places, surface};
+use crate::{
+    Ball, HOLDER, Mill, NECK, Plain, cutting_distance, is_inside, polyline_distance,
+    random_numbers, random_pose,
+};
+use crate::{parts, sample_points, surface};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Pose, SurfaceId, Unit};
 
 #[test]
-fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
-    let mut draw = draws(1);
+fn clearances_agree_with_sample_points() {
+    let mut random = random_numbers(1);
     let names: [&[&str]; 3] = [&["holder"], &["neck"], &["neck", "holder"]];
     let (mut clear, mut touching) = (0, 0);
     for mesh in parts() {
         let bvh = TriangleBvh::new(&mesh);
         let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
         for _ in 0..60 {
-            let pose = any_pose(&mut draw, 30.0);
-            let (places, apart) = places(&mesh, &pose);
+            let pose = random_pose(&mut random, 30.0);
+            let (points, spacing) = sample_points(&mesh, &pose);
             for names in names {
-                let distance = |place: [f64; 2]| {
+                let distance = |point: [f64; 2]| {
                     let lines = [("neck", &NECK[..]), ("holder", &HOLDER[..])];
-                    let own = lines.iter().filter(|(name, _)| names.contains(name));
-                    own.map(|(_, line)| away(line, place)).fold(f64::INFINITY, f64::min)
+                    let requested = lines.iter().filter(|(name, _)| names.contains(name));
+                    requested
+                        .map(|(_, line)| polyline_distance(line, point))
+                        .fold(f64::INFINITY, f64::min)
                 };
-                let all: Vec<SurfaceId> = names.iter().map(|name| surface(&Mill, name)).collect();
-                let found = certifier.clearance_of(&all, &pose, 1e-6);
-                let Interval { low, high } = found.expect("a surface of the tool").distance;
+                let surfaces: Vec<SurfaceId> =
+                    names.iter().map(|name| surface(&Mill, name)).collect();
+                let clearance = certifier.clearance_of(&surfaces, &pose, 1e-6);
+                let Interval { low, high } = clearance.expect("a surface of the tool").distance;
                 let nearest =
-                    places.iter().map(|place| distance(*place)).fold(f64::INFINITY, f64::min);
+                    points.iter().map(|point| distance(*point)).fold(f64::INFINITY, f64::min);
                 let text = format!("{names:?} at {pose:?}: {nearest} by places, {low} to {high}");
                 assert!(0.0 <= low && low <= high && high.is_finite(), "{text}");
                 // A point inside the tool that is nearest to these surfaces is at distance 0.
-                let other = |place: [f64; 2]| {
+                let other_distance = |point: [f64; 2]| {
                     let lines = [("neck", &NECK[..]), ("holder", &HOLDER[..])];
                     let others = lines.iter().filter(|(name, _)| !names.contains(name));
-                    others.map(|(_, line)| away(line, place)).fold(from_cutting(place), f64::min)
+                    others
+                        .map(|(_, line)| polyline_distance(line, point))
+                        .fold(cutting_distance(point), f64::min)
                 };
-                let owned = |place: &&[f64; 2]| {
-                    inside(**place) && distance(**place) < other(**place) - 1e-9
+                let is_nearest = |point: &&[f64; 2]| {
+                    is_inside(**point) && distance(**point) < other_distance(**point) - 1e-9
                 };
-                if places.iter().find(owned).is_some() {
+                if points.iter().find(is_nearest).is_some() {
                     assert_eq!([low, high], [0.0; 2], "{text}");
                     touching += 1;
                     continue;
@@ -48,7 +56,7 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
                 assert!(low <= nearest + 1e-9, "{text}");
                 if low > 0.0 {
                     // No point of a triangle is farther from a raster point than a side of the raster.
-                    assert!(nearest - apart <= high, "{text}");
+                    assert!(nearest - spacing <= high, "{text}");
                     assert!(high - low < 2e-6, "{text}");
                     clear += 1;
                 }
@@ -59,17 +67,17 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
 }
 
 #[test]
-fn a_holder_above_a_plate_is_as_far_as_it_is_high() {
+fn clearance_above_a_plate_is_the_height_of_each_surface() {
     let (low, high) = (Point3::new(-50.0, -50.0, -9.0), Point3::new(50.0, 50.0, 0.0));
     let bvh = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a plate"));
     let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
     let [neck, holder] = ["neck", "holder"].map(|name| surface(&Mill, name));
-    for (tip, near, far) in
+    for (tip, to_neck, to_holder) in
         [(1.0, 13.0, 21.0), (-0.5, 11.5, 19.5), (-12.0, 0.0, 8.0), (-25.0, 0.0, 0.0)]
     {
         let pose = Pose::from_axis(Point3::new(0.0, 0.0, tip), Vector3::z()).expect("a pose");
         for (surfaces, expected) in
-            [(vec![neck], near), (vec![holder], far), (vec![neck, holder], near)]
+            [(vec![neck], to_neck), (vec![holder], to_holder), (vec![neck, holder], to_neck)]
         {
             let Interval { low, high } = certifier
                 .clearance_of(&surfaces, &pose, 1e-9)
@@ -88,7 +96,7 @@ fn a_holder_above_a_plate_is_as_far_as_it_is_high() {
 }
 
 #[test]
-fn from_nothing_it_is_infinitely_far_and_without_a_profile_no_less_than_the_tool() {
+fn clearance_of_no_surface_is_infinite_and_without_a_profile_that_of_the_tool() {
     let bvh = TriangleBvh::new(&parts()[0]);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, 5.0), Vector3::z()).expect("a pose");
     let mut certifier = Certifier::new(&bvh, &Ball).expect("a profile");
