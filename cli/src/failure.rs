@@ -10,7 +10,7 @@ pub(crate) const INTERRUPTED: u8 = 130;
 impl Failure {
     /// Returns whether the message is the compiler's own, which begins with its severity.
     pub(crate) fn is_rendered(&self) -> bool {
-        matches!(self, Failure::Tool(ToolError::Wrong(_)))
+        matches!(self, Failure::Tool(ToolError::Invalid(_)))
     }
 
     /// Returns the exit status: 2 if the options are wrong or an input cannot be used as requested, [`INTERRUPTED`]

@@ -94,7 +94,7 @@ pub(crate) fn load(
             };
             message!(
                 "{file}: {} points without triangles: {estimated} are estimated",
-                points.places.len()
+                points.points.len()
             );
             let part = Part::from_cloud(&Cloud::from_points(points, arguments.unit)?);
             Ok(Loaded { part, mesh: None, certify: None })

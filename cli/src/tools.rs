@@ -39,7 +39,7 @@ impl<'a> Row<'a> {
     fn of(info: &'a ToolInfo) -> Row<'a> {
         let [x_range, y_range] = match info.symmetry {
             Symmetry::Revolved => [None, None],
-            Symmetry::Solid { across } => across.map(Some),
+            Symmetry::Solid { extent } => extent.map(|side| Some(side.into())),
         };
         Row {
             name: &info.name,

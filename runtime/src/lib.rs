@@ -156,7 +156,7 @@ pub use mesh::{Mesh, MeshDiagnostics, MeshError, StlError};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use point_bvh::PointBvh;
-pub use pose::{AXIS_TOLERANCE, FARTHEST_TIP, Pose, PoseError};
+pub use pose::{AXIS_TOLERANCE, MAX_TIP_COORDINATE, Pose, PoseError};
 pub use probe::{
     BudgetError, Contact, DeepestPoint, Law, LodProbe, LodWrench, Posture, Probe, Stiffness,
     Summary, Weights, Wrench, WrenchRounding, summary,

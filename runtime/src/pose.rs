@@ -9,7 +9,7 @@ pub const AXIS_TOLERANCE: f64 = 1e-3;
 
 /// Largest coordinate of a composed pose's tip: a thousand times the largest coordinate that may be
 /// given. Composing two given poses never reaches it.
-pub const FARTHEST_TIP: f64 = 1e3 * LARGEST_COORDINATE;
+pub const MAX_TIP_COORDINATE: f64 = 1e3 * LARGEST_COORDINATE;
 
 /// A tool's pose in the world: the map from the tool frame (tip at the origin, +z from the tip to the
 /// spindle) to the part's frame, both in the part's unit of length. For a solid without an axis, the
@@ -126,7 +126,7 @@ impl Pose {
     /// walk. A motion that returns to its start is rounded in the same way each time, by some 3e-17 rad.
     ///
     /// # Panics
-    /// Panics if the tip leaves [`FARTHEST_TIP`]: a certifier's answer for such a pose would be
+    /// Panics if the tip leaves [`MAX_TIP_COORDINATE`]: a certifier's answer for such a pose would be
     /// meaningless.
     ///
     /// ```
@@ -179,7 +179,7 @@ impl Pose {
     /// taken first. The rotation remains a rotation as in [`Pose::then`].
     ///
     /// # Panics
-    /// Panics if the tip leaves [`FARTHEST_TIP`].
+    /// Panics if the tip leaves [`MAX_TIP_COORDINATE`].
     pub fn relative_to(&self, frame: &Pose) -> Pose {
         if *frame == Pose::default() {
             return *self;
@@ -200,11 +200,11 @@ impl Pose {
     }
 }
 
-/// Returns the tip after checking that it is within [`FARTHEST_TIP`].
+/// Returns the tip after checking that it is within [`MAX_TIP_COORDINATE`].
 fn check_range(tip: Point3<f64>) -> Point3<f64> {
     assert!(
-        tip.iter().all(|coordinate| coordinate.abs() <= FARTHEST_TIP),
-        "the composed pose has its tip at {tip}, out of {FARTHEST_TIP:e}: compose fewer or smaller motions"
+        tip.iter().all(|coordinate| coordinate.abs() <= MAX_TIP_COORDINATE),
+        "the composed pose has its tip at {tip}, out of {MAX_TIP_COORDINATE:e}: compose fewer or smaller motions"
     );
     tip
 }

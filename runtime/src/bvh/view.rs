@@ -120,7 +120,7 @@ impl ReachBounds {
         }
         let across = match info.symmetry {
             Symmetry::Revolved => None,
-            Symmetry::Solid { across } => Some(across.map(|[from, to]| [low(from), high(to)])),
+            Symmetry::Solid { extent } => Some(extent.map(|side| [low(side.low), high(side.high)])),
         };
         ReachBounds { slabs, all, across }
     }

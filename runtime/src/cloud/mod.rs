@@ -144,19 +144,18 @@ impl Cloud {
 
     /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material.
     /// Without given areas, these are estimated from the distances between neighbours. The [covering
-    /// radius](Cloud::covering_radius) is always estimated that way. Without given faces, each point has
+    /// radius](Cloud::covering_radius) is always estimated that way. Without given triangles, each point has
     /// its own.
     ///
     /// # Errors
     /// See [`Cloud::new`].
     pub fn from_points(points: OrientedPoints, unit: Unit) -> Result<Cloud, CloudError> {
-        let OrientedPoints { places, normals, faces, areas } = points;
-        let count = places.len();
-        let faces =
-            faces.unwrap_or_else(|| (0..count as u32).collect()).into_iter().map(TriangleId);
+        let OrientedPoints { points, normals, triangles, areas } = points;
+        let count = points.len();
+        let triangles = triangles.unwrap_or_else(|| (0..count as u32).map(TriangleId).collect());
         let estimated = areas.is_none();
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
-        let mut cloud = Cloud::new(places, normals, faces.collect(), weights, unit)?;
+        let mut cloud = Cloud::new(points, normals, triangles, weights, unit)?;
         let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
         cloud.covering_radius = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {

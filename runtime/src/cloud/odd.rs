@@ -90,11 +90,11 @@ fn nearly_coincident_triangles_keep_a_proved_cover() {
 fn coincident_points_share_a_cell() {
     let grid = (0..900).map(|k| Point3::new(f64::from(k % 30), f64::from(k / 30), 0.0));
     let of = |repeated: usize, tilt: f64| {
-        let mut places: Vec<_> = grid.clone().collect();
-        places.extend(vec![Point3::new(15.0, 15.0, 0.0); repeated]);
+        let mut points: Vec<_> = grid.clone().collect();
+        points.extend(vec![Point3::new(15.0, 15.0, 0.0); repeated]);
         let normal = |k: usize| Vector3::new(tilt * k as f64, 0.0, 1.0).normalize();
-        let normals = (0..places.len()).map(|k| normal(k.saturating_sub(900))).collect();
-        Cloud::from_points(OrientedPoints { places, normals, faces: None, areas: None }, UNIT)
+        let normals = (0..points.len()).map(|k| normal(k.saturating_sub(900))).collect();
+        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas: None }, UNIT)
             .expect("a cloud")
     };
     let one = of(0, 0.0);
@@ -108,9 +108,9 @@ fn coincident_points_share_a_cell() {
         assert_eq!(many.covering_radius(), one.covering_radius());
     }
     let alone = OrientedPoints {
-        places: vec![Point3::origin(); 5_000],
+        points: vec![Point3::origin(); 5_000],
         normals: vec![Vector3::z(); 5_000],
-        faces: None,
+        triangles: None,
         areas: None,
     };
     assert_eq!(Cloud::from_points(alone, UNIT).expect("a cloud").covering_radius(), None);

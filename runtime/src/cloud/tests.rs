@@ -306,7 +306,7 @@ fn of_points_alone_cells_are_estimated() {
     let mesh = shapes::tube(3.0, 5.0, 13.0, 512, 8, UNIT).expect("a tube");
     let points = |cloud: Cloud, areas: Option<Vec<f64>>| {
         let Cloud { points, normals, .. } = cloud;
-        Cloud::from_points(OrientedPoints { places: points, normals, faces: None, areas }, UNIT)
+        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
     };
     for (cloud, close, near) in [
         (Cloud::sample(&mesh, Sampling::new(5_000)), 0.05, 0.25),
@@ -323,8 +323,12 @@ fn of_points_alone_cells_are_estimated() {
         assert_eq!(given.weights(), cloud.weights());
     }
     let same = vec![Point3::origin(); 20];
-    let all =
-        OrientedPoints { places: same, normals: vec![Vector3::z(); 20], faces: None, areas: None };
+    let all = OrientedPoints {
+        points: same,
+        normals: vec![Vector3::z(); 20],
+        triangles: None,
+        areas: None,
+    };
     let cloud = Cloud::from_points(all.clone(), UNIT).expect("points");
     assert!(cloud.weights().iter().all(|weight| *weight == 0.0));
     let negative = OrientedPoints { areas: Some(vec![-1.0; 20]), ..all };
@@ -395,21 +399,21 @@ fn points_that_repeat_share_their_cells() {
     let mesh = shapes::plane(1.0, 4, UNIT).expect("a plane");
     let cloud = Cloud::sample(&mesh, Sampling::new(500)).expect("a cloud");
     let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
-    let points = |places: Vec<Point3<f64>>, areas| {
-        let normals = vec![Vector3::z(); places.len()];
-        Cloud::from_points(OrientedPoints { places, normals, faces: None, areas }, UNIT)
+    let oriented = |points: Vec<Point3<f64>>, areas| {
+        let normals = vec![Vector3::z(); points.len()];
+        Cloud::from_points(OrientedPoints { points, normals, triangles: None, areas }, UNIT)
     };
     let [one, three] = [cloud.points().to_vec(), thrice(cloud.points())]
-        .map(|places| points(places, None).expect("points"));
+        .map(|points| oriented(points, None).expect("points"));
     let sum = |cloud: &Cloud| cloud.weights().iter().sum::<f64>();
     assert!(
         (sum(&one) - sum(&three)).abs() < 1e-9 && one.covering_radius() == three.covering_radius()
     );
     // A single point gives no estimate of the covering radius.
     for count in [1, 20] {
-        let alone = points(vec![Point3::origin(); count], None).expect("points");
+        let alone = oriented(vec![Point3::origin(); count], None).expect("points");
         assert_eq!(alone.covering_radius(), None);
     }
-    let short = points(vec![Point3::origin(); 20], Some(vec![1.0]));
+    let short = oriented(vec![Point3::origin(); 20], Some(vec![1.0]));
     assert!(matches!(short, Err(CloudError::Lengths { weights: 1, .. })), "{short:?}");
 }

@@ -91,7 +91,7 @@ pub enum ObjError {
     },
     /// A vertex is far outside the rest of the part.
     #[error("{file}, {location}: {outlier}: mend the coordinate, or export or copy the part again")]
-    Stray {
+    Outlier {
         /// The file name.
         file: String,
         /// The location of the vertex in the file.
@@ -158,7 +158,7 @@ impl Mesh {
         }
         let (used_vertices, corners) = faces.used_vertices(&vertices);
         if let Some((index, _, outlier)) = find_outlier(&corners) {
-            return Err(ObjError::Stray {
+            return Err(ObjError::Outlier {
                 file: file(),
                 location: line_of(bytes, used_vertices[index]),
                 outlier,

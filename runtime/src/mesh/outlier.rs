@@ -97,7 +97,7 @@ mod tests {
         let damaged = text.replacen(line, "vertex 1 -1e13 3", 1);
         let error = Mesh::from_stl(damaged.as_bytes(), "a.stl", unit).expect_err("far off");
         let found = damaged.lines().position(|line| line.contains("e13")).map(|line| line + 1);
-        let StlError::Stray { location: SourceLocation::Line(line), .. } = error else {
+        let StlError::Outlier { location: SourceLocation::Line(line), .. } = error else {
             panic!("{error}")
         };
         assert_eq!(Some(line), found);
@@ -119,7 +119,7 @@ mod tests {
         let line = obj.lines().nth(1 + 2 * 20).expect("a line").to_owned();
         let damaged = obj.replacen(&line, "v 1e13 0 \\", 1);
         let error = Mesh::from_obj(damaged.as_bytes(), "a.obj", unit).expect_err("far off");
-        let ObjError::Stray { location: SourceLocation::Line(line), .. } = error else {
+        let ObjError::Outlier { location: SourceLocation::Line(line), .. } = error else {
             panic!("{error}")
         };
         assert_eq!(line, 2 + 2 * 20);
@@ -137,7 +137,7 @@ mod tests {
         tube.vertices().iter().enumerate().for_each(|(k, v)| ply += &vertex(k, v));
         tube.triangles().iter().for_each(|[a, b, c]| ply += &format!("3 {a} {b} {c}\n"));
         let error = Mesh::from_ply(ply.as_bytes(), "a.ply", unit).expect_err("far off");
-        let PlyError::Stray { location, vertex, .. } = error else { panic!("{error}") };
+        let PlyError::Outlier { location, vertex, .. } = error else { panic!("{error}") };
         assert_eq!((location, vertex), (SourceLocation::Line(10 + 20), 20));
     }
 }

@@ -115,7 +115,7 @@ mod tests {
         assert!(matches!(read, Ok(Geometry::Mesh(_))), "{read:?}");
         let read = Geometry::from_bytes(points.as_bytes(), "part", UNIT);
         assert!(
-            matches!(&read, Ok(Geometry::Points(points)) if points.places.len() == 3),
+            matches!(&read, Ok(Geometry::Points(points)) if points.points.len() == 3),
             "{read:?}"
         );
     }

@@ -93,7 +93,7 @@ pub enum StlError {
         "{file} ends on line {line}, where {expected} should follow: it was cut off; export \
              or copy it again"
     )]
-    Unended {
+    UnexpectedEnd {
         /// The file name.
         file: String,
         /// The last line number, from 1.
@@ -133,7 +133,7 @@ pub enum StlError {
     #[error(
         "{file}, triangle {triangle} (from 0), {location}: {outlier}: mend the coordinate, or export or copy the part again"
     )]
-    Stray {
+    Outlier {
         /// The file name.
         file: String,
         /// The triangle's index, from 0.
@@ -192,7 +192,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
     } else {
         SourceLocation::Byte(HEADER + RECORD * triangle + 4 * (3 + 3 * (corner % 3) + axis))
     };
-    Err(StlError::Stray { file: name.to_owned(), triangle, location, outlier })
+    Err(StlError::Outlier { file: name.to_owned(), triangle, location, outlier })
 }
 
 /// Returns the line of a corner in a valid text file.
@@ -294,7 +294,7 @@ struct Ascii<'a> {
 impl<'a> Ascii<'a> {
     fn word(&mut self, expected: &'static str) -> Result<&'a [u8], StlError> {
         let word = self.tokens.next();
-        word.ok_or_else(|| StlError::Unended {
+        word.ok_or_else(|| StlError::UnexpectedEnd {
             file: self.name.to_owned(),
             line: self.tokens.line,
             expected,

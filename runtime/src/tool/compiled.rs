@@ -4,6 +4,7 @@ use super::{
     BatchEvaluator, Derivatives, Dual, EvaluationEnclosure, Evaluations, LANES, Lane,
     OutputSelection, Outputs, PointBatch, Tool, ToolInfo, on_vectors, present,
 };
+use crate::interval::Interval;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 use std::ops::Range;
 
@@ -35,7 +36,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn clearance(point: [f64; 3]) -> f64;
 
     /// Returns an enclosure of the evaluation over a box, for a tool without a profile; see [`Tool::enclose`].
-    fn enclose(_sides: [[f64; 2]; 3], _reference: [f64; 3]) -> Option<EvaluationEnclosure> {
+    fn enclose(_sides: [Interval; 3], _reference: [f64; 3]) -> Option<EvaluationEnclosure> {
         None
     }
 
@@ -110,7 +111,7 @@ impl<T: Evaluators> Tool for T {
 
     fn enclose(
         &self,
-        sides: [[f64; 2]; 3],
+        sides: [Interval; 3],
         at: [f64; 3],
         _: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {

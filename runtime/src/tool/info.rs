@@ -52,8 +52,8 @@ pub enum Symmetry {
     Revolved,
     /// A `solid`, without an axis of symmetry. Only a pose with a spin places it (see [`crate::Pose::has_spin`]).
     Solid {
-        /// The proved extent along x and along y, each as `[low, high]`.
-        across: [[f64; 2]; 2],
+        /// The proved extent along x and along y.
+        extent: [Interval; 2],
     },
 }
 

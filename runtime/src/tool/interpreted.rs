@@ -7,11 +7,12 @@ use super::{
 };
 use crate::debug::debug;
 use crate::id::SurfaceId;
+use crate::interval::Interval;
 use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
 use std::path::Path;
-use tool_dsl::bound::across;
+use tool_dsl::bound::lateral_extent;
 use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, PlanWalk, Scratch, Tape, Value};
 use tool_dsl::prove::Bounds;
@@ -43,7 +44,7 @@ pub enum ToolError {
     },
     /// The file has errors.
     #[error("{0}")]
-    Wrong(String),
+    Invalid(String),
 }
 
 impl Interpreted {
@@ -51,7 +52,7 @@ impl Interpreted {
     ///
     /// # Errors
     ///
-    /// [`ToolError::Unreadable`] if the file cannot be read, [`ToolError::Wrong`] if it does not compile.
+    /// [`ToolError::Unreadable`] if the file cannot be read, [`ToolError::Invalid`] if it does not compile.
     pub fn load(path: impl AsRef<Path>) -> Result<Interpreted, ToolError> {
         Interpreted::parse(&Interpreted::source(path)?)
     }
@@ -70,7 +71,7 @@ impl Interpreted {
     ///
     /// # Errors
     ///
-    /// [`ToolError::Wrong`] with all diagnostics if the text does not compile.
+    /// [`ToolError::Invalid`] with all diagnostics if the text does not compile.
     pub fn parse(source: &Source) -> Result<Interpreted, ToolError> {
         Interpreted::parse_with(source, &[])
     }
@@ -79,7 +80,7 @@ impl Interpreted {
     ///
     /// # Errors
     ///
-    /// [`ToolError::Wrong`] with all diagnostics if the text or the arguments do not compile.
+    /// [`ToolError::Invalid`] with all diagnostics if the text or the arguments do not compile.
     pub fn parse_with(source: &Source, arguments: &[Source]) -> Result<Interpreted, ToolError> {
         let compiled = compile_with(source, arguments);
         let diagnostics: Vec<String> =
@@ -95,7 +96,7 @@ impl Interpreted {
                 clearance_tape: Tape::clearance(&tool),
                 warnings: diagnostics,
             }),
-            Err(_) => Err(ToolError::Wrong(diagnostics)),
+            Err(_) => Err(ToolError::Invalid(diagnostics)),
         }
     }
 
@@ -140,7 +141,9 @@ fn info(tool: &CheckedTool) -> ToolInfo {
             .collect(),
         symmetry: match model.domain {
             Domain::HalfPlane => Symmetry::Revolved,
-            Domain::Space => Symmetry::Solid { across: across(&tool.extent) },
+            Domain::Space => Symmetry::Solid {
+                extent: lateral_extent(&tool.extent).map(|[low, high]| Interval { low, high }),
+            },
         },
         outline: model.outline().map(profile_segment).collect(),
         depth: {
@@ -191,7 +194,7 @@ impl Tool for Interpreted {
 
     fn enclose(
         &self,
-        sides: [[f64; 2]; 3],
+        sides: [Interval; 3],
         reference: [f64; 3],
         scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {

@@ -23,6 +23,7 @@ pub use info::{
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
 
+use crate::interval::Interval;
 use fearless_simd::Level;
 
 /// The number of points that evaluators process at a time; buffers are padded to a multiple of it.
@@ -91,14 +92,14 @@ pub trait Tool: Send + Sync {
     /// Returns an enclosure of the evaluation over a box of the tool's frame, or `None`.
     ///
     /// The enclosure holds in real arithmetic for the expressions as they are evaluated. Its slopes are taken from the
-    /// point `_reference`, which lies in the box. `_sides` has both ends of the box along x, y and z; for a tool with an
+    /// point `_reference`, which lies in the box. `_sides` is the extent of the box along x, y and z; for a tool with an
     /// axis the box lies in the half plane `y = 0`, `x ≥ 0`. `_scratch` is memory kept between calls.
     ///
     /// Returns `None` for a tool with a profile, about which more is known, and for a tool that does not support
     /// enclosures.
     fn enclose(
         &self,
-        _sides: [[f64; 2]; 3],
+        _sides: [Interval; 3],
         _reference: [f64; 3],
         _scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {

@@ -112,7 +112,10 @@ fn findings_of_cutting_surfaces_do_not_hide_others() {
     else {
         panic!("{near:?}")
     };
-    assert!(gap == 1.0 && low <= 0.5 && 0.5 <= high && min_distance > 0.4 && min_distance <= low, "{near:?}");
+    assert!(
+        gap == 1.0 && low <= 0.5 && 0.5 <= high && min_distance > 0.4 && min_distance <= low,
+        "{near:?}"
+    );
     assert_eq!(check(&pillar(), &raised(-23.0), 0.0, &with_margin).findings, []);
 }
 

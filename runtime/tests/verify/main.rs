@@ -81,11 +81,20 @@ fn check_finding(
                 "{finding:?}"
             );
         }
-        FindingKind::Near { surface, margin, distance: Interval { low, high }, min_distance, witness } => {
+        FindingKind::Near {
+            surface,
+            margin,
+            distance: Interval { low, high },
+            min_distance,
+            witness,
+        } => {
             let actual = worst_at(witness).distance[surface.0];
             assert_eq!(-margin, limits[surface.0]);
             assert!(*low <= actual + 1e-9 && actual <= high + 1e-9, "{actual}: {finding:?}");
-            assert!(actual < *margin && high - low < RESOLUTION && min_distance <= low, "{finding:?}");
+            assert!(
+                actual < *margin && high - low < RESOLUTION && min_distance <= low,
+                "{finding:?}"
+            );
         }
         other => panic!("{other:?} at {finding:?}"),
     }
@@ -108,7 +117,10 @@ fn compare_with_brute_force(findings: &[Finding], limits: &[f64; 4], worst: &Wor
                 assert!(!is_too_deep && distance >= min_distance - 1e-9, "{distance}: {found:?}");
             }
             _ => {
-                assert!(!is_too_deep && !is_too_near, "{surface}: {limit}, {worst:?}, {findings:?}")
+                assert!(
+                    !is_too_deep && !is_too_near,
+                    "{surface}: {limit}, {worst:?}, {findings:?}"
+                );
             }
         }
     }

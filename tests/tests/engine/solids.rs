@@ -6,6 +6,7 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, compile_with};
 use tools_library::{Block, LBracket};
+use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, Symmetry};
 use touchoff_tests::oracle::draw::Rng;
@@ -136,16 +137,18 @@ fn a_block_with_other_dimensions() {
 fn info_has_the_extents_of_solids() {
     let info = Block::info();
     assert_eq!(info.unit, Unit::Millimetre);
-    let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
-    let [z, radius] = [[info.reach().low, info.reach().high], [0.0, info.radius()]];
-    for ([low, high], [from, to]) in
+    let Symmetry::Solid { extent: [x, y] } = info.symmetry else { panic!("a solid") };
+    let [z, radius] = [info.reach(), Interval::new(0.0, info.radius())];
+    for (Interval { low, high }, [from, to]) in
         [x, y, z, radius].into_iter().zip([[-20.0, 20.0], [-15.0, 15.0], [0.0, 20.0], [0.0, 25.0]])
     {
         assert!(low <= from && low > from - 1e-3 && high >= to && high < to + 1e-3);
     }
     let info = LBracket::info();
-    let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
-    assert!(x[0] <= -10.0 && x[1] >= 20.0 && x[1] < 20.001 && y[1] >= 10.0 && y[1] < 10.001);
+    let Symmetry::Solid { extent: [x, y] } = info.symmetry else { panic!("a solid") };
+    assert!(
+        x.low <= -10.0 && x.high >= 20.0 && x.high < 20.001 && y.high >= 10.0 && y.high < 10.001
+    );
     // The standing leg is slimmer than the lying one.
     let top = info.envelope.last().expect("slabs");
     assert!(top.low < 6.01 && top.radius >= 200f64.sqrt() && top.radius < 14.2, "{top:?}");

@@ -101,7 +101,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
 }
 
 /// Returns the ranges of x and y of a solid without an axis, rounded outward as in `ToolInfo`.
-pub fn across(extent: &Extent) -> [[f64; 2]; 2] {
+pub fn lateral_extent(extent: &Extent) -> [[f64; 2]; 2] {
     let steps = extent.steps();
     extent.across.map(|side| [-above(-side.low, steps), above(side.high, steps)])
 }

@@ -3,7 +3,7 @@
 
 mod envelope;
 
-pub use envelope::{EnvelopeSlab, across, envelope};
+pub use envelope::{EnvelopeSlab, envelope, lateral_extent};
 
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;

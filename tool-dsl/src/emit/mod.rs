@@ -11,7 +11,7 @@ mod tokens;
 pub use dot::dot;
 pub use listing::{model, regions, tree};
 
-use crate::bound::across;
+use crate::bound::lateral_extent;
 use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::digest;
@@ -48,7 +48,7 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     // A profile needs no enclosure by interval evaluation: its geometry is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
         quote! {
-            fn enclose(sides: [[f64; 2]; 3], at: [f64; 3]) -> Option<EvaluationEnclosure> {
+            fn enclose(sides: [::touchoff::Interval; 3], at: [f64; 3]) -> Option<EvaluationEnclosure> {
                 Some(EvaluationEnclosure::of::<Self>(sides, at))
             }
         }
@@ -190,11 +190,11 @@ fn info(tool: &CheckedTool) -> TokenStream {
     let shape = match model.domain {
         Domain::HalfPlane => quote! { Symmetry::Revolved },
         Domain::Space => {
-            let [x, y] = across(&tool.extent).map(|ends| {
-                let ends = ends.map(literal);
-                quote! { [#(#ends),*] }
+            let [x, y] = lateral_extent(&tool.extent).map(|ends| {
+                let [low, high] = ends.map(literal);
+                quote! { ::touchoff::Interval::new(#low, #high) }
             });
-            quote! { Symmetry::Solid { across: [#x, #y] } }
+            quote! { Symmetry::Solid { extent: [#x, #y] } }
         }
     };
     quote! {

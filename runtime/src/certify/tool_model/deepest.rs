@@ -54,10 +54,10 @@ impl Field<'_> {
         let Interval { low: bottom, high: top } = info.reach();
         // For a tool with an axis the half plane is enough.
         let [x, y] = match info.symmetry {
-            Symmetry::Revolved => [[0.0, info.radius()], [0.0; 2]],
-            Symmetry::Solid { across } => across,
+            Symmetry::Revolved => [Interval::new(0.0, info.radius()), Interval::default()],
+            Symmetry::Solid { extent } => extent,
         };
-        let (low, high) = ([x[0], y[0], bottom], [x[1], y[1], top]);
+        let (low, high) = ([x.low, y.low, bottom], [x.high, y.high, top]);
         let mut scratch = Scratch::default();
         let mut cells = BinaryHeap::from([Cell { low, high, bound: f64::INFINITY }]);
         let mut best: Option<(Point, Depth)> = None;

@@ -6,6 +6,7 @@ use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::Depth;
 use crate::certify::triangle::subdivision::SubTriangle;
+use crate::interval::Interval;
 use crate::tool::{EvaluationEnclosure, Symmetry};
 
 impl Field<'_> {
@@ -20,11 +21,11 @@ impl Field<'_> {
         [x, y, z]: Point,
         displacement: f64,
     ) -> Option<EvaluationEnclosure> {
-        let around = |at: f64| [at - displacement, at + displacement];
+        let around = |at: f64| Interval::new(at - displacement, at + displacement);
         if self.is_revolved() {
             let d = x.hypot(y);
-            let [low, high] = around(d);
-            let sides = [[low.max(0.0), high], [0.0; 2], around(z)];
+            let Interval { low, high } = around(d);
+            let sides = [Interval::new(low.max(0.0), high), Interval::default(), around(z)];
             return self.tool.enclose(sides, [d, 0.0, z], &mut scratch.evaluations);
         }
         self.tool.enclose([around(x), around(y), around(z)], [x, y, z], &mut scratch.evaluations)
@@ -91,7 +92,7 @@ impl Field<'_> {
         let corners = piece.corners();
         let span = |at: f64, of: &dyn Fn(&Point) -> f64| {
             let [a, b, c] = corners.each_ref().map(of);
-            [at.min(a).min(b).min(c), at.max(a).max(b).max(c)]
+            Interval::new(at.min(a).min(b).min(c), at.max(a).max(b).max(c))
         };
         let far = from[0].hypot(from[1]);
         // The radial direction at the point. No point is nearer to the axis than its extent in that direction.
@@ -99,9 +100,9 @@ impl Field<'_> {
         let outward = |p: &Point| p[0] * out[0] + p[1] * out[1];
         let z = span(from[2], &|p| p[2]);
         let (sides, at) = if self.is_revolved() {
-            let max_radius = span(far, &|p| p[0].hypot(p[1]))[1];
-            let min_radius = span(far, &outward)[0].max(0.0);
-            ([[min_radius, max_radius], [0.0; 2], z], [far, 0.0, from[2]])
+            let max_radius = span(far, &|p| p[0].hypot(p[1])).high;
+            let min_radius = span(far, &outward).low.max(0.0);
+            ([Interval::new(min_radius, max_radius), Interval::default(), z], [far, 0.0, from[2]])
         } else {
             ([span(from[0], &|p| p[0]), span(from[1], &|p| p[1]), z], from)
         };
@@ -115,12 +116,13 @@ impl Field<'_> {
             return f64::NEG_INFINITY;
         }
         let offsets = corners.map(|p| {
-            let along = |k: usize| [p[k] - from[k]; 2];
+            let along = |k: usize| Interval::new(p[k] - from[k], p[k] - from[k]);
             if self.is_revolved() {
                 // The distance from the axis is convex: its change is at most that at the corner, and at least that in
                 // the radial direction.
                 let max_change = p[0].hypot(p[1]) - far;
-                [[(outward(&p) - far).min(max_change), max_change], [0.0; 2], along(2)]
+                let min_change = (outward(&p) - far).min(max_change);
+                [Interval::new(min_change, max_change), Interval::default(), along(2)]
             } else {
                 [along(0), along(1), along(2)]
             }

@@ -38,10 +38,10 @@ impl<'a, 'n> Body<'a, 'n> {
         list: Option<usize>,
         mut visit: impl FnMut(Record<N>) -> Result<(), PlyError>,
     ) -> Result<(), PlyError> {
-        let (least, found) = (element.min_bytes(self.encoding), self.tokens.rest.len());
-        if least > found as u128 {
+        let (min_bytes, found) = (element.min_bytes(self.encoding), self.tokens.rest.len());
+        if min_bytes > found as u128 {
             let (file, element, count) = (self.file(), printable(element.name), element.count);
-            return Err(PlyError::Promised { file, element, count, least, found });
+            return Err(PlyError::Promised { file, element, count, min_bytes, found });
         }
         if element.properties.is_empty() {
             return Ok(());

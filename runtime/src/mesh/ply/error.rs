@@ -39,7 +39,7 @@ pub enum PlyError {
     },
     /// The header gives the same name to two elements or properties.
     #[error("{file}, line {line}: there is a second `{name}`: give each its own name")]
-    Twice {
+    Duplicate {
         /// The file name.
         file: String,
         /// The line number, from 1.
@@ -49,7 +49,7 @@ pub enum PlyError {
     },
     /// The file is shorter than its header declares.
     #[error(
-        "{file} is cut off, or its header is wrong: {count} of `{element}` take {least} bytes at \
+        "{file} is cut off, or its header is wrong: {count} of `{element}` take {min_bytes} bytes at \
          least, but only {found} follow: export or copy it again"
     )]
     Promised {
@@ -60,7 +60,7 @@ pub enum PlyError {
         /// The number of elements declared in the header.
         count: usize,
         /// The minimum number of bytes that the elements take.
-        least: u128,
+        min_bytes: u128,
         /// The number of bytes found.
         found: usize,
     },
@@ -202,7 +202,7 @@ pub enum PlyError {
     #[error(
         "{file}, {location}: vertex {vertex} (from 0): {outlier}: mend the coordinate, or export or copy the part again"
     )]
-    Stray {
+    Outlier {
         /// The file name.
         file: String,
         /// The location of the vertex in the file.

@@ -189,7 +189,7 @@ impl<'a> Lines<'a, '_> {
     }
 
     fn duplicate(&self, name: &[u8]) -> PlyError {
-        PlyError::Twice {
+        PlyError::Duplicate {
             file: self.name.to_owned(),
             line: self.tokens.line,
             name: printable(name),

@@ -8,6 +8,7 @@ mod header;
 #[cfg(test)]
 mod tests;
 
+use crate::id::TriangleId;
 use nalgebra::{Point3, Vector3};
 
 use self::body::{Body, Record, to_u32};
@@ -35,11 +36,11 @@ const COORDINATE_RULE: &str = "finite and within 1e60";
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrientedPoints {
     /// The positions of the points.
-    pub places: Vec<Point3<f64>>,
+    pub points: Vec<Point3<f64>>,
     /// The outward directions, away from the material, of norm 1.
     pub normals: Vec<Vector3<f64>>,
     /// The id of the face that each point lies on, if the file contains it.
-    pub faces: Option<Vec<u32>>,
+    pub triangles: Option<Vec<TriangleId>>,
     /// The area that each point represents, from 0 to 1e60, if the file contains it.
     pub areas: Option<Vec<f64>>,
 }
@@ -65,7 +66,7 @@ impl OrientedPoints {
         let [nx, ny, nz] = normal;
         let (face, area) = (vertex.number("face"), vertex.number("area"));
         let mut points = OrientedPoints {
-            faces: face.map(|_| Vec::new()),
+            triangles: face.map(|_| Vec::new()),
             areas: area.map(|_| Vec::new()),
             ..OrientedPoints::default()
         };
@@ -75,7 +76,7 @@ impl OrientedPoints {
                 continue;
             }
             body.read(element, [x, y, z, nx, ny, nz, face, area], None, |record| {
-                points.places.push(position(&record, name)?);
+                points.points.push(position(&record, name)?);
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
                 let normal = Vector3::new(nx, ny, nz);
                 let norm = normal.norm();
@@ -84,10 +85,10 @@ impl OrientedPoints {
                     return Err(PlyError::Normal { file, location, point, norm });
                 }
                 points.normals.push(normal / norm);
-                if let Some(faces) = &mut points.faces {
+                if let Some(triangles) = &mut points.triangles {
                     let rule = "a whole number, 0 or more, below 2^32";
                     let error = || invalid_value(&record, "vertex", "face", face, rule, name);
-                    faces.push(to_u32(face).ok_or_else(error)?);
+                    triangles.push(TriangleId(to_u32(face).ok_or_else(error)?));
                 }
                 if let Some(areas) = &mut points.areas {
                     if !(is_valid_coordinate(area) && area >= 0.0) {
@@ -100,9 +101,9 @@ impl OrientedPoints {
             })?;
         }
         body.end()?;
-        match find_outlier(&points.places) {
+        match find_outlier(&points.points) {
             None => Ok(points),
-            Some((vertex, _, outlier)) => Err(stray_vertex(bytes, name, vertex, outlier)),
+            Some((vertex, _, outlier)) => Err(outlier_vertex(bytes, name, vertex, outlier)),
         }
     }
 }
@@ -167,7 +168,7 @@ impl Mesh {
         }
         let (used_vertices, corners) = faces.used_vertices(&vertices);
         if let Some((index, _, outlier)) = find_outlier(&corners) {
-            return Err(stray_vertex(bytes, name, used_vertices[index], outlier));
+            return Err(outlier_vertex(bytes, name, used_vertices[index], outlier));
         }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| PlyError::Mesh { file: file(), source })
@@ -175,9 +176,14 @@ impl Mesh {
 }
 
 /// Returns the error for a vertex far outside the others in a valid file.
-fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, outlier: Outlier) -> PlyError {
+fn outlier_vertex(bytes: &[u8], name: &str, vertex: usize, outlier: Outlier) -> PlyError {
     let check = |record: Record<0>| match record.index == vertex {
-        true => Err(PlyError::Stray { file: name.to_owned(), location: record.location, vertex, outlier }),
+        true => Err(PlyError::Outlier {
+            file: name.to_owned(),
+            location: record.location,
+            vertex,
+            outlier,
+        }),
         false => Ok(()),
     };
     let search = || {

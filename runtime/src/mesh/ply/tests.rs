@@ -150,9 +150,9 @@ fn reads_points_in_every_encoding() {
         assert!(!has_faces(&bytes, "").expect("a header"));
         let read = OrientedPoints::from_ply(&bytes, "").expect(encoding);
         let expected = OrientedPoints {
-            places: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(0.0, 0.0, 10.0)],
+            points: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(0.0, 0.0, 10.0)],
             normals: vec![Vector3::z(), Vector3::new(0.6, 0.0, 0.8)],
-            faces: Some(vec![7, 0]),
+            triangles: Some(vec![TriangleId(7), TriangleId(0)]),
             areas: Some(vec![0.25, 0.0]),
         };
         assert_eq!(read, expected, "{encoding}");
@@ -160,7 +160,7 @@ fn reads_points_in_every_encoding() {
         if encoding == "ascii" {
             let bare =
                 OrientedPoints::from_ply(text.as_bytes(), "").expect("without ids and areas");
-            assert_eq!(bare, OrientedPoints { faces: None, areas: None, ..expected });
+            assert_eq!(bare, OrientedPoints { triangles: None, areas: None, ..expected });
         }
     }
 }
@@ -194,7 +194,7 @@ fn binary_body_begins_after_one_line_end() {
         bytes.extend([x, 0.0, 0.0, 0.0, 0.0, 1.0].iter().flat_map(|n| n.to_le_bytes()));
         bytes.extend([0; 12]);
         let read = OrientedPoints::from_ply(&bytes, "").expect("a point");
-        assert_eq!(read.places, [Point3::new(f64::from(x), 0.0, 0.0)], "{end:?}");
+        assert_eq!(read.points, [Point3::new(f64::from(x), 0.0, 0.0)], "{end:?}");
     }
 }
 
@@ -393,7 +393,7 @@ fn damaged_files_do_not_panic() {
                 }
                 if let Ok(points) = OrientedPoints::from_ply(&bytes, "") {
                     assert!(points.normals.iter().all(|n| (n.norm() - 1.0).abs() < 1e-12));
-                    assert_eq!(points.places.len(), points.normals.len());
+                    assert_eq!(points.points.len(), points.normals.len());
                 }
             }
         }

@@ -4,6 +4,7 @@ use super::Enclosure;
 #[cfg(feature = "interpreter")]
 use super::bit;
 use super::ternary::{Choice, Choices, Ternary};
+use crate::interval::Interval;
 use crate::tool::compiled::LaneEvaluation;
 use crate::tool::{Evaluators, Outputs};
 
@@ -21,9 +22,9 @@ pub struct EvaluationEnclosure {
 }
 
 impl EvaluationEnclosure {
-    /// Evaluates a compiled tool over a box. `sides` has both ends of the box along x, y and z; for a tool with an axis
+    /// Evaluates a compiled tool over a box. `sides` is the extent of the box along x, y and z; for a tool with an axis
     /// the box lies in the half plane `y = 0`, `x ≥ 0`. Slopes are taken from `reference`, a point of the box.
-    pub fn of<T: Evaluators>(sides: [[f64; 2]; 3], reference: [f64; 3]) -> EvaluationEnclosure {
+    pub fn of<T: Evaluators>(sides: [Interval; 3], reference: [f64; 3]) -> EvaluationEnclosure {
         let present = Ternary { yes: true, no: false, gaps: [None; 2] };
         let outputs = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         let one = Enclosure::constant(1.0);
@@ -52,7 +53,7 @@ impl EvaluationEnclosure {
     /// the displacement. A choice `f` that holds where `g ≤ 0` is at most `f - λ g` there, for any `λ ≥ 0` (Lagrange).
     /// The minimum over `λ` of the maximum over the corners lies at 0 or where two corners have equal bounds. Where the
     /// argument of a square root may be negative its slope is unbounded, and so is the bound of some corner.
-    pub fn max_depth_in_hull(&self, displacements: [[[f64; 2]; 3]; 3]) -> f64 {
+    pub fn max_depth_in_hull(&self, displacements: [[Interval; 3]; 3]) -> f64 {
         let Choices::Two(pair) = self.depth.choices else {
             let depths =
                 displacements.map(|displacement| self.depth.linear.values(displacement).high);

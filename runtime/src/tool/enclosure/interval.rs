@@ -1,13 +1,9 @@
 //! Interval arithmetic, rounded outward (Moore, *Interval Analysis*, 1966).
 
-/// A closed interval; empty if `low` is larger than `high`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Interval {
-    pub(super) low: f64,
-    pub(super) high: f64,
-}
+use crate::interval::Interval;
 
 pub(super) const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+/// No number at all.
 pub(super) const EMPTY: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
 pub(super) const ENTIRE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 

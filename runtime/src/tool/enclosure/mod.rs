@@ -13,7 +13,8 @@ pub use enclosed::EvaluationEnclosure;
 pub use ternary::Ternary;
 
 use super::Lane;
-use interval::{EMPTY, Interval, ZERO};
+use crate::interval::Interval;
+use interval::{EMPTY, ZERO};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use ternary::{Choice, Choices, LinearEnclosure};
 
@@ -53,14 +54,13 @@ impl Enclosure {
         Enclosure::new(value, LinearEnclosure { at: value, slope: [ZERO; 3] })
     }
 
-    /// Returns the coordinates of a box, given both ends of each side and a reference point in the box.
-    pub fn of_box(sides: [[f64; 2]; 3], reference: [f64; 3]) -> [Enclosure; 3] {
+    /// Returns the coordinates of a box, given its extent along x, y and z and a reference point in the box.
+    pub fn of_box(sides: [Interval; 3], reference: [f64; 3]) -> [Enclosure; 3] {
         [0, 1, 2].map(|axis| {
-            let [low, high] = sides[axis];
-            if [low, high] == [0.0; 2] {
+            if sides[axis] == ZERO {
                 return Enclosure::constant(0.0);
             }
-            Enclosure::coordinate(axis, Interval { low, high }, Interval::point(reference[axis]))
+            Enclosure::coordinate(axis, sides[axis], Interval::point(reference[axis]))
         })
     }
 

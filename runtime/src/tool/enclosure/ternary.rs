@@ -1,7 +1,7 @@
 //! Undecided comparisons, and the values selected by them.
 
 use super::Enclosure;
-use super::interval::Interval;
+use crate::interval::Interval;
 use std::ops::{BitAnd, BitOr, Not};
 
 /// A first-order enclosure of a function over a box: its value at a reference point, and its slopes.
@@ -16,13 +16,10 @@ impl LinearEnclosure {
         LinearEnclosure { at: self.at.negated(), slope: self.slope.map(Interval::negated) }
     }
 
-    /// Returns the function's values at a point whose displacement from the reference point lies between `[low, high]`
-    /// along each axis.
-    pub(super) fn values(&self, displacement: [[f64; 2]; 3]) -> Interval {
-        let terms = (0..3).map(|k| {
-            let [low, high] = displacement[k];
-            self.slope[k].times(Interval { low, high })
-        });
+    /// Returns the function's values at a point whose displacement from the reference point is known as an
+    /// interval along each axis.
+    pub(super) fn values(&self, displacement: [Interval; 3]) -> Interval {
+        let terms = (0..3).map(|k| self.slope[k].times(displacement[k]));
         terms.fold(self.at, Interval::plus)
     }
 }
