@@ -68,7 +68,7 @@ impl Feature {
         }
     }
 
-    /// Returns whether the feature may own a point, on this side of the profile, to the tolerance `close`.
+    /// Returns whether the feature may own a point, on this side of the profile, to the tolerance `tolerance`.
     fn faces(&self, p: P2, tolerance: f64) -> bool {
         match *self {
             Feature::Line { from, direction, length } => {
@@ -181,7 +181,7 @@ fn intersect(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) ->
 
 /// Returns points off the surface with three or more nearest features, inside and outside. Newton's method begins at
 /// `starts` random points per pair of borders: up to twice the tool's radius from the axis, and up to half its radius
-/// beyond its ends. Only every `every`-th pair is used.
+/// beyond its ends. Only every `stride`-th pair is used.
 pub(super) fn find_meetings(
     tool: &Restated,
     size: f64,
