@@ -67,8 +67,9 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + allowance`, the other surfaces
-    /// up to `allowance`, in the part's unit. If `allowance` is negative, the other surfaces must keep that distance.
+    /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + allowance`, the other
+    /// surfaces up to `allowance`, in the part's unit. If `allowance` is negative, the other surfaces must keep that
+    /// distance.
     pub fn judge(
         &self,
         stand: &Stand,

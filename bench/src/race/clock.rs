@@ -44,8 +44,8 @@ impl Times {
         self.cpu.as_secs_f64() * 1e9 / self.in_blocks.max(1) as f64
     }
 
-    /// Returns the time in ns that a fraction `fraction` of all queries does not exceed. Returns `None` if fewer than one
-    /// query lies beyond it.
+    /// Returns the time in ns that this fraction of all queries does not exceed. Returns `None` if fewer than one query
+    /// lies beyond it.
     pub fn percentile(&self, fraction: f64) -> Option<u64> {
         let queries_beyond = (1.0 - fraction) * self.query_times.len() as f64;
         let index = (self.query_times.len() as f64 * fraction) as usize;

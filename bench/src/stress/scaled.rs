@@ -99,8 +99,7 @@ fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
     points
 }
 
-/// Returns whether two evaluations agree to the last bit: lengths up to the factor `by`, niceness and direction as they
-/// are.
+/// Returns whether two evaluations agree to the last bit: lengths up to `factor`, niceness and direction as they are.
 fn same_bits(a: Option<&Answer>, b: Option<&Answer>, factor: f64) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return a.is_none() == b.is_none() };
     let mut scaled = a.numbers;

@@ -68,7 +68,7 @@ impl Feature {
         }
     }
 
-    /// Returns whether the feature may own a point, on this side of the profile, to the tolerance `tolerance`.
+    /// Returns whether the feature may own a point, on this side of the profile, to a tolerance.
     fn faces(&self, p: P2, tolerance: f64) -> bool {
         match *self {
             Feature::Line { from, direction, length } => {
