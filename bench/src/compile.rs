@@ -11,7 +11,7 @@ use touchoff_tests::library::{folder, library};
 use touchoff_tests::oracle::draw::Rng;
 
 /// Number of points at which splits are counted.
-const TRIES: usize = 100_000;
+const SPLIT_SAMPLES: usize = 100_000;
 /// Distance from the surface of the points in the shell, as a fraction of the tool's largest radius.
 const SHELL: f64 = 0.02;
 
@@ -50,7 +50,7 @@ pub struct Times {
 /// # Panics
 /// If the tool has an error.
 pub fn times(source: &Source, count: usize) -> Times {
-    let mut all: Vec<f64> = (0..count.max(1))
+    let mut seconds: Vec<f64> = (0..count.max(1))
         .map(|_| {
             let start = Instant::now();
             let compiled = compile(source);
@@ -60,8 +60,12 @@ pub fn times(source: &Source, count: usize) -> Times {
             time
         })
         .collect();
-    all.sort_by(f64::total_cmp);
-    Times { best: all[0], median: all[all.len() / 2], worst: all[all.len() - 1] }
+    seconds.sort_by(f64::total_cmp);
+    Times {
+        best: seconds[0],
+        median: seconds[seconds.len() / 2],
+        worst: seconds[seconds.len() - 1],
+    }
 }
 
 /// Size statistics of a compiled tool.
@@ -90,11 +94,11 @@ pub struct Parts {
 pub fn parts(source: &Source) -> Parts {
     let tool = compile(source).into_tool().expect("a tool of the library");
     let regions = &tool.model.regions;
-    let pieces = regions.iter().filter(|region| !region.name.contains('/')).count();
+    let segments = regions.iter().filter(|region| !region.name.contains('/')).count();
     Parts {
         name: tool.model.name.clone(),
         regions: regions.len(),
-        segments: tool.model.is_exact().then_some(pieces),
+        segments: tool.model.is_exact().then_some(segments),
         curves: tool.model.curves.len(),
         tests: tool.plan.owner.tests(),
         splits: splits(&tool),
@@ -103,47 +107,47 @@ pub fn parts(source: &Source) -> Parts {
 }
 
 fn splits(tool: &CheckedTool) -> [f64; 2] {
-    let mut tree = Walked::new(tool);
-    let mut draw = Rng::new(4);
+    let mut tree = TreeWalk::new(tool);
+    let mut rng = Rng::new(4);
     let (radius, low, high) = (tool.extent.radius, tool.extent.low, tool.extent.high);
     let shell = SHELL * radius;
     // A point is near the surface if a step of the shell's thickness along d or z changes inside to outside or back.
     let steps = [[shell, 0.0], [-shell, 0.0], [0.0, shell], [0.0, -shell]];
     let mut means = [(0, 0); 2];
-    for _ in 0..TRIES {
-        let [d, z] = [draw.between(0.0, 1.1 * radius), draw.between(low, high)];
-        let (inside, met) = tree.walk([d, z]);
+    for _ in 0..SPLIT_SAMPLES {
+        let [d, z] = [rng.between(0.0, 1.1 * radius), rng.between(low, high)];
+        let (inside, tests) = tree.walk([d, z]);
         let near = steps.iter().any(|s| tree.walk([(d + s[0]).abs(), z + s[1]]).0 != inside);
         for (_, (count, sum)) in [near, true].iter().zip(&mut means).filter(|(counts, _)| **counts)
         {
             *count += 1;
-            *sum += met;
+            *sum += tests;
         }
     }
     means.map(|(count, sum): (usize, usize)| sum as f64 / count.max(1) as f64)
 }
 
 /// The tree of owners, traversed as the nested code does.
-struct Walked<'t> {
+struct TreeWalk<'t> {
     tool: &'t CheckedTool,
     curves: Evaluator<'t>,
 }
 
-impl<'t> Walked<'t> {
-    fn new(tool: &'t CheckedTool) -> Walked<'t> {
+impl<'t> TreeWalk<'t> {
+    fn new(tool: &'t CheckedTool) -> TreeWalk<'t> {
         let curves = tool.model.curves.iter().map(|curve| curve.value);
-        Walked { tool, curves: Evaluator::new(&tool.model.graph, curves) }
+        TreeWalk { tool, curves: Evaluator::new(&tool.model.graph, curves) }
     }
 
     /// Returns whether a point is inside, and the number of tests on its path.
     fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
         self.curves.set(At::meridian(d, z));
-        let (mut tree, mut met) = (&self.tool.plan.owner, 0);
+        let (mut tree, mut tests) = (&self.tool.plan.owner, 0);
         loop {
             match tree {
-                Tree::Leaf(owner) => return (owner.is_some(), met),
+                Tree::Leaf(owner) => return (owner.is_some(), tests),
                 Tree::Split { curve, strict, below, above } => {
-                    met += 1;
+                    tests += 1;
                     let value = self.curves.get(self.tool.model.curves[*curve].value);
                     let holds = if *strict { value < 0.0 } else { value <= 0.0 };
                     tree = if holds { below } else { above };
@@ -159,7 +163,7 @@ struct Count(usize);
 
 impl<'ast> Visit<'ast> for Count {
     fn visit_expr(&mut self, expr: &'ast syn::Expr) {
-        let one = match expr {
+        let is_operation = match expr {
             syn::Expr::Binary(_) => true,
             // The sign of a literal is not an operation.
             syn::Expr::Unary(unary) => !matches!(*unary.expr, syn::Expr::Lit(_)),
@@ -169,7 +173,7 @@ impl<'ast> Visit<'ast> for Count {
             }
             _ => false,
         };
-        self.0 += usize::from(one);
+        self.0 += usize::from(is_operation);
         visit::visit_expr(self, expr);
     }
 }

@@ -11,7 +11,7 @@ use touchoff_tests::oracle::draw::Rng;
 /// Number of points at which a mutant is compared with the original tool.
 const POINTS: usize = 20_000;
 /// Relative difference, in units of the tool's size, below which two depths count as equal.
-const SAME: f64 = 1e-5;
+const SAME_DEPTH_TOLERANCE: f64 = 1e-5;
 
 /// The kinds of defects.
 pub const KINDS: [&str; 10] = [
@@ -55,34 +55,36 @@ pub enum Caught {
 /// Returns up to `count` mutants of a tool. The kinds of defects take turns, and each defect has a random location. A
 /// mutant is left out if the tool has no location for it.
 pub fn mutants(tool: &PlannedTool, count: usize, seed: u64) -> Vec<Mutant> {
-    let mut draw = Rng::new(seed);
-    (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut draw)).collect()
+    let mut rng = Rng::new(seed);
+    (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut rng)).collect()
 }
 
-fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Rng) -> Option<Mutant> {
-    let mut tool = whole.clone();
+fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> {
+    let mut tool = original.clone();
     let size = tool.extent.scale();
-    let mut pick = |count: usize| (draw.bits() % count.max(1) as u64) as usize;
+    let mut pick = |count: usize| (rng.bits() % count.max(1) as u64) as usize;
     let region = pick(tool.model.regions.len());
     let mut place = tool.model.regions[region].name.clone();
     let graph = &mut tool.model.graph;
-    let own = &mut tool.model.regions[region];
+    let changed = &mut tool.model.regions[region];
     let number = |value: f64| Number::from_f64(value).expect("a finite number");
     match kind {
-        0 => own.depth = graph.neg(own.depth),
+        0 => changed.depth = graph.neg(changed.depth),
         1 => {
             let shift = graph.number(number(0.01 * size));
-            own.depth = graph.add(own.depth, shift);
+            changed.depth = graph.add(changed.depth, shift);
         }
         2 => {
             let factor = graph.number(number(25.4));
-            own.depth = graph.mul(factor, own.depth);
+            changed.depth = graph.mul(factor, changed.depth);
         }
-        3 => own.raw_direction.0 = own.raw_direction.0.map(|part| graph.neg(part)),
+        3 => {
+            changed.raw_direction.0 = changed.raw_direction.0.map(|component| graph.neg(component))
+        }
         4 => {
             // Turns the direction by a right angle in the half plane, or exchanges components in space.
-            let [x, y, z] = own.raw_direction.0;
-            own.raw_direction.0 = [z, y, graph.neg(x)];
+            let [x, y, z] = changed.raw_direction.0;
+            changed.raw_direction.0 = [z, y, graph.neg(x)];
         }
         5 => tool.plan.owner = leaves(&tool.plan.owner, &|owner| owner.filter(|o| *o != region)),
         6 => {
@@ -90,20 +92,20 @@ fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Rng) -> Option<Mutant> {
                 .checked_rem(tool.model.regions.len())
                 .filter(|other| *other != region)?;
             place = format!("{place} as {}", tool.model.regions[other].name);
-            let evaluation =
+            let new_owner =
                 |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
-            tool.plan.owner = leaves(&tool.plan.owner, &evaluation);
+            tool.plan.owner = leaves(&tool.plan.owner, &new_owner);
         }
         7 => {
             let mut split = pick(tool.plan.owner.tests());
             place = format!("split {split}");
-            tool.plan.owner = turned(&tool.plan.owner, &mut split);
+            tool.plan.owner = with_split_exchanged(&tool.plan.owner, &mut split);
         }
         _ => {
             let curve = pick(tool.model.curves.len());
             place = format!("curve {curve}");
             let value = tool.model.curves[curve].value;
-            let more = match kind {
+            let change = match kind {
                 8 => graph.number(number(0.01 * size)),
                 _ => {
                     let factor = graph.number(number(0.03));
@@ -111,7 +113,7 @@ fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Rng) -> Option<Mutant> {
                     graph.mul(factor, z)
                 }
             };
-            tool.model.curves[curve].value = graph.add(value, more);
+            tool.model.curves[curve].value = graph.add(value, change);
         }
     }
     Some(Mutant { kind, place, tool })
@@ -133,14 +135,14 @@ fn leaves(
     }
 }
 
-/// Returns the tree with the two sides of one split exchanged. `left` is the number of that split in preorder.
-fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
+/// Returns the tree with the two sides of one split exchanged. `remaining` is the number of that split in preorder.
+fn with_split_exchanged(tree: &Tree<Option<usize>>, remaining: &mut usize) -> Tree<Option<usize>> {
     let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
-    let here = *left == 0;
-    *left = left.wrapping_sub(1);
-    let low = Box::new(turned(below, left));
-    let high = Box::new(turned(above, left));
-    let (below, above) = if here { (high, low) } else { (low, high) };
+    let is_chosen = *remaining == 0;
+    *remaining = remaining.wrapping_sub(1);
+    let low = Box::new(with_split_exchanged(below, remaining));
+    let high = Box::new(with_split_exchanged(above, remaining));
+    let (below, above) = if is_chosen { (high, low) } else { (low, high) };
     Tree::Split { curve: *curve, strict: *strict, below, above }
 }
 
@@ -151,63 +153,69 @@ fn evaluation(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -
     at.set(At::point(x, y, z));
     let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
-    Some((at.get(region.depth), region.raw_direction.0.map(|part| at.get(part))))
+    Some((at.get(region.depth), region.raw_direction.0.map(|component| at.get(component))))
 }
 
 fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
-    let evaluation = |region: &tool_dsl::model::Region| -> Vec<Id> {
+    let outputs = |region: &tool_dsl::model::Region| -> Vec<Id> {
         region.raw_direction.0.into_iter().chain([region.depth]).collect()
     };
     let model = &tool.model;
     let curves = model.curves.iter().map(|curve| curve.value);
-    Evaluator::new(&model.graph, model.regions.iter().flat_map(evaluation).chain(curves))
+    Evaluator::new(&model.graph, model.regions.iter().flat_map(outputs).chain(curves))
 }
 
 /// Returns whether a mutant differs from the original in solid, depth or direction at any of `POINTS` random points.
-pub fn changes(whole: &PlannedTool, broken: &PlannedTool, seed: u64) -> bool {
-    let mut draw = Rng::new(seed);
-    let (mut before, mut after) = (evaluator(whole), evaluator(broken));
-    let sides = whole.extent.cell().sides;
-    let slack = SAME * whole.extent.scale();
+pub fn changes(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool {
+    let mut rng = Rng::new(seed);
+    let (mut original_values, mut mutant_values) = (evaluator(original), evaluator(mutant));
+    let sides = original.extent.cell().sides;
+    let slack = SAME_DEPTH_TOLERANCE * original.extent.scale();
     (0..POINTS).any(|_| {
-        let p = sides.map(|side| draw.between(side.low, side.high));
-        match (evaluation(whole, &mut before, p), evaluation(broken, &mut after, p)) {
+        let p = sides.map(|side| rng.between(side.low, side.high));
+        match (
+            evaluation(original, &mut original_values, p),
+            evaluation(mutant, &mut mutant_values, p),
+        ) {
             (None, None) => false,
             (Some((a, u)), Some((b, v))) => {
                 let dot: f64 = u.iter().zip(v).map(|(u, v)| u * v).sum();
-                let long = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-                (a - b).abs() > slack || dot < 0.999 * long(u) * long(v)
+                let norm = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+                (a - b).abs() > slack || dot < 0.999 * norm(u) * norm(v)
             }
             // Within rounding of the surface, inside and outside may differ.
-            (one, other) => one.or(other).is_some_and(|(depth, _)| depth.abs() > slack),
+            (first, second) => first.or(second).is_some_and(|(depth, _)| depth.abs() > slack),
         }
     })
 }
 
 /// Returns the evidence that a tool is defective: the diagnostics of its own certificate, or else a difference from the
 /// certificate of the original tool. The original must have no diagnostics.
-pub fn caught(whole: &Certificate, mutant: &PlannedTool) -> Caught {
-    let broken = Certificate::of(mutant);
-    let reports = broken.diagnostics(mutant);
+pub fn caught(original: &Certificate, mutant: &PlannedTool) -> Caught {
+    let certificate = Certificate::of(mutant);
+    let diagnostics = certificate.diagnostics(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
         (a, b) => a == b,
     };
-    let aside = |certificate: &Certificate| -> Vec<f64> {
+    let direction_errors = |certificate: &Certificate| -> Vec<f64> {
         certificate
             .regions
             .iter()
-            .map(|region| region.direction_error.map_or(0.0, |aside| aside.high))
+            .map(|region| region.direction_error.map_or(0.0, |error| error.high))
             .collect()
     };
-    let off = aside(whole).into_iter().zip(aside(&broken)).any(|(a, b)| b > a + 1e-6);
-    let bounds = same(whole.lower_slope(), broken.lower_slope())
-        && same(whole.lipschitz(), broken.lipschitz());
-    if any_error(&reports) {
+    let has_larger_error = direction_errors(original)
+        .into_iter()
+        .zip(direction_errors(&certificate))
+        .any(|(a, b)| b > a + 1e-6);
+    let has_same_bounds = same(original.lower_slope(), certificate.lower_slope())
+        && same(original.lipschitz(), certificate.lipschitz());
+    if any_error(&diagnostics) {
         Caught::Error
-    } else if reports.is_empty() {
-        if off || !bounds { Caught::Compared } else { Caught::Not }
-    } else if broken.undecided.is_empty() {
+    } else if diagnostics.is_empty() {
+        if has_larger_error || !has_same_bounds { Caught::Compared } else { Caught::Not }
+    } else if certificate.undecided.is_empty() {
         Caught::Warning
     } else {
         Caught::Open

@@ -49,7 +49,7 @@ impl Page {
     /// If the folder or a file cannot be written.
     pub fn write(&self, folder: &Path, command: &str) -> io::Result<()> {
         std::fs::create_dir_all(folder)?;
-        let mut text = format!("# {}\n\n{}\n", self.title, made(command, self.covers));
+        let mut text = format!("# {}\n\n{}\n", self.title, head_line(command, self.covers));
         for Section { title, body, .. } in &self.sections {
             if !title.is_empty() {
                 text += &format!("\n## {title}\n");
@@ -66,7 +66,7 @@ impl Page {
 
 /// Returns the head line of a page: the commit, the `command`, the machine, and the repository paths that the
 /// measurements depend on. A commit ends with `-dirty` if the working tree differs from it.
-fn made(command: &str, covers: &[&str]) -> String {
+fn head_line(command: &str, covers: &[&str]) -> String {
     let git = Command::new("git").args(["describe", "--always", "--dirty", "--exclude=*"]).output();
     let commit = git.ok().and_then(|output| String::from_utf8(output.stdout).ok());
     let commit = commit.unwrap_or_default();
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kept_pages_are_few_and_small_and_name_a_commit() {
+    fn measured_pages_are_few_and_small_and_name_a_commit() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measured");
         let entries = std::fs::read_dir(folder).expect("the folder of pages");
         let mut pages = 0;
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_has_title_head_line_and_sections_and_its_figures_beside_it() {
+    fn writes_title_head_line_sections_and_figures() {
         let folder = tempfile::tempdir().expect("a folder");
         let sections = [("", "\nAll of them.\n\n"), ("Proofs", "By hand.")];
         let section = |(title, body): (&'static str, &str)| Section {

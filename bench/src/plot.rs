@@ -5,9 +5,9 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
 /// Width and height of the image, pixels.
-const SIZE: (u32, u32) = (980, 540);
+const IMAGE_SIZE: (u32, u32) = (980, 540);
 /// Width of the plot area, pixels. The legend is to its right, where it covers no point.
-const PLOT: u32 = 770;
+const PLOT_WIDTH: u32 = 770;
 
 /// Okabe and Ito's palette, which colour-blind readers can tell apart, and some darker colours.
 const COLOURS: [RGBColor; 10] = [
@@ -44,7 +44,7 @@ pub struct Series {
     name: String,
     points: Vec<[f64; 2]>,
     form: Form,
-    look: Option<usize>,
+    colour_number: Option<usize>,
     bold: bool,
 }
 
@@ -81,15 +81,15 @@ impl Axis {
         if self.log {
             return low / 1.3..high * 1.3;
         }
-        let room = if high > low { 0.04 * (high - low) } else { 0.5 * low.abs().max(1.0) };
-        low - room..high + room
+        let margin = if high > low { 0.04 * (high - low) } else { 0.5 * low.abs().max(1.0) };
+        low - margin..high + margin
     }
 }
 
 impl Series {
     /// Returns a polyline with a marker at each point. A series without a name is not in the legend.
     pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
-        Series { name: name.into(), points, form: Form::Line, look: None, bold: false }
+        Series { name: name.into(), points, form: Form::Line, colour_number: None, bold: false }
     }
 
     /// Returns a dashed line without markers.
@@ -102,11 +102,11 @@ impl Series {
         Series { form: Form::Points, ..Series::line(name, points) }
     }
 
-    /// Returns the series with colour number `look` instead of the colour of its index in the plot. A method can thus
-    /// have the same colour in every plot.
+    /// Returns the series with this colour number instead of the colour of its index in the plot. A method can
+    /// thus have the same colour in every plot.
     #[must_use]
-    pub fn look(self, look: usize) -> Series {
-        Series { look: Some(look), ..self }
+    pub fn look(self, colour_number: usize) -> Series {
+        Series { colour_number: Some(colour_number), ..self }
     }
 
     /// Returns the series with a thicker line and larger markers.
@@ -141,18 +141,18 @@ impl Plot {
     /// Never: writing to a string in memory cannot fail.
     pub fn svg(&self) -> String {
         let mut svg = String::new();
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let area = SVGBackend::with_string(&mut svg, IMAGE_SIZE).into_drawing_area();
         let [x, y] = [0, 1].map(|axis| {
-            let all = self.series.iter().flat_map(|series| &series.points);
-            self.axes[axis].span(all.map(|point| point[axis]))
+            let points = self.series.iter().flat_map(|series| &series.points);
+            self.axes[axis].span(points.map(|point| point[axis]))
         });
-        let drawn = match [self.axes[0].log, self.axes[1].log] {
+        let result = match [self.axes[0].log, self.axes[1].log] {
             [true, true] => self.draw(&area, x.log_scale(), y.log_scale()),
             [true, false] => self.draw(&area, x.log_scale(), y),
             [false, true] => self.draw(&area, x, y.log_scale()),
             [false, false] => self.draw(&area, x, y),
         };
-        drawn.expect("a text in memory");
+        result.expect("a text in memory");
         drop(area);
         svg
     }
@@ -170,7 +170,7 @@ impl Plot {
         Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
         area.fill(&WHITE)?;
-        let (plot, legend) = area.split_horizontally(PLOT);
+        let (plot, legend) = area.split_horizontally(PLOT_WIDTH);
         let mut chart = ChartBuilder::on(&plot)
             .caption(&self.title, ("sans-serif", 17))
             .margin(14)
@@ -192,10 +192,10 @@ impl Plot {
             let colour = self.colour(number);
             let style = colour.stroke_width(if series.bold { 3 } else { 1 });
             let size = if series.bold { 4 } else { 3 };
-            let shown =
+            let can_show =
                 |p: &&[f64; 2]| self.axes.iter().zip(*p).all(|(axis, value)| axis.shows(*value));
             let points: Vec<(f64, f64)> =
-                series.points.iter().filter(shown).map(|[x, y]| (*x, *y)).collect();
+                series.points.iter().filter(can_show).map(|[x, y]| (*x, *y)).collect();
             let filled = series.form != Form::Points;
             let marker = colour.mix(if filled { 1.0 } else { 0.7 }).filled();
             match series.form {
@@ -225,7 +225,7 @@ impl Plot {
 
     /// Returns the colour of the series with this index.
     fn colour(&self, number: usize) -> RGBColor {
-        COLOURS[self.series[number].look.unwrap_or(number) % COLOURS.len()]
+        COLOURS[self.series[number].colour_number.unwrap_or(number) % COLOURS.len()]
     }
 
     /// Draws the legend: the name of each named series beside its mark.
@@ -271,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plot_is_the_same_bytes_each_time_and_leaves_out_what_has_no_place() {
+    fn svg_is_reproducible_and_leaves_out_points_outside_the_axes() {
         let points = vec![[1.0, 1.0], [2.0, 0.0], [0.0, 1.0], [3.0, f64::NAN], [4.0, 2.0]];
         for (x, y, circles) in [
             (Axis::log("x"), Axis::log("y"), 2),
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_one_point_are_plots_too() {
+    fn draws_empty_plots_and_single_points() {
         for axis in [Axis::log, Axis::linear] {
             for points in [vec![], vec![[5.0, 5.0]]] {
                 let plot = Plot::new("", axis("x"), axis("y")).with(Series::points("p", points));

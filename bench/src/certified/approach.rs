@@ -11,14 +11,14 @@ use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Rng;
 
 /// Maximum number of triangles sampled per pose, and number of samples per triangle.
-const TRIANGLES: usize = 40;
-const SAMPLES: usize = 6;
-/// Number of times that are refined, number of refinements of each, number of starts of the search, and number of its
-/// steps.
-const CLOSER: usize = 5;
-const AGAIN: usize = 6;
-const STARTS: usize = 6;
-const STEPS: usize = 700;
+const MAX_TRIANGLES: usize = 40;
+const SAMPLES_PER_TRIANGLE: usize = 6;
+/// Number of times that are refined, number of refinements of each, number of searches, and number of steps per
+/// search.
+const REFINED_TIMES: usize = 5;
+const REFINEMENTS_PER_TIME: usize = 6;
+const CLIMBS: usize = 6;
+const STEPS_PER_CLIMB: usize = 700;
 
 /// A tool's motion, as it is specified.
 #[derive(Clone, Copy, Debug)]
@@ -66,64 +66,64 @@ pub struct Closest {
     pub depth: f64,
 }
 
-fn point(of: Point3<f64>) -> Point {
-    [of.x, of.y, of.z]
+fn point(p: Point3<f64>) -> Point {
+    [p.x, p.y, p.z]
 }
 
 impl Brute<'_> {
-    fn evaluation(&self, seen: &Seen, p: Point) -> f64 {
-        self.depth(self.to_tool(seen, Point3::from(p))) * self.length
+    fn evaluation(&self, frame: &Seen, p: Point) -> f64 {
+        self.depth(self.to_tool(frame, Point3::from(p))) * self.length
     }
 
     /// Returns the deepest sample at a time.
-    pub fn at(&self, way: &Way, t: f64, draw: &mut Rng) -> Closest {
-        let seen = self.seen(&way.pose(t));
+    pub fn at(&self, motion: &Way, t: f64, rng: &mut Rng) -> Closest {
+        let frame = self.seen(&motion.pose(t));
         let [radius, height] = self.oracle.extent();
         let mut best = Closest { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
         // Upper bound of the depth in a ball, from its distance to the tool's bounding cylinder.
-        let at_most = |(middle, reach): &(Point3<f64>, f64)| {
-            let p = self.to_tool(&seen, *middle);
-            let out = (p[0].hypot(p[1]) - radius).max(0.0);
-            let beyond = (p[2] - height).max(-p[2]).max(0.0);
-            reach - (out * out + beyond * beyond).sqrt() * self.length
+        let depth_bound = |(centroid, reach): &(Point3<f64>, f64)| {
+            let p = self.to_tool(&frame, *centroid);
+            let radial_gap = (p[0].hypot(p[1]) - radius).max(0.0);
+            let axial_gap = (p[2] - height).max(-p[2]).max(0.0);
+            reach - (radial_gap * radial_gap + axial_gap * axial_gap).sqrt() * self.length
         };
-        let bounds = self.groups.iter().map(at_most).enumerate();
+        let bounds = self.groups.iter().map(depth_bound).enumerate();
         let mut groups: Vec<(usize, f64)> = bounds.collect();
         groups.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut near = Vec::new();
+        let mut candidates = Vec::new();
         for (group, bound) in groups {
             if bound < best.depth {
                 break;
             }
             for id in GROUP * group..(GROUP * (group + 1)).min(self.balls.len()) {
-                let (middle, reach) = &self.balls[id];
-                if at_most(&self.balls[id]) < best.depth {
+                let (centroid, reach) = &self.balls[id];
+                if depth_bound(&self.balls[id]) < best.depth {
                     continue;
                 }
-                let depth = self.evaluation(&seen, point(*middle));
-                near.push((depth + reach, id));
+                let depth = self.evaluation(&frame, point(*centroid));
+                candidates.push((depth + reach, id));
                 if depth > best.depth {
-                    best = Closest { t, triangle: id, point: point(*middle), depth };
+                    best = Closest { t, triangle: id, point: point(*centroid), depth };
                 }
             }
         }
-        near.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (bound, id) in near.into_iter().take(TRIANGLES) {
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
             if bound < best.depth {
                 break;
             }
             let corners = self.mesh.triangle(TriangleId(id as u32)).map(point);
-            let (tip, turn) = (way.pose(t).tip(), *way.pose(t).rotation());
+            let (tip, rotation) = (motion.pose(t).tip(), *motion.pose(t).rotation());
             let mut points = corners.to_vec();
-            for _ in 0..SAMPLES {
-                let mut across = || draw.between(-1.0, 1.0) * radius;
-                let (x, y) = (across(), across());
-                let z = draw.between(0.0, 1.0) * if draw.bits() & 1 == 0 { height } else { radius };
-                let inside = tip + turn * nalgebra::Vector3::new(x, y, z) * self.length;
+            for _ in 0..SAMPLES_PER_TRIANGLE {
+                let mut offset = || rng.between(-1.0, 1.0) * radius;
+                let (x, y) = (offset(), offset());
+                let z = rng.between(0.0, 1.0) * if rng.bits() & 1 == 0 { height } else { radius };
+                let inside = tip + rotation * nalgebra::Vector3::new(x, y, z) * self.length;
                 points.push(nearest(point(inside), &corners));
             }
             for p in points {
-                let depth = self.evaluation(&seen, p);
+                let depth = self.evaluation(&frame, p);
                 if depth > best.depth {
                     best = Closest { t, triangle: id, point: p, depth };
                 }
@@ -134,51 +134,59 @@ impl Brute<'_> {
 
     /// Returns the deepest sample of a whole motion, at `times` random times and at both ends. If `closely`, also
     /// refines around the best of them.
-    pub fn closest(&self, way: &Way, times: u32, closely: bool, draw: &mut Rng) -> Closest {
+    pub fn closest(&self, motion: &Way, times: u32, closely: bool, rng: &mut Rng) -> Closest {
         let step = 1.0 / f64::from(times);
-        let middle = |k| (f64::from(k) + draw.between(0.0, 1.0)) * step;
-        let mut at: Vec<f64> = (0..times).map(middle).collect();
-        at.extend([0.0, 1.0]);
-        let mut found: Vec<Closest> = at.into_iter().map(|t| self.at(way, t, draw)).collect();
-        let deepest = |found: &mut Vec<Closest>| found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-        deepest(&mut found);
-        for k in 0..if closely { CLOSER.min(found.len()) } else { 0 } {
-            for _ in 0..AGAIN {
-                let t = (found[k].t + draw.between(-step, step)).clamp(0.0, 1.0);
-                found.push(self.at(way, t, draw));
+        let random_time = |k| (f64::from(k) + rng.between(0.0, 1.0)) * step;
+        let mut sampled_times: Vec<f64> = (0..times).map(random_time).collect();
+        sampled_times.extend([0.0, 1.0]);
+        let mut samples: Vec<Closest> =
+            sampled_times.into_iter().map(|t| self.at(motion, t, rng)).collect();
+        let sort_deepest_first =
+            |samples: &mut Vec<Closest>| samples.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        sort_deepest_first(&mut samples);
+        for k in 0..if closely { REFINED_TIMES.min(samples.len()) } else { 0 } {
+            for _ in 0..REFINEMENTS_PER_TIME {
+                let t = (samples[k].t + rng.between(-step, step)).clamp(0.0, 1.0);
+                samples.push(self.at(motion, t, rng));
             }
         }
-        deepest(&mut found);
-        let starts = found.iter().take(if closely { STARTS } else { 1 });
-        let climbed = starts.map(|from| self.climb_on(way, *from, step, draw));
-        climbed.fold(found[0], |best, other| if other.depth > best.depth { other } else { best })
+        sort_deepest_first(&mut samples);
+        let starts = samples.iter().take(if closely { CLIMBS } else { 1 });
+        let climbed = starts.map(|from| self.climb_in_time(motion, *from, step, rng));
+        climbed.fold(
+            samples[0],
+            |best, candidate| if candidate.depth > best.depth { candidate } else { best },
+        )
     }
 
     /// Climbs in time and position from a sample, and returns the deepest sample reached.
-    fn climb_on(&self, way: &Way, from: Closest, step: f64, draw: &mut Rng) -> Closest {
-        let corners = self.mesh.triangle(TriangleId(from.triangle as u32)).map(point);
-        let mut best = from;
-        let (mut part, mut wide) =
-            (step, self.balls[from.triangle].1.min(self.length * self.oracle.extent()[0]));
+    fn climb_in_time(&self, motion: &Way, start: Closest, step: f64, rng: &mut Rng) -> Closest {
+        let corners = self.mesh.triangle(TriangleId(start.triangle as u32)).map(point);
+        let mut best = start;
+        let (mut time_step, mut distance) =
+            (step, self.balls[start.triangle].1.min(self.length * self.oracle.extent()[0]));
         let mut failed = 0;
-        for k in 0..STEPS {
-            if part < 1e-17 && wide < 1e-14 {
+        for k in 0..STEPS_PER_CLIMB {
+            if time_step < 1e-17 && distance < 1e-14 {
                 break;
             }
-            let go = if k % 3 == 0 { 0.0 } else { part * draw.between(-1.0, 1.0) };
-            let t = (best.t + go).clamp(0.0, 1.0);
-            let aside = if k % 3 == 1 { 0.0 } else { wide };
-            let turn = draw.direction();
-            let p = nearest([0, 1, 2].map(|axis| best.point[axis] + aside * turn[axis]), &corners);
-            let depth = self.evaluation(&self.seen(&way.pose(t)), p);
+            let time_change = if k % 3 == 0 { 0.0 } else { time_step * rng.between(-1.0, 1.0) };
+            let t = (best.t + time_change).clamp(0.0, 1.0);
+            let offset = if k % 3 == 1 { 0.0 } else { distance };
+            let direction = rng.direction();
+            let p = nearest(
+                [0, 1, 2].map(|axis| best.point[axis] + offset * direction[axis]),
+                &corners,
+            );
+            let depth = self.evaluation(&self.seen(&motion.pose(t)), p);
             if depth > best.depth {
                 best = Closest { t, point: p, depth, ..best };
                 failed = 0;
-                (part, wide) = ((1.3 * part).min(step), 1.3 * wide);
+                (time_step, distance) = ((1.3 * time_step).min(step), 1.3 * distance);
             } else {
                 failed += 1;
                 if failed % 5 == 0 {
-                    (part, wide) = (0.6 * part, 0.6 * wide);
+                    (time_step, distance) = (0.6 * time_step, 0.6 * distance);
                 }
             }
         }

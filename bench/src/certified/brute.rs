@@ -13,15 +13,15 @@ use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 pub type Point = [f64; 3];
 
 /// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
-const SAMPLES: [usize; 2] = [8, 150];
+const SAMPLE_LIMITS: [usize; 2] = [8, 150];
 /// Number of samples of each kind over all triangles nearby, within the limits per triangle.
-const TOGETHER: usize = 600;
+const TOTAL_SAMPLES: usize = 600;
 /// Maximum number of triangles that are sampled.
-const TRIANGLES: usize = 1000;
+const MAX_TRIANGLES: usize = 1000;
 /// Number of samples from which the search climbs, maximum number of them per triangle, and number of steps.
-const STARTS: usize = 6;
-const EACH: usize = 3;
-const STEPS: usize = 500;
+const CLIMBS: usize = 6;
+const MAX_CLIMBS_PER_TRIANGLE: usize = 3;
+const STEPS_PER_CLIMB: usize = 500;
 
 /// A part's triangles and a tool.
 pub struct Brute<'a> {
@@ -46,7 +46,7 @@ pub struct Seen {
     axes: [[f64; 3]; 3],
 }
 
-fn minus(a: Point, b: Point) -> Point {
+fn subtract(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -58,45 +58,46 @@ fn cross(a: Point, b: Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn along(a: Point, t: f64, way: Point) -> Point {
-    [a[0] + t * way[0], a[1] + t * way[1], a[2] + t * way[2]]
+fn advance(a: Point, t: f64, direction: Point) -> Point {
+    [a[0] + t * direction[0], a[1] + t * direction[1], a[2] + t * direction[2]]
 }
 
 /// Returns the distance between two points.
 pub fn distance(a: Point, b: Point) -> f64 {
-    let way = minus(a, b);
-    dot(way, way).sqrt()
+    let difference = subtract(a, b);
+    dot(difference, difference).sqrt()
 }
 
 /// Returns the point of a triangle nearest to `p`: the foot on its plane, or else a point on an edge.
 pub fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
     // The two shortest edges determine the plane of a sliver best.
-    let mut ways = [minus(b, a), minus(c, b), minus(a, c)];
-    ways.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
-    let normal = cross(ways[0], ways[1]);
-    let square = dot(normal, normal);
-    if square > 0.0 {
-        let foot = along(p, -dot(normal, minus(p, a)) / square, normal);
-        let side = |from: Point, to: Point| dot(cross(minus(to, from), minus(foot, from)), normal);
+    let mut sorted_edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
+    sorted_edges.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
+    let normal = cross(sorted_edges[0], sorted_edges[1]);
+    let squared_norm = dot(normal, normal);
+    if squared_norm > 0.0 {
+        let foot = advance(p, -dot(normal, subtract(p, a)) / squared_norm, normal);
+        let side =
+            |from: Point, to: Point| dot(cross(subtract(to, from), subtract(foot, from)), normal);
         let sides = [side(a, b), side(b, c), side(c, a)];
         if sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0) {
             return foot;
         }
     }
     let edges = [[a, b], [b, c], [c, a]].map(|[from, to]| {
-        let way = minus(to, from);
-        let at = dot(minus(p, from), way) / dot(way, way);
-        along(from, if at > 0.0 { at.min(1.0) } else { 0.0 }, way)
+        let edge = subtract(to, from);
+        let t = dot(subtract(p, from), edge) / dot(edge, edge);
+        advance(from, if t > 0.0 { t.min(1.0) } else { 0.0 }, edge)
     });
     edges.into_iter().min_by(|e, f| distance(p, *e).total_cmp(&distance(p, *f))).unwrap_or(a)
 }
 
 /// Returns a ball that contains several balls.
-fn around(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
-    let all = balls.iter().map(|(middle, _)| middle.coords);
-    let middle = Point3::from(all.sum::<Vector3<f64>>() / balls.len() as f64);
-    let reach = balls.iter().map(|(other, reach)| (other - middle).norm() + reach);
-    (middle, reach.fold(0.0, f64::max) * (1.0 + 1e-12))
+fn bounding_ball(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
+    let centres = balls.iter().map(|(centre, _)| centre.coords);
+    let centre = Point3::from(centres.sum::<Vector3<f64>>() / balls.len() as f64);
+    let reach = balls.iter().map(|(ball_centre, reach)| (ball_centre - centre).norm() + reach);
+    (centre, reach.fold(0.0, f64::max) * (1.0 + 1e-12))
 }
 
 impl<'a> Brute<'a> {
@@ -104,20 +105,20 @@ impl<'a> Brute<'a> {
     pub fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> Brute<'a> {
         let [low, high] = mesh.bounds();
         let [radius, height] = oracle.extent();
-        let far = low.coords.amax().max(high.coords.amax());
+        let max_coordinate = low.coords.amax().max(high.coords.amax());
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
             let corners = mesh.triangle(TriangleId(id));
-            let middle =
+            let centroid =
                 Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
-            let reach = corners.map(|corner| (corner - middle).norm());
-            (middle, reach[0].max(reach[1]).max(reach[2]))
+            let reach = corners.map(|corner| (corner - centroid).norm());
+            (centroid, reach[0].max(reach[1]).max(reach[2]))
         });
         let balls: Vec<_> = balls.collect();
         Brute {
             length,
-            groups: balls.chunks(GROUP).map(around).collect(),
-            size: (high - low).norm() + far + (radius + height) * length,
+            groups: balls.chunks(GROUP).map(bounding_ball).collect(),
+            size: (high - low).norm() + max_coordinate + (radius + height) * length,
             balls,
             mesh,
             oracle,
@@ -126,16 +127,16 @@ impl<'a> Brute<'a> {
 
     /// Converts a pose.
     pub fn seen(&self, pose: &Pose) -> Seen {
-        let turn = pose.rotation();
+        let rotation = pose.rotation();
         Seen {
             tip: pose.tip(),
-            axes: [0, 1, 2].map(|k| [turn[(0, k)], turn[(1, k)], turn[(2, k)]]),
+            axes: [0, 1, 2].map(|k| [rotation[(0, k)], rotation[(1, k)], rotation[(2, k)]]),
         }
     }
 
-    pub(super) fn to_tool(&self, seen: &Seen, point: Point3<f64>) -> Point {
-        let off = point - seen.tip;
-        seen.axes.map(|axis| dot(axis, [off.x, off.y, off.z]) / self.length)
+    pub(super) fn to_tool(&self, frame: &Seen, point: Point3<f64>) -> Point {
+        let offset = point - frame.tip;
+        frame.axes.map(|axis| dot(axis, [offset.x, offset.y, offset.z]) / self.length)
     }
 
     /// Returns a point of the world in the tool's frame and unit.
@@ -144,8 +145,8 @@ impl<'a> Brute<'a> {
     }
 
     /// Returns a triangle in the tool's frame and unit.
-    pub fn triangle(&self, seen: &Seen, id: usize) -> [Point; 3] {
-        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool(seen, corner))
+    pub fn triangle(&self, frame: &Seen, id: usize) -> [Point; 3] {
+        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool(frame, corner))
     }
 
     /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
@@ -155,89 +156,98 @@ impl<'a> Brute<'a> {
 
     /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
     /// infinity if no triangle is near.
-    pub fn deepest(&self, seen: &Seen, draw: &mut Rng, samples: &mut u64) -> f64 {
+    pub fn deepest(&self, frame: &Seen, rng: &mut Rng, samples: &mut u64) -> f64 {
         let [radius, height] = self.oracle.extent();
-        let mut near = Vec::new();
-        for (id, (middle, reach)) in self.balls.iter().enumerate() {
-            let p = self.to_tool(seen, *middle);
+        let mut candidates = Vec::new();
+        for (id, (centroid, reach)) in self.balls.iter().enumerate() {
+            let p = self.to_tool(frame, *centroid);
             let reach = reach / self.length * (1.0 + 1e-9);
             if p[2] + reach < 0.0 || p[2] - reach > height || p[0].hypot(p[1]) > radius + reach {
                 continue;
             }
-            near.push((self.depth(p) + reach, id));
+            candidates.push((self.depth(p) + reach, id));
         }
-        *samples += near.len() as u64;
-        near.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let count = (TOGETHER / near.len().max(1)).clamp(SAMPLES[0], SAMPLES[1]);
+        *samples += candidates.len() as u64;
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let count =
+            (TOTAL_SAMPLES / candidates.len().max(1)).clamp(SAMPLE_LIMITS[0], SAMPLE_LIMITS[1]);
         let mut best = f64::NEG_INFINITY;
         let mut starts: Vec<(f64, usize, Point)> = Vec::new();
-        for (bound, id) in near.into_iter().take(TRIANGLES) {
+        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
             if bound <= best {
                 break;
             }
-            let evaluation = self.sample(&self.triangle(seen, id), count, draw);
-            *samples += evaluation.len() as u64;
-            best = best.max(evaluation[0].0);
-            starts
-                .extend(evaluation.into_iter().take(EACH).map(|(depth, point)| (depth, id, point)));
+            let triangle_samples = self.sample(&self.triangle(frame, id), count, rng);
+            *samples += triangle_samples.len() as u64;
+            best = best.max(triangle_samples[0].0);
+            starts.extend(
+                triangle_samples
+                    .into_iter()
+                    .take(MAX_CLIMBS_PER_TRIANGLE)
+                    .map(|(depth, point)| (depth, id, point)),
+            );
         }
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let climbs = starts.into_iter().take(STARTS);
-        let reached = climbs.map(|(_, id, point)| self.climb(seen, id, point, draw, samples));
+        let climbs = starts.into_iter().take(CLIMBS);
+        let reached = climbs.map(|(_, id, point)| self.climb(frame, id, point, rng, samples));
         reached.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns samples of a triangle, the deepest first.
-    fn sample(&self, triangle: &[Point; 3], count: usize, draw: &mut Rng) -> Vec<(f64, Point)> {
+    fn sample(&self, triangle: &[Point; 3], count: usize, rng: &mut Rng) -> Vec<(f64, Point)> {
         let [radius, height] = self.oracle.extent();
         let [a, b, c] = *triangle;
         let mut points = vec![a, b, c];
         for _ in 0..count {
-            let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
+            let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
             let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
-            points.push(along(along(a, v, minus(b, a)), w, minus(c, a)));
+            points.push(advance(advance(a, v, subtract(b, a)), w, subtract(c, a)));
             // Half of the points are near the tip.
-            let high =
-                if draw.bits().is_multiple_of(2) { height } else { height.min(2.0 * radius) };
-            let mut across = || draw.between(-0.5, 0.5) * radius;
-            points.push(nearest([across(), across(), draw.between(0.0, high)], triangle));
+            let max_height =
+                if rng.bits().is_multiple_of(2) { height } else { height.min(2.0 * radius) };
+            let mut offset = || rng.between(-0.5, 0.5) * radius;
+            points.push(nearest([offset(), offset(), rng.between(0.0, max_height)], triangle));
         }
-        let mut evaluation: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
-        evaluation.sort_by(|a, b| b.0.total_cmp(&a.0));
-        evaluation
+        let mut samples: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
+        samples.sort_by(|a, b| b.0.total_cmp(&a.0));
+        samples
     }
 
     /// Climbs from a point of a triangle and returns the greatest depth reached, in the part's unit.
     pub fn climb(
         &self,
-        seen: &Seen,
+        frame: &Seen,
         triangle: usize,
-        from: Point,
-        draw: &mut Rng,
+        start: Point,
+        rng: &mut Rng,
         samples: &mut u64,
     ) -> f64 {
-        let triangle = self.triangle(seen, triangle);
+        let triangle = self.triangle(frame, triangle);
         let [a, b, c] = triangle;
-        let mut at = nearest(from, &triangle);
-        let mut best = self.depth(at);
-        let mut last = [0.0; 3];
+        let mut current = nearest(start, &triangle);
+        let mut best = self.depth(current);
+        let mut last_direction = [0.0; 3];
         let mut step =
             distance(a, b).max(distance(b, c)).max(distance(c, a)).min(self.oracle.extent()[0]);
         let mut failed = 0;
-        for k in 0..STEPS {
+        for k in 0..STEPS_PER_CLIMB {
             if step < 1e-11 {
                 break;
             }
             *samples += 1;
             // Few directions lead up along a ridge, so the last successful direction is tried again.
-            let way = if k % 4 == 0 && last != [0.0; 3] { last } else { draw.direction() };
-            let next = nearest(along(at, step, way), &triangle);
+            let direction = if k % 4 == 0 && last_direction != [0.0; 3] {
+                last_direction
+            } else {
+                rng.direction()
+            };
+            let next = nearest(advance(current, step, direction), &triangle);
             let depth = self.depth(next);
             if depth > best {
-                let went = minus(next, at);
-                let size = dot(went, went).sqrt();
-                last = went.map(|part| part / size);
-                (best, at, failed) = (depth, next, 0);
+                let moved = subtract(next, current);
+                let norm = dot(moved, moved).sqrt();
+                last_direction = moved.map(|component| component / norm);
+                (best, current, failed) = (depth, next, 0);
                 step *= 1.5;
             } else {
                 failed += 1;

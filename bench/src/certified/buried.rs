@@ -28,42 +28,42 @@ pub struct Row {
 /// # Panics
 /// If the certifier rejects the tool.
 pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> Row {
-    let mut draw = Rng::new(seed);
+    let mut rng = Rng::new(seed);
     let info = tool.info();
     let mut row = Row { tool: info.name.to_string(), ..Row::default() };
     let [radius, height] = subject.oracle().extent();
     let size = radius.max(height);
     for _ in 0..count {
-        let gap = size * 10f64.powf(draw.between(subject.finest().log10(), -1.0));
-        let inside = draw.bits().is_multiple_of(2);
-        let near = draw.bits() as usize % 6;
+        let gap = size * 10f64.powf(rng.between(subject.min_gap().log10(), -1.0));
+        let inside = rng.bits().is_multiple_of(2);
+        let near_face = rng.bits() as usize % 6;
         let extent = [radius, radius, 0.0, radius, radius, height];
         let faces: [f64; 6] = std::array::from_fn(|face| {
-            let beyond = if face == near && inside {
+            let margin = if face == near_face && inside {
                 gap
-            } else if face == near {
+            } else if face == near_face {
                 -gap.min(0.1 * radius)
             } else {
-                size * draw.between(0.2, 1.0)
+                size * rng.between(0.2, 1.0)
             };
-            let away = extent[face] + beyond;
-            if face < 3 { -away } else { away }
+            let coordinate = extent[face] + margin;
+            if face < 3 { -coordinate } else { coordinate }
         });
         let low = Point3::new(faces[0], faces[1], faces[2]);
         let block = shapes::cuboid(low, Point3::new(faces[3], faces[4], faces[5]), info.unit);
-        let tip = Point3::from(draw.direction()) * size;
-        let pose = Pose::from_axis(tip, Vector3::from(draw.direction())).expect("an axis");
-        let block = placed(&block.expect("a cuboid"), &pose);
+        let tip = Point3::from(rng.direction()) * size;
+        let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
+        let block = to_world(&block.expect("a cuboid"), &pose);
         let bvh = TriangleBvh::new(&block);
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
         let found = certifier.check_pose(&pose);
-        let told = if inside { &mut row.inside } else { &mut row.cut };
-        told[0] += 1;
+        let counts = if inside { &mut row.inside } else { &mut row.cut };
+        counts[0] += 1;
         match (inside, found) {
-            (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => told[1] += 1,
+            (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => counts[1] += 1,
             (_, PoseVerdict::Undecided(_)) => {}
             _ => row.violations.push(format!(
-                "{} with a gap of {gap:e} at face {near}, inside {inside}: {found:?} at {pose:?}",
+                "{} with a gap of {gap:e} at face {near_face}, inside {inside}: {found:?} at {pose:?}",
                 info.name
             )),
         }
@@ -72,8 +72,8 @@ pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> R
 }
 
 /// Transforms a mesh from the tool's frame to the world frame.
-fn placed(mesh: &Mesh, pose: &Pose) -> Mesh {
-    let place = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-    let vertices = mesh.vertices().iter().map(place).collect();
+fn to_world(mesh: &Mesh, pose: &Pose) -> Mesh {
+    let transform = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
+    let vertices = mesh.vertices().iter().map(transform).collect();
     Mesh::new(vertices, mesh.triangles().to_vec(), mesh.unit()).expect("a mesh as before")
 }

@@ -35,9 +35,9 @@ pub struct Worst {
 }
 
 impl Worst {
-    fn see(&mut self, by: f64, at: impl FnOnce() -> String) {
-        if by.is_nan() || by > self.by {
-            *self = Worst { by, at: at() };
+    fn update(&mut self, value: f64, case: impl FnOnce() -> String) {
+        if value.is_nan() || value > self.by {
+            *self = Worst { by: value, at: case() };
         }
     }
 }
@@ -93,7 +93,7 @@ impl Pair<'_> {
     /// # Panics
     /// If the certifier rejects the tool.
     pub fn measure(&self, count: usize, seed: u64) -> Row {
-        let mut draw = Rng::new(seed);
+        let mut rng = Rng::new(seed);
         let info = self.tool.info();
         let length = info.unit.factor_to(self.mesh.unit());
         let brute = Brute::new(self.mesh, self.oracle, length);
@@ -114,42 +114,42 @@ impl Pair<'_> {
             violations: Vec::new(),
         };
         for k in 0..count {
-            let pose = poses::pose(self.mesh, self.oracle, length, &mut draw);
+            let pose = poses::pose(self.mesh, self.oracle, length, &mut rng);
             let tolerance = TOLERANCES[k % TOLERANCES.len()];
-            let mut judge = Judge {
+            let mut validation = Validation {
                 pair: self,
                 brute: &brute,
-                seen: brute.seen(&pose),
+                frame: brute.seen(&pose),
                 // Error bound of the oracle and of the coordinates of a sample.
                 rounding: 64.0 * f64::EPSILON * brute.size,
                 pose,
                 tolerance,
                 row: &mut row,
             };
-            judge.pose(&mut certifier, &mut draw);
+            validation.validate(&mut certifier, &mut rng);
         }
         row
     }
 }
 
 /// A pose under validation.
-struct Judge<'a> {
+struct Validation<'a> {
     pair: &'a Pair<'a>,
     brute: &'a Brute<'a>,
-    seen: Seen,
+    frame: Seen,
     rounding: f64,
     pose: Pose,
     tolerance: f64,
     row: &'a mut Row,
 }
 
-impl Judge<'_> {
-    fn pose(&mut self, certifier: &mut Certifier<'_>, draw: &mut Rng) {
+impl Validation<'_> {
+    fn validate(&mut self, certifier: &mut Certifier<'_>, rng: &mut Rng) {
         let found = certifier.deepest(&self.pose, self.tolerance);
         let Interval { low, high } = found.depth;
-        let deep = self.brute.deepest(&self.seen, draw, &mut self.row.samples);
-        let at = format!(
-            "{} in {} at tip {:?} axis {:?}, tolerance {:e}: {:?}, brute force {deep:?}",
+        let sampled_depth = self.brute.deepest(&self.frame, rng, &mut self.row.samples);
+        let case = format!(
+            "{} in {} at tip {:?} axis {:?}, tolerance {:e}: {:?}, brute force {sampled_depth:?}",
             self.row.tool,
             self.row.part,
             self.pose.tip().coords.as_slice(),
@@ -157,82 +157,85 @@ impl Judge<'_> {
             self.tolerance,
             found
         );
-        self.row.touching += usize::from(deep > 0.0);
-        self.row.behind.see(low - deep.max(0.0), || at.clone());
-        self.row.reached += usize::from(low - deep.max(0.0) <= 1e-6);
-        let mut most = deep;
+        self.row.touching += usize::from(sampled_depth > 0.0);
+        self.row.behind.update(low - sampled_depth.max(0.0), || case.clone());
+        self.row.reached += usize::from(low - sampled_depth.max(0.0) <= 1e-6);
+        let mut max_depth = sampled_depth;
         match found.witness {
             Some(witness) => {
-                let depth = self.witness(&witness, &at);
-                self.row.under.see(low - depth, || at.clone());
+                let depth = self.witness_depth(&witness, &case);
+                self.row.under.update(low - depth, || case.clone());
                 if low - depth > self.rounding {
-                    self.wrong("the witness is not as deep as the lower bound", &at);
+                    self.add_violation("the witness is not as deep as the lower bound", &case);
                 }
-                most = most.max(self.beside(&witness, draw));
+                max_depth = max_depth.max(self.climb_from(&witness, rng));
             }
-            None if low > 0.0 => self.wrong("a lower bound without a witness", &at),
+            None if low > 0.0 => self.add_violation("a lower bound without a witness", &case),
             None => (),
         }
-        self.row.over.see(most - high, || at.clone());
-        if most > high + self.rounding {
-            self.wrong(&format!("a sample is {most:e} deep, above the upper bound"), &at);
+        self.row.over.update(max_depth - high, || case.clone());
+        if max_depth > high + self.rounding {
+            self.add_violation(
+                &format!("a sample is {max_depth:e} deep, above the upper bound"),
+                &case,
+            );
         }
         // Written without `low > high`, which is false for NaN.
         if !(0.0 <= low && low <= high && high.is_finite()) {
-            self.wrong("no interval", &at);
+            self.add_violation("no interval", &case);
         }
-        let wide = high - low - self.tolerance;
-        self.row.wide.see(wide, || at.clone());
+        let excess_width = high - low - self.tolerance;
+        self.row.wide.update(excess_width, || case.clone());
         // The rounding error counts twice at either end and four times in the tolerance.
-        self.row.wider += usize::from(wide > 8.0 * self.rounding);
-        let clear = certifier.check_pose(&self.pose);
-        self.clear(clear, most, low, &format!("{at}, {clear:?}"));
+        self.row.wider += usize::from(excess_width > 8.0 * self.rounding);
+        let verdict = certifier.check_pose(&self.pose);
+        self.validate_verdict(verdict, max_depth, low, &format!("{case}, {verdict:?}"));
     }
 
-    fn clear(&mut self, clear: PoseVerdict, most: f64, low: f64, at: &str) {
-        match clear {
+    fn validate_verdict(&mut self, verdict: PoseVerdict, max_depth: f64, low: f64, case: &str) {
+        match verdict {
             PoseVerdict::Clear | PoseVerdict::SurfaceOnly | PoseVerdict::Inside(_) => {
-                if most > self.rounding || low > 0.0 {
-                    self.wrong("said not to touch", at);
+                if max_depth > self.rounding || low > 0.0 {
+                    self.add_violation("said not to touch", case);
                 }
             }
             PoseVerdict::Touching(witness) => {
-                if self.witness(&witness, at) < -self.rounding {
-                    self.wrong("the witness of a touch is outside", at);
+                if self.witness_depth(&witness, case) < -self.rounding {
+                    self.add_violation("the witness of a touch is outside", case);
                 }
             }
             PoseVerdict::Undecided(high) => {
                 self.row.undecided += 1;
-                if most > high + self.rounding {
-                    self.wrong("deeper than what is undecided", at);
+                if max_depth > high + self.rounding {
+                    self.add_violation("deeper than what is undecided", case);
                 }
             }
         }
     }
 
     /// Returns the depth of a witness, and checks that it lies on its triangle.
-    fn witness(&mut self, witness: &Witness, at: &str) -> f64 {
-        let triangle = self.brute.triangle(&self.seen, witness.triangle.index());
+    fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
+        let triangle = self.brute.triangle(&self.frame, witness.triangle.index());
         let point = self.brute.inside(&self.pose, witness.point);
         let off = brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
         if off > self.rounding {
-            self.wrong(&format!("the witness is {off:e} from its triangle"), at);
+            self.add_violation(&format!("the witness is {off:e} from its triangle"), case);
         }
         if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
-            self.wrong("the witness is at no surface", at);
+            self.add_violation("the witness is at no surface", case);
         }
         self.brute.depth(point) * self.brute.length
     }
 
     /// Returns the greatest depth that a climb from a witness reaches.
-    fn beside(&mut self, witness: &Witness, draw: &mut Rng) -> f64 {
-        let from = self.brute.inside(&self.pose, Point3::from(witness.point.coords));
+    fn climb_from(&mut self, witness: &Witness, rng: &mut Rng) -> f64 {
+        let start = self.brute.inside(&self.pose, Point3::from(witness.point.coords));
         let triangle = witness.triangle.index();
-        self.brute.climb(&self.seen, triangle, from, draw, &mut self.row.samples)
+        self.brute.climb(&self.frame, triangle, start, rng, &mut self.row.samples)
     }
 
-    fn wrong(&mut self, what: &str, at: &str) {
-        self.row.violations.push(format!("{what}: {at}"));
+    fn add_violation(&mut self, message: &str, case: &str) {
+        self.row.violations.push(format!("{message}: {case}"));
     }
 }
 
@@ -260,7 +263,7 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
             row.violations.len()
         )?;
     }
-    let sum = |of: fn(&Row) -> u64| rows.iter().map(of).sum::<u64>();
+    let sum = |value: fn(&Row) -> u64| rows.iter().map(value).sum::<u64>();
     writeln!(
         page,
         "\n{} poses, {} of them in contact, {} samples of brute force.\n\n## Violated\n",

@@ -6,11 +6,11 @@ use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Rng;
 
 /// Maximum number of triangles sampled per pose, and number of samples per triangle.
-const TRIANGLES: usize = 300;
-const SAMPLES: usize = 8;
+const MAX_TRIANGLES: usize = 300;
+const SAMPLES_PER_TRIANGLE: usize = 8;
 /// Number of samples from which the search climbs, and number of steps.
-const STARTS: usize = 3;
-const STEPS: usize = 250;
+const CLIMBS: usize = 3;
+const STEPS_PER_CLIMB: usize = 250;
 
 /// A sample of a triangle, in the tool's frame and unit.
 #[derive(Clone, Copy, Debug)]
@@ -44,49 +44,55 @@ impl Owned<'_> {
     /// 1e-18.
     pub fn depth(&self, surface: usize, p: Point) -> f64 {
         let depth = self.brute.depth(p) * self.brute.length;
-        let mine = self.away(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
-        let others = (0..self.names.len()).filter(|other| *other != surface);
-        let nearest = others.into_iter().all(|other| mine <= self.away(other, p));
-        if depth >= 0.0 && nearest { depth } else { f64::NEG_INFINITY }
+        let own_distance = self.away(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
+        let other_surfaces = (0..self.names.len()).filter(|other| *other != surface);
+        let is_nearest =
+            other_surfaces.into_iter().all(|other| own_distance <= self.away(other, p));
+        if depth >= 0.0 && is_nearest { depth } else { f64::NEG_INFINITY }
     }
 
     /// Returns the largest excess of a point's depth over an allowance, or of a distance to keep over the point's
     /// distance.
     pub fn over(&self, p: Point) -> f64 {
-        let of = |surface: usize| {
+        let excess = |surface: usize| {
             let allowed = self.allowed[surface];
-            let deep = self.depth(surface, p) - allowed.max(0.0);
-            if allowed < 0.0 { deep.max(-self.away(surface, p) - allowed) } else { deep }
+            let excess_depth = self.depth(surface, p) - allowed.max(0.0);
+            if allowed < 0.0 {
+                excess_depth.max(-self.away(surface, p) - allowed)
+            } else {
+                excess_depth
+            }
         };
-        let most = (0..self.names.len()).map(of).filter(|over| !over.is_nan());
-        most.fold(f64::NEG_INFINITY, f64::max)
+        let excesses = (0..self.names.len()).map(excess).filter(|over| !over.is_nan());
+        excesses.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns samples of the triangles near a pose, with the value NaN.
-    pub fn samples(&self, pose: &Pose, draw: &mut Rng) -> Vec<Sample> {
-        let (brute, seen) = (self.brute, self.brute.seen(pose));
+    pub fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Sample> {
+        let (brute, frame) = (self.brute, self.brute.seen(pose));
         let [radius, height] = brute.oracle.extent();
-        let keep = self.allowed.iter().fold(0.0, |keep: f64, allowed| keep.max(-allowed));
+        let max_margin =
+            self.allowed.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
         let near = |id: &usize| {
             let (middle, reach) = brute.balls[*id];
-            let (p, reach) = (brute.to_tool(&seen, middle), (reach + keep) / brute.length);
+            let (p, reach) = (brute.to_tool(&frame, middle), (reach + max_margin) / brute.length);
             p[2] + reach >= 0.0 && p[2] - reach <= height && p[0].hypot(p[1]) <= radius + reach
         };
         let mut near: Vec<usize> = (0..brute.balls.len()).filter(near).collect();
-        while near.len() > TRIANGLES {
-            near.swap_remove(draw.bits() as usize % near.len());
+        while near.len() > MAX_TRIANGLES {
+            near.swap_remove(rng.bits() as usize % near.len());
         }
-        let each = SAMPLES * (TRIANGLES / near.len().max(1)).clamp(1, 8);
+        let count = SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, 8);
         let mut samples = Vec::new();
         for triangle in near {
-            let corners = brute.triangle(&seen, triangle);
-            let mut take = |point| samples.push(Sample { triangle, point, value: f64::NAN });
-            corners.into_iter().for_each(&mut take);
-            for _ in 0..each {
-                let high = if draw.bits().is_multiple_of(2) { height } else { 2.0 * radius };
-                let mut across = || draw.between(-1.0, 1.0) * radius;
-                let inside = [across(), across(), draw.between(0.0, high)];
-                take(nearest(inside, &corners));
+            let corners = brute.triangle(&frame, triangle);
+            let mut add = |point| samples.push(Sample { triangle, point, value: f64::NAN });
+            corners.into_iter().for_each(&mut add);
+            for _ in 0..count {
+                let max_height = if rng.bits().is_multiple_of(2) { height } else { 2.0 * radius };
+                let mut offset = || rng.between(-1.0, 1.0) * radius;
+                let tool_point = [offset(), offset(), rng.between(0.0, max_height)];
+                add(nearest(tool_point, &corners));
             }
         }
         samples
@@ -98,35 +104,37 @@ impl Owned<'_> {
         pose: &Pose,
         samples: &[Sample],
         value: impl Fn(Point) -> f64,
-        draw: &mut Rng,
+        rng: &mut Rng,
     ) -> Option<Sample> {
-        let valued = samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
-        let mut valued: Vec<Sample> =
-            valued.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
-        valued.sort_by(|a, b| b.value.total_cmp(&a.value));
-        valued.truncate(STARTS);
-        let climbed = valued.into_iter().map(|from| self.climb(pose, from, &value, draw));
+        let evaluated =
+            samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
+        let mut evaluated: Vec<Sample> =
+            evaluated.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
+        evaluated.sort_by(|a, b| b.value.total_cmp(&a.value));
+        evaluated.truncate(CLIMBS);
+        let climbed = evaluated.into_iter().map(|from| self.climb(pose, from, &value, rng));
         climbed.max_by(|a, b| a.value.total_cmp(&b.value))
     }
 
     fn climb(
         &self,
         pose: &Pose,
-        from: Sample,
+        start: Sample,
         value: impl Fn(Point) -> f64,
-        draw: &mut Rng,
+        rng: &mut Rng,
     ) -> Sample {
-        let triangle = self.brute.triangle(&self.brute.seen(pose), from.triangle);
+        let triangle = self.brute.triangle(&self.brute.seen(pose), start.triangle);
         let [a, b, c] = triangle;
-        let wide = distance(a, b).max(distance(b, c)).max(distance(c, a));
-        let (mut step, mut best, mut failed) = (wide.min(self.brute.oracle.extent()[0]), from, 0);
-        for _ in 0..STEPS {
-            let way = draw.direction();
-            let next = [0, 1, 2].map(|axis| best.point[axis] + step * way[axis]);
+        let longest_edge = distance(a, b).max(distance(b, c)).max(distance(c, a));
+        let (mut step, mut best, mut failed) =
+            (longest_edge.min(self.brute.oracle.extent()[0]), start, 0);
+        for _ in 0..STEPS_PER_CLIMB {
+            let direction = rng.direction();
+            let next = [0, 1, 2].map(|axis| best.point[axis] + step * direction[axis]);
             let point = nearest(next, &triangle);
-            let here = value(point);
-            if here > best.value {
-                (best, failed) = (Sample { point, value: here, ..best }, 0);
+            let new_value = value(point);
+            if new_value > best.value {
+                (best, failed) = (Sample { point, value: new_value, ..best }, 0);
                 step *= 1.5;
             } else {
                 failed += 1;

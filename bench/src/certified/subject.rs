@@ -14,7 +14,7 @@ pub const FIELDS: [&str; 7] =
     ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket", "BoringBar", "FaceMill"];
 
 /// A Lipschitz bound for all fields in the list; the thesis's tool attains √5.
-const STEEPEST: f64 = 2.24;
+const FIELD_LIPSCHITZ_BOUND: f64 = 2.24;
 
 /// A tool whose depth is evaluated many times.
 pub enum Subject {
@@ -67,16 +67,16 @@ impl Subject {
     }
 
     /// Returns a Lipschitz bound of the depth.
-    pub(super) fn steepest(&self) -> f64 {
+    pub(super) fn lipschitz_bound(&self) -> f64 {
         match self {
             Subject::Profile(..) => 1.0,
-            Subject::Field(_) => STEEPEST,
+            Subject::Field(_) => FIELD_LIPSCHITZ_BOUND,
         }
     }
 
     /// Returns the smallest gap to validate, as a share of the tool's size. The certifier resolves a field only to a
     /// thousandth.
-    pub(super) fn finest(&self) -> f64 {
+    pub(super) fn min_gap(&self) -> f64 {
         match self {
             Subject::Profile(..) => 1e-7,
             Subject::Field(_) => 1e-2,

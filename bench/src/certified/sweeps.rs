@@ -17,13 +17,13 @@ use touchoff_tests::oracle::draw::Rng;
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];
 
 /// Number of times sampled per motion.
-const TIMES: u32 = 64;
+const TIME_SAMPLES: u32 = 64;
 
 /// Maximum number of motions drawn per motion that is proved clear.
-const TRIES: usize = 20;
+const MAX_DRAWS_PER_PROVED: usize = 20;
 
 /// Maximum number of undecided motions listed.
-const TOLD: usize = 24;
+const MAX_UNDECIDED_LISTED: usize = 24;
 
 /// The results for a tool and a part.
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ impl Pair<'_> {
     /// # Panics
     /// If the certifier rejects the tool.
     pub fn sweeps(&self, count: usize, seed: u64) -> Row {
-        let mut draw = Rng::new(seed);
+        let mut rng = Rng::new(seed);
         let info = self.tool.info();
         let brute = Brute::new(self.mesh, self.oracle, info.unit.factor_to(self.mesh.unit()));
         let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool with a profile");
@@ -72,159 +72,164 @@ impl Pair<'_> {
             off: Worst::default(),
             violations: Vec::new(),
         };
-        while row.proved < count && row.motions < TRIES * count {
+        while row.proved < count && row.motions < MAX_DRAWS_PER_PROVED * count {
             let kind = ways::KINDS[row.motions % ways::KINDS.len()];
             let tolerance = TOLERANCES[row.motions % TOLERANCES.len()];
-            let way = ways::way(&brute, kind, &mut draw);
-            let motion = Motion::new(&way.from, &way.to).expect("axes that are not opposite");
-            let swept = certifier.check_motion(&motion, tolerance);
-            let at = format!(
-                "{} in {} ({kind}) from {} to {}, tolerance {tolerance:e}: {swept:?}",
+            let reference = ways::way(&brute, kind, &mut rng);
+            let motion =
+                Motion::new(&reference.from, &reference.to).expect("axes that are not opposite");
+            let verdict = certifier.check_motion(&motion, tolerance);
+            let case = format!(
+                "{} in {} ({kind}) from {} to {}, tolerance {tolerance:e}: {verdict:?}",
                 row.tool,
                 row.part,
-                told(&way.from),
-                told(&way.to),
+                format_pose(&reference.from),
+                format_pose(&reference.to),
             );
             row.motions += 1;
-            let mut judge = Judge {
+            let mut validation = Validation {
                 pair: self,
                 brute: &brute,
-                way,
+                reference,
                 motion,
                 // Error bound of certified positions, and of the samples.
                 rounding: 64.0 * f64::EPSILON * (brute.size + motion.displacement().norm()),
                 tolerance,
                 row: &mut row,
-                at,
+                at: case,
             };
-            judge.judge(swept, &mut draw);
+            validation.run(verdict, &mut rng);
         }
         row
     }
 }
 
-fn told(pose: &touchoff::Pose) -> String {
+fn format_pose(pose: &touchoff::Pose) -> String {
     format!("tip {:?} axis {:?}", pose.tip().coords.as_slice(), pose.axis().as_slice())
 }
 
-struct Judge<'a> {
+struct Validation<'a> {
     pair: &'a Pair<'a>,
     brute: &'a Brute<'a>,
-    way: Way,
+    reference: Way,
     motion: Motion,
     rounding: f64,
     tolerance: f64,
     row: &'a mut Row,
-    at: String,
+    case: String,
 }
 
-impl Judge<'_> {
-    fn judge(&mut self, swept: MotionVerdict, draw: &mut Rng) {
-        for t in [0.0, 1.0, draw.between(0.0, 1.0)] {
-            self.same(t);
+impl Validation<'_> {
+    fn run(&mut self, verdict: MotionVerdict, rng: &mut Rng) {
+        for t in [0.0, 1.0, rng.between(0.0, 1.0)] {
+            self.compare_pose(t);
         }
-        match swept {
+        match verdict {
             MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
                 self.row.proved += 1;
-                let closest = self.brute.closest(&self.way, TIMES, true, draw);
-                self.proved(&closest);
-                self.side(swept);
+                let closest = self.brute.closest(&self.reference, TIME_SAMPLES, true, rng);
+                self.check_proved(&closest);
+                self.check_side(verdict);
             }
             MotionVerdict::Touching(t, witness) => {
                 self.row.touching += 1;
-                self.same(t);
-                self.witness(t, &witness);
+                self.compare_pose(t);
+                self.check_witness(t, &witness);
             }
-            MotionVerdict::Undecided(t) => self.undecided(t, draw),
+            MotionVerdict::Undecided(t) => self.check_undecided(t, rng),
         }
     }
 
     /// Validates an undecided motion: the part before time `t` must be clear.
-    fn undecided(&mut self, t: f64, draw: &mut Rng) {
-        let closest = self.brute.closest(&self.way, TIMES, true, draw);
-        self.row.undecided.push(format!("{}, {closest:?}", self.at));
+    fn check_undecided(&mut self, t: f64, rng: &mut Rng) {
+        let closest = self.brute.closest(&self.reference, TIME_SAMPLES, true, rng);
+        self.row.undecided.push(format!("{}, {closest:?}", self.case));
         if !(0.0..=1.0).contains(&t) {
-            self.wrong("undecided at no time");
+            self.add_violation("undecided at no time");
         } else if t > 0.0 {
-            let until = Way { from: self.way.from, to: self.way.pose(t) };
-            let closest = self.brute.closest(&until, TIMES, true, draw);
-            self.proved(&closest);
+            let clear_part = Way { from: self.reference.from, to: self.reference.pose(t) };
+            let closest = self.brute.closest(&clear_part, TIME_SAMPLES, true, rng);
+            self.check_proved(&closest);
         }
     }
 
-    fn proved(&mut self, closest: &Closest) {
+    fn check_proved(&mut self, closest: &Closest) {
         let allowed = self.tolerance.max(16.0 * self.rounding) + self.rounding;
         let over = closest.depth - allowed;
         self.row.near += usize::from(closest.depth > -1e-3);
-        self.row.over.see(over, || format!("{}, {closest:?}", self.at));
+        self.row.over.update(over, || format!("{}, {closest:?}", self.case));
         if over > 0.0 {
-            self.wrong(&format!("it is proved, but {closest:?}"));
+            self.add_violation(&format!("it is proved, but {closest:?}"));
         }
     }
 
     /// Checks tip and axis of the motion at a time.
-    fn same(&mut self, t: f64) {
-        let (pose, own) = (self.motion.pose(t), self.way.pose(t));
-        let tip = (pose.tip() - own.tip()).norm() - self.rounding;
+    fn compare_pose(&mut self, t: f64) {
+        let (pose, reference_pose) = (self.motion.pose(t), self.reference.pose(t));
+        let tip = (pose.tip() - reference_pose.tip()).norm() - self.rounding;
         // The formula for the axis divides by the sine.
-        let sine = self.way.angle().sin();
-        let known = 16.0 * f64::EPSILON / if sine > 0.0 { sine.min(1.0) } else { 1.0 };
-        let off = tip.max((pose.axis() - own.axis()).norm() - known.min(1e-13));
-        let text = || format!("{}, at {t:?}", self.at);
-        self.row.off.see(off, text);
-        if off > 0.0 || !(0.0..=1.0).contains(&t) {
-            self.wrong(&format!("the pose is off by {off:e} at {t:?}"));
+        let sine = self.reference.angle().sin();
+        let axis_tolerance = 16.0 * f64::EPSILON / if sine > 0.0 { sine.min(1.0) } else { 1.0 };
+        let deviation =
+            tip.max((pose.axis() - reference_pose.axis()).norm() - axis_tolerance.min(1e-13));
+        let describe = || format!("{}, at {t:?}", self.case);
+        self.row.off.update(deviation, describe);
+        if deviation > 0.0 || !(0.0..=1.0).contains(&t) {
+            self.add_violation(&format!("the pose is off by {deviation:e} at {t:?}"));
         }
     }
 
-    fn witness(&mut self, t: f64, witness: &Witness) {
+    fn check_witness(&mut self, t: f64, witness: &Witness) {
         let (brute, pose) = (self.brute, self.motion.pose(t));
         let point = brute.inside(&pose, witness.point);
         let depth = brute.depth(point) * brute.length;
         if depth < -self.rounding {
-            self.wrong(&format!("the witness is {depth:e} deep"));
+            self.add_violation(&format!("the witness is {depth:e} deep"));
         }
         let triangle = brute.triangle(&brute.seen(&pose), witness.triangle.index());
         let off = distance(point, nearest(point, &triangle)) * brute.length;
         if off > self.rounding {
-            self.wrong(&format!("the witness is {off:e} from its triangle"));
+            self.add_violation(&format!("the witness is {off:e} from its triangle"));
         }
         let surface = self.pair.tool.info().surface(witness.surface);
-        let away = self.pair.oracle.away(&surface.name, point) * brute.length;
-        if away > depth.abs() + self.rounding {
-            self.wrong(&format!("its surface is {away:e} away, but it is {depth:e} deep"));
+        let surface_distance = self.pair.oracle.away(&surface.name, point) * brute.length;
+        if surface_distance > depth.abs() + self.rounding {
+            self.add_violation(&format!(
+                "its surface is {surface_distance:e} away, but it is {depth:e} deep"
+            ));
         }
     }
 
     /// Checks a verdict of inside or outside by the part's winding number about a point of the tool.
-    fn side(&mut self, swept: MotionVerdict) {
+    fn check_side(&mut self, verdict: MotionVerdict) {
         let [_, height] = self.pair.oracle.extent();
-        let top = self.way.from.tip() + self.way.from.axis() * (0.9 * height * self.brute.length);
-        let inside = turns(self.pair.mesh, top).round() > 0.0;
+        let top = self.reference.from.tip()
+            + self.reference.from.axis() * (0.9 * height * self.brute.length);
+        let inside = winding_number(self.pair.mesh, top).round() > 0.0;
         if matches!(
-            (swept, inside),
+            (verdict, inside),
             (MotionVerdict::Clear, true) | (MotionVerdict::Inside(_), false)
         ) {
-            self.wrong("it is on the other side");
+            self.add_violation("it is on the other side");
         }
     }
 
-    fn wrong(&mut self, what: &str) {
-        self.row.violations.push(format!("{what}: {}", self.at));
+    fn add_violation(&mut self, message: &str) {
+        self.row.violations.push(format!("{message}: {}", self.case));
     }
 }
 
 /// Returns the winding number of a surface about a point: the sum of its triangles' solid angles (Van Oosterom,
 /// Strackee 1983) over 4π.
-fn turns(mesh: &Mesh, point: Point3<f64>) -> f64 {
+fn winding_number(mesh: &Mesh, point: Point3<f64>) -> f64 {
     let angle = |id: u32| {
         let [a, b, c] = mesh.triangle(TriangleId(id)).map(|corner| corner - point);
         let (x, y, z) = (a.norm(), b.norm(), c.norm());
-        let whole = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-        2.0 * a.dot(&b.cross(&c)).atan2(whole)
+        let denominator = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+        2.0 * a.dot(&b.cross(&c)).atan2(denominator)
     };
-    let all: f64 = (0..mesh.triangles().len() as u32).map(angle).sum();
-    all / (4.0 * std::f64::consts::PI)
+    let total: f64 = (0..mesh.triangles().len() as u32).map(angle).sum();
+    total / (4.0 * std::f64::consts::PI)
 }
 
 /// Returns the rows as a Markdown table, with lists of undecided motions and of violations.
@@ -250,7 +255,7 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
             row.violations.len()
         )?;
     }
-    let sum = |of: fn(&Row) -> usize| rows.iter().map(of).sum::<usize>();
+    let sum = |value: fn(&Row) -> usize| rows.iter().map(value).sum::<usize>();
     writeln!(
         page,
         "\n{} motions, {} of them proved, {} touching, {} undecided.",
@@ -259,7 +264,11 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
         sum(|row| row.touching),
         sum(|row| row.undecided.len())
     )?;
-    list(&mut page, "Undecided", rows.iter().flat_map(|row| &row.undecided).take(TOLD))?;
+    list(
+        &mut page,
+        "Undecided",
+        rows.iter().flat_map(|row| &row.undecided).take(MAX_UNDECIDED_LISTED),
+    )?;
     list(&mut page, "Violated", rows.iter().flat_map(|row| &row.violations))?;
     Ok(page)
 }

@@ -19,9 +19,9 @@ use touchoff_tests::oracle::draw::Rng;
 type Point = [f64; 3];
 
 /// Number of points that are zoomed in on, at first and at last.
-const PLACES: [usize; 2] = [48, 6];
+const POINT_COUNTS: [usize; 2] = [48, 6];
 /// Ratio of the sizes of successive neighbourhoods.
-const SHRINK: f64 = 0.4;
+const SHRINK_FACTOR: f64 = 0.4;
 /// A part, a tool and its oracle.
 pub struct Zoomed<'a> {
     /// The part's name in messages.
@@ -68,7 +68,7 @@ pub struct Row {
 struct Sample {
     depth: f64,
     triangle: usize,
-    at: [f64; 2],
+    weights: [f64; 2],
 }
 
 /// A piece of a triangle whose centroid was evaluated. No point of it is deeper than the bound.
@@ -105,12 +105,12 @@ impl Zoomed<'_> {
     /// # Panics
     /// If the certifier rejects the tool.
     pub fn measure(&self, poses: usize, samples: u64, seed: u64) -> Row {
-        let mut draw = Rng::new(seed);
+        let mut rng = Rng::new(seed);
         let info = self.tool.info();
         let length = info.unit.factor_to(self.mesh.unit());
         let [radius, height] = self.subject.oracle().extent();
         let size = radius.max(height) * length;
-        let [tolerance, near] = self.subject.tolerance(size);
+        let [tolerance, margin] = self.subject.tolerance(size);
         let [low, high] = self.mesh.bounds();
         let part = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part);
@@ -118,107 +118,119 @@ impl Zoomed<'_> {
         let (tool, part) = (info.name.to_string(), self.part.to_owned());
         let mut row = Row { tool, part, poses, ..Row::default() };
         for _ in 0..poses {
-            let pose = self.pose(length, &mut draw);
+            let pose = self.pose(length, &mut rng);
             let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
-            let (deepest, asked) = self.deepest(&pose, samples, &mut draw);
-            let found = (deepest * length).max(0.0);
-            row.samples += asked;
-            row.touching += usize::from(found > 0.0);
-            row.reached += usize::from(found >= low - near);
-            let text =
-                format!("{} in {}: [{low:e}, {high:e}], {found:e} at {pose:?}", row.tool, row.part);
-            row.over.see((found - high) / size, || text.clone());
-            row.behind.see((low - found) / size, || text.clone());
-            row.wide.see((high - low) / size, || text.clone());
+            let (deepest, evaluations) = self.deepest(&pose, samples, &mut rng);
+            let max_depth = (deepest * length).max(0.0);
+            row.samples += evaluations;
+            row.touching += usize::from(max_depth > 0.0);
+            row.reached += usize::from(max_depth >= low - margin);
+            let case = format!(
+                "{} in {}: [{low:e}, {high:e}], {max_depth:e} at {pose:?}",
+                row.tool, row.part
+            );
+            row.over.update((max_depth - high) / size, || case.clone());
+            row.behind.update((low - max_depth) / size, || case.clone());
+            row.wide.update((high - low) / size, || case.clone());
             row.wider += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
-            if found > high + rounding {
-                row.violations.push(text);
+            if max_depth > high + rounding {
+                row.violations.push(case);
             }
         }
         row
     }
 
     /// Returns a pose at which the tool is likely to touch the part.
-    fn pose(&self, length: f64, draw: &mut Rng) -> Pose {
+    fn pose(&self, length: f64, rng: &mut Rng) -> Pose {
         if let Subject::Profile(nearest, _) = self.subject {
-            return poses::pose(self.mesh, nearest, length, draw);
+            return poses::pose(self.mesh, nearest, length, rng);
         }
         // A random point inside the tool's extent is placed at a random point of the part.
         let [a, b, c] = self
             .mesh
-            .triangle(TriangleId((draw.bits() as usize % self.mesh.triangles().len()) as u32));
-        let (v, w) = (draw.between(0.0, 0.5), draw.between(0.0, 0.5));
-        let place = a + v * (b - a) + w * (c - a);
+            .triangle(TriangleId((rng.bits() as usize % self.mesh.triangles().len()) as u32));
+        let (v, w) = (rng.between(0.0, 0.5), rng.between(0.0, 0.5));
+        let target = a + v * (b - a) + w * (c - a);
         let [radius, height] = self.subject.oracle().extent();
-        let (d, way) = (draw.between(0.0, radius), draw.direction());
-        let inside = Vector3::new(d * way[0], d * way[1], draw.between(0.0, height)) * length;
-        let turn = loop {
-            let turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
-            let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let (d, direction) = (rng.between(0.0, radius), rng.direction());
+        let inside =
+            Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
+        let quaternion = loop {
+            let quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
+            let norm = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
             if (0.1..=1.0).contains(&norm) {
-                break turn.map(|part| part / norm);
+                break quaternion.map(|component| component / norm);
             }
         };
-        let turned = Pose::from_quaternion(Point3::origin(), turn).expect("a quaternion");
-        turned.translated(place.coords - turned.rotation() * inside).expect("a place near the part")
+        let rotated = Pose::from_quaternion(Point3::origin(), quaternion).expect("a quaternion");
+        rotated
+            .translated(target.coords - rotated.rotation() * inside)
+            .expect("a place near the part")
     }
 
     /// Returns the greatest depth of the samples, in the tool's unit, and their number. Without a triangle nearby the
     /// depth is negative infinity and the number 0.
-    fn deepest(&self, pose: &Pose, samples: u64, draw: &mut Rng) -> (f64, u64) {
-        let triangles = self.near(pose);
+    fn deepest(&self, pose: &Pose, samples: u64, rng: &mut Rng) -> (f64, u64) {
+        let triangles = self.nearby_triangles(pose);
         if triangles.is_empty() {
             return (f64::NEG_INFINITY, 0);
         }
-        let mut asked = 0;
-        let (mut best, mut reach) = self.halved(&triangles, samples / 2, &mut asked);
+        let mut evaluations = 0;
+        let (mut best, mut reach) = self.bisect(&triangles, samples / 2, &mut evaluations);
         let [radius, height] = self.subject.oracle().extent();
         let size = radius.max(height);
-        let rounds = ((1e-15 * size / reach).ln() / SHRINK.ln()).ceil().max(1.0) as u64;
+        let rounds = ((1e-15 * size / reach).ln() / SHRINK_FACTOR.ln()).ceil().max(1.0) as u64;
         for round in 0..rounds {
-            let each = (samples.saturating_sub(asked) / (rounds - round)) / best.len() as u64;
+            let count =
+                (samples.saturating_sub(evaluations) / (rounds - round)) / best.len() as u64;
             for sample in &mut best {
-                for _ in 0..each {
-                    self.beside(&triangles[sample.triangle], reach, sample, draw);
+                for _ in 0..count {
+                    self.sample_nearby(&triangles[sample.triangle], reach, sample, rng);
                 }
             }
-            asked += each * best.len() as u64;
+            evaluations += count * best.len() as u64;
             best.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-            best.truncate((best.len() * 3 / 4).max(PLACES[1]));
-            reach *= SHRINK;
+            best.truncate((best.len() * 3 / 4).max(POINT_COUNTS[1]));
+            reach *= SHRINK_FACTOR;
         }
-        (best[0].depth, asked)
+        (best[0].depth, evaluations)
     }
 
     /// Bisects triangles. Returns the deepest centroids, and the size of the neighbourhoods to start with.
-    fn halved(&self, triangles: &[[Point; 3]], count: u64, asked: &mut u64) -> (Vec<Sample>, f64) {
+    fn bisect(
+        &self,
+        triangles: &[[Point; 3]],
+        count: u64,
+        evaluations: &mut u64,
+    ) -> (Vec<Sample>, f64) {
         let mut best: Vec<Sample> = Vec::new();
         let mut pieces = BinaryHeap::new();
         for triangle in 0..triangles.len() {
             let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-            for at in corners {
-                let depth = self.subject.depth(point(&triangles[triangle], at));
-                keep(&mut best, Sample { depth, triangle, at });
+            for weights in corners {
+                let depth = self.subject.depth(point(&triangles[triangle], weights));
+                insert_sorted(&mut best, Sample { depth, triangle, weights });
             }
             pieces.push(self.piece(triangles, triangle, corners, &mut best).0);
-            *asked += 4;
+            *evaluations += 4;
         }
         let mut reach = f64::INFINITY;
         while let Some(piece) = pieces.pop()
-            && *asked < count
+            && *evaluations < count
             && piece.bound > best[0].depth
         {
-            for half in halves(&triangles[piece.triangle], piece.corners) {
-                let (half, reaches) = self.piece(triangles, piece.triangle, half, &mut best);
-                reach = reaches;
-                if half.bound > best[0].depth {
-                    pieces.push(half);
+            for piece_half in bisect_longest_edge(&triangles[piece.triangle], piece.corners) {
+                let (piece_half, radius) =
+                    self.piece(triangles, piece.triangle, piece_half, &mut best);
+                reach = radius;
+                if piece_half.bound > best[0].depth {
+                    pieces.push(piece_half);
                 }
             }
-            *asked += 2;
+            *evaluations += 2;
         }
-        let widest = self.subject.oracle().extent();
-        (best, (4.0 * reach).min(widest[0].max(widest[1])))
+        let extent = self.subject.oracle().extent();
+        (best, (4.0 * reach).min(extent[0].max(extent[1])))
     }
 
     /// Evaluates a piece's centroid, and returns the piece and its radius about the centroid.
@@ -229,83 +241,87 @@ impl Zoomed<'_> {
         corners: [[f64; 2]; 3],
         best: &mut Vec<Sample>,
     ) -> (Piece, f64) {
-        let at = [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
-        let middle = point(&triangles[triangle], at);
-        let depth = self.subject.depth(middle);
-        keep(best, Sample { depth, triangle, at });
-        let reaches = corners.map(|corner| distance(middle, point(&triangles[triangle], corner)));
-        let reach = reaches[0].max(reaches[1]).max(reaches[2]);
-        let steep = self.subject.steepest();
+        let weights = [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
+        let centroid = point(&triangles[triangle], weights);
+        let depth = self.subject.depth(centroid);
+        insert_sorted(best, Sample { depth, triangle, weights });
+        let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
+        let reach = radii[0].max(radii[1]).max(radii[2]);
+        let lipschitz = self.subject.lipschitz_bound();
         // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
-        let bound = if depth < 0.0 { steep * (depth + reach) } else { depth + steep * reach };
+        let bound =
+            if depth < 0.0 { lipschitz * (depth + reach) } else { depth + lipschitz * reach };
         (Piece { bound, triangle, corners }, reach)
     }
 
     /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
-    fn near(&self, pose: &Pose) -> Vec<[Point; 3]> {
+    fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
         let length = self.tool.info().unit.factor_to(self.mesh.unit());
         let [radius, height] = self.subject.oracle().extent();
-        let back = pose.rotation().transpose();
-        let inside = |p: Point3<f64>| -> Point { (back * (p - pose.tip()) / length).into() };
-        let near = |corners: &[Point; 3]| {
-            let boxes = [[-radius, radius], [-radius, radius], [0.0, height]];
+        let to_tool = pose.rotation().transpose();
+        let to_tool_frame =
+            |p: Point3<f64>| -> Point { (to_tool * (p - pose.tip()) / length).into() };
+        let overlaps = |corners: &[Point; 3]| {
+            let tool_box = [[-radius, radius], [-radius, radius], [0.0, height]];
             (0..3).all(|axis| {
-                let parts = corners.map(|corner| corner[axis]);
-                let low = parts[0].min(parts[1]).min(parts[2]);
-                let high = parts[0].max(parts[1]).max(parts[2]);
-                low <= boxes[axis][1] && high >= boxes[axis][0]
+                let coordinates = corners.map(|corner| corner[axis]);
+                let low = coordinates[0].min(coordinates[1]).min(coordinates[2]);
+                let high = coordinates[0].max(coordinates[1]).max(coordinates[2]);
+                low <= tool_box[axis][1] && high >= tool_box[axis][0]
             })
         };
         let ids = 0..self.mesh.triangles().len() as u32;
-        ids.map(|id| self.mesh.triangle(TriangleId(id)).map(inside)).filter(near).collect()
+        ids.map(|id| self.mesh.triangle(TriangleId(id)).map(to_tool_frame))
+            .filter(overlaps)
+            .collect()
     }
 
     /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.
-    fn beside(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, draw: &mut Rng) {
+    fn sample_nearby(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, rng: &mut Rng) {
         let [a, b, c] = corners;
         let step = |to: &Point| {
-            let way = [0, 1, 2].map(|k| to[k] - a[k]);
-            let long = way.iter().map(|part| part * part).sum::<f64>().sqrt();
-            if long > reach { reach / long } else { 1.0 }
+            let edge = [0, 1, 2].map(|k| to[k] - a[k]);
+            let length = edge.iter().map(|component| component * component).sum::<f64>().sqrt();
+            if length > reach { reach / length } else { 1.0 }
         };
-        let [v, w] = best.at;
-        let mut at = [
-            (v + step(b) * draw.between(-1.0, 1.0)).max(0.0),
-            (w + step(c) * draw.between(-1.0, 1.0)).max(0.0),
+        let [v, w] = best.weights;
+        let mut weights = [
+            (v + step(b) * rng.between(-1.0, 1.0)).max(0.0),
+            (w + step(c) * rng.between(-1.0, 1.0)).max(0.0),
         ];
-        let sum = at[0] + at[1];
+        let sum = weights[0] + weights[1];
         if sum > 1.0 {
-            at = at.map(|part| part / sum);
+            weights = weights.map(|component| component / sum);
         }
-        let depth = self.subject.depth(point(corners, at));
+        let depth = self.subject.depth(point(corners, weights));
         if depth > best.depth {
-            *best = Sample { depth, at, ..*best };
+            *best = Sample { depth, weights, ..*best };
         }
     }
 }
 
 /// Inserts a sample into the sorted list of the deepest.
-fn keep(best: &mut Vec<Sample>, sample: Sample) {
-    if best.len() < PLACES[0] || sample.depth > best[PLACES[0] - 1].depth {
-        let place = best.partition_point(|other| other.depth >= sample.depth);
-        best.insert(place, sample);
-        best.truncate(PLACES[0]);
+fn insert_sorted(best: &mut Vec<Sample>, sample: Sample) {
+    if best.len() < POINT_COUNTS[0] || sample.depth > best[POINT_COUNTS[0] - 1].depth {
+        let index = best.partition_point(|kept_sample| kept_sample.depth >= sample.depth);
+        best.insert(index, sample);
+        best.truncate(POINT_COUNTS[0]);
     }
 }
 
 /// Bisects a piece at its longest edge.
-fn halves(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
-    let places = corners.map(|corner| point(triangle, corner));
-    let long = [0, 1, 2].map(|k| distance(places[k], places[(k + 1) % 3]));
-    let k = (0..3).max_by(|a, b| long[*a].total_cmp(&long[*b])).unwrap_or(0);
+fn bisect_longest_edge(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
+    let points = corners.map(|corner| point(triangle, corner));
+    let lengths = [0, 1, 2].map(|k| distance(points[k], points[(k + 1) % 3]));
+    let k = (0..3).max_by(|a, b| lengths[*a].total_cmp(&lengths[*b])).unwrap_or(0);
     let [a, b, c] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
     let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
     [[a, middle, c], [middle, b, c]]
 }
 
 fn distance(a: Point, b: Point) -> f64 {
-    let way = [0, 1, 2].map(|k| b[k] - a[k]);
-    way.iter().map(|part| part * part).sum::<f64>().sqrt()
+    let difference = [0, 1, 2].map(|k| b[k] - a[k]);
+    difference.iter().map(|component| component * component).sum::<f64>().sqrt()
 }
 
 /// Returns the point of a triangle with two barycentric weights.
@@ -336,7 +352,7 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
             row.violations.len()
         )?;
     }
-    let sum = |of: fn(&Row) -> u64| rows.iter().map(of).sum::<u64>();
+    let sum = |value: fn(&Row) -> u64| rows.iter().map(value).sum::<u64>();
     let poses = sum(|row| row.poses as u64);
     let reached = sum(|row| row.reached as u64);
     writeln!(

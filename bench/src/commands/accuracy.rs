@@ -27,7 +27,9 @@ impl Accuracy {
         rows.sort_by(|a, b| a.name.cmp(&b.name));
         let missed: Vec<String> = rows
             .iter()
-            .flat_map(|row| row.missed().into_iter().map(|what| format!("{}: {what}", row.name)))
+            .flat_map(|row| {
+                row.missed().into_iter().map(|violation| format!("{}: {violation}", row.name))
+            })
             .collect();
         Ok(Some(Page {
             name: "accuracy",

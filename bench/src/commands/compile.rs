@@ -23,17 +23,23 @@ impl Compile {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         if self.times {
             for source in sources() {
-                let took = times(&source, COUNTS[1]);
-                println!("{}\t{}\t{}\t{}", file(&source.name), took.best, took.median, took.worst);
+                let measured = times(&source, COUNTS[1]);
+                println!(
+                    "{}\t{}\t{}\t{}",
+                    tool_file_name(&source.name),
+                    measured.best,
+                    measured.median,
+                    measured.worst
+                );
             }
             return Ok(None);
         }
         let unoptimised = unoptimised()?;
         let mut rows = String::new();
         for source in sources() {
-            let took = times(&source, COUNTS[0]);
-            let slow = unoptimised.get(file(&source.name)).copied().unwrap_or_default();
-            rows += &row(&parts(&source), took, slow);
+            let release = times(&source, COUNTS[0]);
+            let debug = unoptimised.get(tool_file_name(&source.name)).copied().unwrap_or_default();
+            rows += &row(&parts(&source), release, debug);
         }
         Ok(Some(Page {
             name: "compile",
@@ -49,7 +55,7 @@ impl Compile {
 }
 
 /// Returns the file name of a tool: the folder may differ in a cached build.
-fn file(name: &str) -> &str {
+fn tool_file_name(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
@@ -61,20 +67,20 @@ fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
         .args(["--", "compile", "--times"])
         .stderr(std::process::Stdio::inherit())
         .output()?;
-    let mut all = BTreeMap::new();
+    let mut times_by_tool = BTreeMap::new();
     for line in String::from_utf8(output.stdout)?.lines() {
         if let [name, best, median, worst] = line.split('\t').collect::<Vec<_>>()[..] {
             let [best, median, worst] = [best.parse()?, median.parse()?, worst.parse()?];
-            all.insert(name.to_owned(), Times { best, median, worst });
+            times_by_tool.insert(name.to_owned(), Times { best, median, worst });
         }
     }
-    if all.is_empty() {
+    if times_by_tool.is_empty() {
         return Err("the unoptimised build said nothing".into());
     }
-    Ok(all)
+    Ok(times_by_tool)
 }
 
-fn row(parts: &Parts, took: Times, slow: Times) -> String {
+fn row(parts: &Parts, release: Times, debug: Times) -> String {
     let segments = parts.segments.map_or_else(|| "by hand".to_owned(), |n| n.to_string());
     let operations = |name: &str| parts.operations.get(name).copied().unwrap_or(0);
     let mut row = format!(
@@ -82,8 +88,8 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
         parts.name, parts.regions, parts.curves, parts.tests, parts.splits[0], parts.splits[1],
     );
     row += &format!(" {} |", operations("evaluate_lanes"));
-    for took in [took, slow] {
-        for time in [took.best, took.median, took.worst] {
+    for times in [release, debug] {
+        for time in [times.best, times.median, times.worst] {
             row += &format!(" {:.1} |", 1e3 * time);
         }
     }
@@ -91,12 +97,12 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
 }
 
 fn body(rows: &str) -> String {
-    let [often, seldom] = COUNTS;
+    let [release_runs, debug_runs] = COUNTS;
     format!(
         "**Tests** are those of the tree of owners; **met** is how many of them one point meets on average, within 2 % of the largest
 radius from the surface and anywhere in the tool's box. **Operations** are those of the code for lanes: arithmetic, square
 roots, comparisons, selects; a block of points executes those on its way and of its regions. **Times** are from a text to its tokens, in ms: best, median and worst
-of {often} in a release build, of {seldom} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
+of {release_runs} in a release build, of {debug_runs} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
 `user`). `Assembly30` is a cutter, its nut, a holder and a spindle nose. Goals for it: 50 ms and 300 ms.
 
 | tool | segments | regions | curves | tests | met near | met in box | operations | release: best | median | worst | debug: best | median | worst |

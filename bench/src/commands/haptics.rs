@@ -30,15 +30,15 @@ impl Haptics {
         };
         let measured = Measured {
             walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
-            shaking: shaken(self.quick)?,
-            sheet: pressed(),
-            tapping: tapped(),
+            shaking: shaking_rows(self.quick)?,
+            sheet: pressing_rows(),
+            tapping: tapping_rows(),
             latency: {
                 // At five times the rate, a tenth of the time.
                 let rates: &[f64] = if self.quick { &[1.0] } else { &[1.0, 5.0] };
-                let run = |times: &f64| {
-                    let seconds = if *times > 1.0 { self.latency / 10.0 } else { self.latency };
-                    (1000.0 * times, seconds, latency::both(1000.0 * times, seconds))
+                let run = |factor: &f64| {
+                    let seconds = if *factor > 1.0 { self.latency / 10.0 } else { self.latency };
+                    (1000.0 * factor, seconds, latency::both(1000.0 * factor, seconds))
                 };
                 rates.iter().map(run).collect()
             },
@@ -54,34 +54,34 @@ impl Haptics {
     }
 }
 
-type Shaken = (usize, Case<'static>, Shaking);
+type ShakingRow = (usize, Case<'static>, Shaking);
 
-fn shaken(quick: bool) -> Result<Vec<Shaken>, Box<dyn Error>> {
+fn shaking_rows(quick: bool) -> Result<Vec<ShakingRow>, Box<dyn Error>> {
     let mut rows = Vec::new();
-    let [own, exact, smooth] = tools();
+    let [fig73, exact, smooth] = tools();
     let points: &[usize] = if quick { &[20_000] } else { &[1_000, 20_000, 400_000] };
     for count in points {
         let part = Part::from_mesh(&tube(), Sampling::new(*count))?;
-        let mut add = |way, tool, law, how, stiffness| {
-            let case = Case { way, tool, law, how, stiffness };
+        let mut add = |movement, tool, law, rendering, stiffness| {
+            let case = Case { way: movement, tool, law, how: rendering, stiffness };
             rows.push((*count, case, shaking(&part, &case)));
         };
         for law in [Law::Thesis, Law::Gradient] {
-            for how in ["direct", "coupled"] {
-                add(Way::Wall, exact, law, how, 3.0);
-                for tool in [own, exact, smooth] {
-                    add(Way::Edge, tool, law, how, 3.0);
+            for rendering in ["direct", "coupled"] {
+                add(Way::Wall, exact, law, rendering, 3.0);
+                for tool in [fig73, exact, smooth] {
+                    add(Way::Edge, tool, law, rendering, 3.0);
                 }
             }
-            for how in ["direct", "scaled", "coupled"] {
-                add(Way::Wall, exact, law, how, 300.0);
+            for rendering in ["direct", "scaled", "coupled"] {
+                add(Way::Wall, exact, law, rendering, 300.0);
             }
         }
     }
     Ok(rows)
 }
 
-fn tapped() -> Vec<(&'static str, Vec<EnergyBalance>)> {
+fn tapping_rows() -> Vec<(&'static str, Vec<EnergyBalance>)> {
     let part = energy::plane();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     vec![
@@ -91,7 +91,7 @@ fn tapped() -> Vec<(&'static str, Vec<EnergyBalance>)> {
     ]
 }
 
-fn pressed() -> Vec<(&'static str, Vec<[f64; 3]>)> {
+fn pressing_rows() -> Vec<(&'static str, Vec<[f64; 3]>)> {
     let part = sheet::sheet();
     let direct = Some(Rendering::Direct { scaled: true, damping: 0.0 });
     vec![

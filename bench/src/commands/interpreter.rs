@@ -31,12 +31,13 @@ The forces are equal to the bit.
         let name = &loaded.info().name;
         eprintln!("{name}");
         for path in [ScenePath::Outside, ScenePath::Inside] {
-            let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);
-            let ratio = slow / fast;
+            let (contacts, [compiled_time, interpreted_time]) =
+                measure(&part, [compiled, &loaded], path);
+            let ratio = interpreted_time / compiled_time;
             ratios.push(ratio);
             writeln!(
                 body,
-                "| {name} | {} | {contacts:.1} | {fast:.0} | {slow:.0} | {ratio:.1} |",
+                "| {name} | {} | {contacts:.1} | {compiled_time:.0} | {interpreted_time:.0} | {ratio:.1} |",
                 path.name()
             )?;
         }
@@ -56,12 +57,12 @@ fn measure(part: &Part, tools: [&dyn Tool; 2], path: ScenePath) -> (f64, [f64; 2
         let pose: Pose = path.pose(k, POSES);
         let order = if k % 2 == 0 { [0, 1] } else { [1, 0] };
         let mut forces = [None; 2];
-        for which in order {
+        for index in order {
             let start = Instant::now();
-            let evaluation = probes[which].wrench(&pose);
-            times[which].push(start.elapsed().as_secs_f64() * 1e9);
+            let evaluation = probes[index].wrench(&pose);
+            times[index].push(start.elapsed().as_secs_f64() * 1e9);
             contacts += evaluation.colliding;
-            forces[which] = Some(evaluation.force);
+            forces[index] = Some(evaluation.force);
         }
         assert_eq!(forces[0], forces[1], "both do the same operations");
     }

@@ -28,8 +28,8 @@ use std::path::{Path, PathBuf};
 
 /// Returns the folder of parts: the one given, or else the default beside the repository.
 fn parts(folder: Option<&Path>) -> PathBuf {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
-    folder.map_or_else(beside, Path::to_owned)
+    let default_folder = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
+    folder.map_or_else(default_folder, Path::to_owned)
 }
 
 /// Parses a finite number of 0 or more.

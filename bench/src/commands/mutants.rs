@@ -9,14 +9,14 @@ use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
 /// Number of mutants per tool.
-const EACH: usize = 20;
-/// Number of columns with counts: all mutants, those that are alike, and one per variant of [`Caught`].
+const MUTANTS_PER_TOOL: usize = 20;
+/// Number of columns with counts: all mutants, equivalent mutants, and one per variant of [`Caught`].
 const COLUMNS: usize = 7;
 
 /// Makes mutants of every library tool and returns the section that counts which of them the proofs detect.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {
     let mut body = format!(
-            "Every tool is broken {EACH} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are
+            "Every tool is broken {MUTANTS_PER_TOOL} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are
 those that are no other solid, depth or direction at 20,000 points. The rest are seen by an **error**, with a point where depth
 jumps; by a warning of a proof that stays **open**; by another **warning**, with a point where the direction is not the steepest way out; only by
 **comparing** the certificate with that of the tool before it was broken, which nobody has who writes a tool; or **not**. Of no whole tool is
@@ -26,28 +26,28 @@ anything reported.
 |---|--:|--:|--:|--:|--:|--:|--:|
 "
         );
-    let mut unseen = Vec::new();
-    let (mut all, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
+    let mut undetected = Vec::new();
+    let (mut totals, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
     for (seed, source) in library().iter().enumerate() {
-        let whole = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
-        let proved = Certificate::of(&whole);
-        if let Some(diagnostic) = proved.diagnostics(&whole).first() {
+        let tool = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
+        let proved = Certificate::of(&tool);
+        if let Some(diagnostic) = proved.diagnostics(&tool).first() {
             return Err(format!(
                 "{} is not broken, and: {}",
-                whole.model.name,
+                tool.model.name,
                 diagnostic.message()
             )
             .into());
         }
-        eprintln!("{}", whole.model.name);
+        eprintln!("{}", tool.model.name);
         let mut counts = [0; COLUMNS];
-        for mutant in mutants(&whole, EACH, seed as u64) {
+        for mutant in mutants(&tool, MUTANTS_PER_TOOL, seed as u64) {
             counts[0] += 1;
-            if !changes(&whole, &mutant.tool, 1) {
+            if !changes(&tool, &mutant.tool, 1) {
                 counts[1] += 1;
                 continue;
             }
-            let (column, seen) = match caught(&proved, &mutant.tool) {
+            let (column, detection) = match caught(&proved, &mutant.tool) {
                 Caught::Error => (2, 0),
                 Caught::Open => (3, 0),
                 Caught::Warning => (4, 0),
@@ -55,42 +55,47 @@ anything reported.
                 Caught::Not => (6, 2),
             };
             counts[column] += 1;
-            by_kind[mutant.kind][seen] += 1;
-            if seen > 0 {
-                let how = ["", "comparing", "not"][seen];
-                unseen.push((whole.model.name.clone(), KINDS[mutant.kind], mutant.place, how));
+            by_kind[mutant.kind][detection] += 1;
+            if detection > 0 {
+                let detected_by = ["", "comparing", "not"][detection];
+                undetected.push((
+                    tool.model.name.clone(),
+                    KINDS[mutant.kind],
+                    mutant.place,
+                    detected_by,
+                ));
             }
         }
-        writeln!(body, "| {} | {} |", whole.model.name, row(&counts))?;
-        for (sum, count) in all.iter_mut().zip(counts) {
+        writeln!(body, "| {} | {} |", tool.model.name, row(&counts))?;
+        for (sum, count) in totals.iter_mut().zip(counts) {
             *sum += count;
         }
     }
-    writeln!(body, "| **all** | {} |", row(&all))?;
-    let other = all[0] - all[1];
-    let part = |count: usize| 100.0 * count as f64 / other as f64;
+    writeln!(body, "| **all** | {} |", row(&totals))?;
+    let different = totals[0] - totals[1];
+    let percent = |count: usize| 100.0 * count as f64 / different as f64;
     writeln!(
         body,
-        "\nOf {other}, {:.1} % are seen by errors or warnings ({:.1} % errors, {:.1} % open proofs, {:.1} % other warnings), {:.1} % \
+        "\nOf {different}, {:.1} % are seen by errors or warnings ({:.1} % errors, {:.1} % open proofs, {:.1} % other warnings), {:.1} % \
          only by comparing, {:.1} % not.\n",
-        part(all[2] + all[3] + all[4]),
-        part(all[2]),
-        part(all[3]),
-        part(all[4]),
-        part(all[5]),
-        part(all[6])
+        percent(totals[2] + totals[3] + totals[4]),
+        percent(totals[2]),
+        percent(totals[3]),
+        percent(totals[4]),
+        percent(totals[5]),
+        percent(totals[6])
     )?;
     writeln!(body, "| broken | error or warning | comparing | not |\n|---|--:|--:|--:|")?;
     for (kind, counts) in KINDS.iter().zip(by_kind) {
         writeln!(body, "| {kind} | {} |", row(&counts))?;
     }
-    if !unseen.is_empty() {
+    if !undetected.is_empty() {
         writeln!(
             body,
             "\n### No error and no warning\n\n| tool | what | where | seen |\n|---|---|---|---|"
         )?;
-        for (tool, kind, place, how) in unseen {
-            writeln!(body, "| {tool} | {kind} | {place} | {how} |")?;
+        for (name, kind, place, detected_by) in undetected {
+            writeln!(body, "| {name} | {kind} | {place} | {detected_by} |")?;
         }
     }
     Ok(Section { title: "Broken on purpose", body, missed: Vec::new() })

@@ -57,7 +57,7 @@ impl Postures {
             }
             _ => ("A relief that is made here".to_owned(), relief(SQUARES)?),
         };
-        let wanted = Wanted {
+        let task = Wanted {
             mesh: &mesh,
             tools: self.tools.iter().map(String::as_str).collect(),
             hemisphere: self.directions,
@@ -66,16 +66,16 @@ impl Postures {
             draws: self.draws,
             seed: self.seed,
         };
-        let found = measure(&wanted)?;
-        let about = "Postures of a sweep are drawn, rebuilt from the tools' restatements, and judged by cutting up all of the part's triangles.\n\n";
-        let wrong = found.accessible.wrong.iter().chain(&found.refused.wrong);
+        let results = measure(&task)?;
+        let introduction = "Postures of a sweep are drawn, rebuilt from the tools' restatements, and judged by cutting up all of the part's triangles.\n\n";
+        let wrong = results.accessible.wrong.iter().chain(&results.refused.wrong);
         Ok(Some(Page {
             name: "postures",
             title: "Postures beside brute force",
             covers: &["runtime/src/postures", "runtime/src/certify", "tools-library/tools"],
             sections: vec![Section {
                 title: "",
-                body: about.to_owned() + &page(&name, &wanted, &found)?,
+                body: introduction.to_owned() + &page(&name, &task, &results)?,
                 missed: wrong.map(|Odd { at, what }| format!("{at}: {what}")).collect(),
             }],
             figures: Vec::new(),

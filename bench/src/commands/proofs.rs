@@ -31,13 +31,15 @@ boxes where the proof did not come to an end. Times are those of the proof alone
             let tool = compile(&source).into_tool().ok_or("a tool of the library has an error")?;
             let start = Instant::now();
             let proved = Certificate::of(&tool);
-            let took = 1e3 * start.elapsed().as_secs_f64();
+            let milliseconds = 1e3 * start.elapsed().as_secs_f64();
             let inner = || proved.borders.iter().filter(|border| border.between.1.is_some());
-            let count = |is: &dyn Fn(f64) -> bool| inner().filter(|b| is(b.jump.high)).count();
+            let count = |accept: &dyn Fn(f64) -> bool| {
+                inner().filter(|border| accept(border.jump.high)).count()
+            };
             let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), format_number);
             writeln!(
                 body,
-                "| {} | {} | {} | {} | {:.0e} | {} | {} | {} | {} | {} | {} | {took:.1} |",
+                "| {} | {} | {} | {} | {:.0e} | {} | {} | {} | {} | {} | {} | {milliseconds:.1} |",
                 tool.model.name,
                 tool.model.regions.len(),
                 bound(proved.lower_slope()),

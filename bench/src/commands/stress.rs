@@ -29,10 +29,10 @@ impl Stress {
         let amount = if self.quick { Amount::sample(self.seed) } else { Amount::full(self.seed) };
         let rows = measure(
             amount,
-            |one| self.item.is_none_or(|wanted| one.0 == wanted),
-            |name| self.tool.as_deref().is_none_or(|wanted| name == wanted),
+            |item| self.item.is_none_or(|chosen| item.0 == chosen),
+            |name| self.tool.as_deref().is_none_or(|chosen| name == chosen),
         );
-        let about = "\
+        let introduction = "\
 Every tool of the library at points, poses and scenes that are hard, against 256 bits. *The contract* is that of `accuracy.md`: with S the next
 power of two above the tool's largest coordinate, ε = 2^-52 and ulp(S) = ε S, a depth is within 1 ulp(S), the side and the owner are right
 beyond 2 ulp(S), ||u| - 1| ≤ 4 ε, u is within 8 ε max(1, S/ρ), ρ the distance to the nearest place where it does not exist; nothing is
@@ -46,7 +46,7 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
             covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
             sections: vec![Section {
                 title: "",
-                body: about.to_owned() + &page::page(&rows)?,
+                body: introduction.to_owned() + &page::page(&rows)?,
                 missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
             }],
             figures: Vec::new(),

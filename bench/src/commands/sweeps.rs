@@ -42,10 +42,10 @@ pub(crate) struct Sweeps {
 impl Sweeps {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         let parts = poses::parts()?;
-        let each = self.motions / (parts.len() * TOOLS.len());
-        let rows = self.rows(&parts, each);
-        let about = format!(
-            "For each tool and part motions are drawn until {each} are proved: slides, swings about the tip and about a place of the part by up to 150°,
+        let count = self.motions / (parts.len() * TOOLS.len());
+        let rows = self.rows(&parts, count);
+        let introduction = format!(
+            "For each tool and part motions are drawn until {count} are proved: slides, swings about the tip and about a place of the part by up to 150°,
 plunges, straight ways, none at all, rapid moves and any between two poses. Most are moved to where they pass the part by 1e-7 to 0.5 mm,
 some as much too near. Tolerances are 0, 1e-6 and 1e-3 in turn. Those that are proved are sampled at 66 times and 30 more beside the
 closest, and from the best six a search climbs in time and place. All lengths are in the part's unit. *Near* is closer than 0.001; *over* is by how
@@ -59,7 +59,7 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
             covers: &["runtime/src/certify", "runtime/src/motion.rs"],
             sections: vec![Section {
                 title: "",
-                body: about + &table(&rows)?,
+                body: introduction + &table(&rows)?,
                 missed: rows.into_iter().flat_map(|row| row.violations).collect(),
             }],
             figures: Vec::new(),
@@ -67,19 +67,19 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
     }
 
     /// Returns one row per part and tool.
-    fn rows(&self, parts: &[(&str, Mesh)], each: usize) -> Vec<Row> {
+    fn rows(&self, parts: &[(&str, Mesh)], count: usize) -> Vec<Row> {
         let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
-        let wanted = |name: &str| self.tool.as_deref().is_none_or(|only| only == name);
-        let asked = (0..parts.len() * TOOLS.len()).filter(|k| wanted(TOOLS[k % TOOLS.len()]));
-        let asked: Vec<usize> = asked.collect();
-        parallel::rows(asked.len(), |at| {
-            let k = asked[at];
+        let is_chosen = |name: &str| self.tool.as_deref().is_none_or(|chosen| chosen == name);
+        let indices = (0..parts.len() * TOOLS.len()).filter(|k| is_chosen(TOOLS[k % TOOLS.len()]));
+        let indices: Vec<usize> = indices.collect();
+        parallel::rows(indices.len(), |index| {
+            let k = indices[index];
             let ((part, mesh), name) = (&parts[k / TOOLS.len()], TOOLS[k % TOOLS.len()]);
             let tool = tools_library::find(name).expect("a tool of the library");
             let oracle = Nearest::of(name);
             let bvh = &bvh[k / TOOLS.len()];
             let row =
-                Pair { part, mesh, bvh, tool, oracle: &oracle }.sweeps(each, self.seed + k as u64);
+                Pair { part, mesh, bvh, tool, oracle: &oracle }.sweeps(count, self.seed + k as u64);
             eprintln!(
                 "{name} in {part}: {} of {} proved, {} undecided, {} violations",
                 row.proved,

@@ -19,10 +19,10 @@ use touchoff_bench::race::contender::{Answer, Contender};
 /// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-9;
 /// Depth in the scenes where many triangles are equally deep, mm.
-const TIED: f64 = 0.1;
+const TIED_DEPTH: f64 = 0.1;
 
-/// Methods that return a verdict without a depth.
-const YES_OR_NO: [&str; 2] = ["touchoff clear", "touchoff sweep"];
+/// Names of the methods that return a verdict without a depth.
+const VERDICT_METHODS: [&str; 2] = ["touchoff clear", "touchoff sweep"];
 
 /// Times certified depths and the verdicts on poses and motions, on meshes of several sizes.
 #[derive(Args)]
@@ -38,7 +38,7 @@ pub(crate) struct Triangles {
 impl Triangles {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         clock::pin();
-        let mut body = about();
+        let mut body = introduction();
         for size in &self.triangles {
             for scene in Scene::ALL {
                 rows(&mut body, scene, &scene.mesh(*size), self.seconds)?;
@@ -103,16 +103,23 @@ impl Scene {
         let root = (triangles as f64).sqrt();
         let tube = |inner: f64, height: f64| {
             // The triangles of a wall come out about as wide as high.
-            let around = (root * 0.9).round().max(3.0);
-            let layers = (triangles as f64 / (4.0 * around) - 1.0).round().max(1.0);
-            shapes::tube(inner, inner + 2.0, height, around as u32, layers as u32, Unit::Millimetre)
+            let sectors = (root * 0.9).round().max(3.0);
+            let layers = (triangles as f64 / (4.0 * sectors) - 1.0).round().max(1.0);
+            shapes::tube(
+                inner,
+                inner + 2.0,
+                height,
+                sectors as u32,
+                layers as u32,
+                Unit::Millimetre,
+            )
         };
         match self {
             Scene::Along(_) | Scene::Apart(_) => tube(INNER, HEIGHT),
             Scene::Flat | Scene::Line => {
                 shapes::plane(30.0, (root / 2f64.sqrt()).round() as u32, Unit::Millimetre)
             }
-            Scene::Bore => tube(6.0 - TIED, 20.0),
+            Scene::Bore => tube(6.0 - TIED_DEPTH, 20.0),
         }
         .expect("a shape by construction")
     }
@@ -120,42 +127,42 @@ impl Scene {
     fn pose(self, k: usize, n: usize) -> Pose {
         let u = k as f64 / n as f64;
         let [x, y] = [3.0 * (2.0 * PI * u).cos(), 3.0 * (6.0 * PI * u).sin()];
-        let stand = |tip: Point3<f64>, axis: Vector3<f64>| {
+        let pose_at = |tip: Point3<f64>, axis: Vector3<f64>| {
             Pose::from_axis(tip, axis).expect("a unit vector")
         };
         match self {
             Scene::Along(path) => path.pose(k, n),
             Scene::Apart(gap) => apart(gap, k, n),
-            Scene::Flat => stand(Point3::new(x, y, -TIED), Vector3::z()),
+            Scene::Flat => pose_at(Point3::new(x, y, -TIED_DEPTH), Vector3::z()),
             Scene::Line => {
-                let turn = 2.0 * PI * u;
-                let axis = Vector3::new(turn.cos(), turn.sin(), 0.0);
-                stand(Point3::new(x, y, 6.0 - TIED), axis)
+                let angle = 2.0 * PI * u;
+                let axis = Vector3::new(angle.cos(), angle.sin(), 0.0);
+                pose_at(Point3::new(x, y, 6.0 - TIED_DEPTH), axis)
             }
-            Scene::Bore => stand(Point3::new(0.0, 0.0, -5.0 + 10.0 * u), Vector3::z()),
+            Scene::Bore => pose_at(Point3::new(0.0, 0.0, -5.0 + 10.0 * u), Vector3::z()),
         }
     }
 }
 
 /// The certified depth.
-struct Certified<'a>(Certifier<'a>);
+struct CertifiedDepth<'a>(Certifier<'a>);
 
-impl Contender for Certified<'_> {
+impl Contender for CertifiedDepth<'_> {
     fn name(&self) -> &'static str {
         "touchoff"
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let found = self.0.deepest(pose, TOLERANCE);
-        let colliding = usize::from(found.witness.is_some());
-        Answer { colliding, depth: found.depth.high, wrench: None }
+        let penetration = self.0.deepest(pose, TOLERANCE);
+        let colliding = usize::from(penetration.witness.is_some());
+        Answer { colliding, depth: penetration.depth.high, wrench: None }
     }
 }
 
 /// The verdict on a pose.
-struct Cleared<'a>(Certifier<'a>);
+struct PoseCheck<'a>(Certifier<'a>);
 
-impl Contender for Cleared<'_> {
+impl Contender for PoseCheck<'_> {
     fn name(&self) -> &'static str {
         "touchoff clear"
     }
@@ -169,22 +176,22 @@ impl Contender for Cleared<'_> {
 
 /// The verdict on a motion along the wall by the radius of the ball; in half of the poses the tool also swings by a
 /// tenth of a radian.
-struct Swept<'a>(Certifier<'a>);
+struct MotionCheck<'a>(Certifier<'a>);
 
-impl Contender for Swept<'_> {
+impl Contender for MotionCheck<'_> {
     fn name(&self) -> &'static str {
         "touchoff sweep"
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
         let centre = pose.tip() + BALL * pose.axis();
-        let out = Vector3::new(centre.x, centre.y, 0.0).normalize();
-        let (up, along) = (Vector3::z(), Vector3::z().cross(&out));
-        let turn = 34.0 * centre.z;
-        let way = BALL * (turn.cos() * up + turn.sin() * along);
-        let swing = if (7.0 * turn).sin() > 0.0 { 0.1 } else { 0.0 };
-        let axis = (pose.axis() + swing * way.normalize()).normalize();
-        let to = Pose::from_axis(centre + way - BALL * axis, axis).expect("a unit vector");
+        let radial = Vector3::new(centre.x, centre.y, 0.0).normalize();
+        let (up, tangent) = (Vector3::z(), Vector3::z().cross(&radial));
+        let angle = 34.0 * centre.z;
+        let displacement = BALL * (angle.cos() * up + angle.sin() * tangent);
+        let tilt = if (7.0 * angle).sin() > 0.0 { 0.1 } else { 0.0 };
+        let axis = (pose.axis() + tilt * displacement.normalize()).normalize();
+        let to = Pose::from_axis(centre + displacement - BALL * axis, axis).expect("a unit vector");
         let motion = Motion::new(pose, &to).expect("axes that are not opposite");
         let clear = matches!(self.0.check_motion(&motion, TOLERANCE), MotionVerdict::Clear);
         Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
@@ -196,9 +203,9 @@ fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt:
     let bvh = TriangleBvh::new(mesh);
     let certifier = || Certifier::new(&bvh, scene.tool()).expect("a tool with a profile");
     let mut methods: Vec<Box<dyn Contender>> =
-        vec![Box::new(Certified(certifier())), Box::new(Cleared(certifier()))];
+        vec![Box::new(CertifiedDepth(certifier())), Box::new(PoseCheck(certifier()))];
     if let Scene::Apart(_) = scene {
-        methods.push(Box::new(Swept(certifier())));
+        methods.push(Box::new(MotionCheck(certifier())));
     }
     #[cfg(feature = "peers")]
     if let Scene::Along(_) | Scene::Apart(_) = scene {
@@ -217,11 +224,11 @@ fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt:
 /// Returns the largest difference between a method's depths and the certified ones, mm. Returns `None` for methods
 /// without a depth.
 fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> Option<f64> {
-    if YES_OR_NO.contains(&method.name()) {
+    if VERDICT_METHODS.contains(&method.name()) {
         return None;
     }
-    let some = poses.iter().step_by(poses.len() / 50);
-    let errors = some.map(|pose| {
+    let sampled = poses.iter().step_by(poses.len() / 50);
+    let errors = sampled.map(|pose| {
         let Interval { low, high } = certifier.deepest(pose, TOLERANCE).depth;
         let depth = method.query(pose).depth;
         (depth - low).abs().max((depth - high).abs())
@@ -238,10 +245,10 @@ fn row(
     error: Option<f64>,
 ) -> std::fmt::Result {
     let time = |ns: Option<u64>| ns.map_or("-".into(), |ns| format!("{:.2}", ns as f64 / 1e3));
-    let [half, most] = [0.5, 0.99].map(|part| time(times.percentile(part)));
+    let [median, p99] = [0.5, 0.99].map(|fraction| time(times.percentile(fraction)));
     writeln!(
         body,
-        "| {} | {triangles} | `{method}` | {} | {:.2} | {half} | {most} | {} | {:.2} | {:.2} | {} |",
+        "| {} | {triangles} | `{method}` | {} | {:.2} | {median} | {p99} | {} | {:.2} | {:.2} | {} |",
         scene.name(),
         times.poses(),
         times.average() / 1e3,
@@ -252,12 +259,12 @@ fn row(
     )
 }
 
-fn about() -> String {
+fn introduction() -> String {
     format!(
         "How deep the part's triangles are in the tool. `touchoff` proves it to {TOLERANCE:e} mm (`Certifier::deepest`), with the tool of
 fig. 7.3 as its profile has it on `outside`, `inside`, `hold` and `apart`, where its ball is that many mm off; `touchoff clear`
 only asks whether anything touches; `touchoff sweep` whether it stays clear on a way of 1 mm, the ball's radius, along the wall, in
-half of the poses swung by 0.1 rad the while. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED} mm deep with its end or
+half of the poses swung by 0.1 rad the while. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED_DEPTH} mm deep with its end or
 its side in a plate, or in a bore, where a great many triangles are as deep. `parry-contact` is `parry3d`'s `contact` of a compound and
 the triangle mesh, without sweeps and without a proof; of convex shapes it takes the way out of one, which in `hold` is another depth.
 **In contact** is the part of the poses at which something is inside, **error** the largest distance of a depth from the proved one, in mm,

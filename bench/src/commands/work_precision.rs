@@ -26,10 +26,10 @@ pub(crate) struct WorkPrecision {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// Scenes by name [default: all; with `--part` only that part].
-    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(words()))]
+    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(scene_names()))]
     scene: Vec<String>,
     /// Mesh of your own part in STL, PLY or OBJ.
-    #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "path"])]
+    #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "program"])]
     part: Option<PathBuf>,
     /// Unit of the part: `mm`, `inch` or `m`.
     #[arg(long, requires = "part")]
@@ -37,19 +37,19 @@ pub(crate) struct WorkPrecision {
     /// Library tool by name, or a `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
     tool: Option<OsString>,
-    /// Tool path along the part: a table, or APT-CL.
+    /// Program, the tool's path along the part: a table, or APT-CL.
     #[arg(long, value_name = "FILE", requires = "part")]
-    path: Option<PathBuf>,
+    program: Option<PathBuf>,
 }
 
 impl WorkPrecision {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         let plan = if self.quick { Plan::quick(self.seed) } else { Plan::full(self.seed) };
-        let loaded = self.loaded()?;
-        let own = match (&self.part, self.unit, &self.path) {
-            (Some(part), Some(unit), Some(path)) => {
+        let loaded = self.load_tool()?;
+        let own = match (&self.part, self.unit, &self.program) {
+            (Some(part), Some(unit), Some(program)) => {
                 let tool = self.tool(loaded.as_ref())?;
-                Some(own((part, unit), tool, path)?)
+                Some(read_own((part, unit), tool, program)?)
             }
             _ => None,
         };
@@ -61,17 +61,18 @@ impl WorkPrecision {
 
     /// Returns the names of the chosen scenes.
     fn scenes(&self) -> Vec<&str> {
-        let all = self.scene.iter().any(|word| word == ALL);
-        if all || (self.scene.is_empty() && self.part.is_none()) {
+        let measures_all = self.scene.iter().any(|name| name == ALL);
+        if measures_all || (self.scene.is_empty() && self.part.is_none()) {
             return work_precision::scenes();
         }
         self.scene.iter().map(String::as_str).collect()
     }
 
     /// Loads the tool if the option names a `.tool` file.
-    fn loaded(&self) -> Result<Option<Interpreted>, Box<dyn Error>> {
-        let named = self.tool.as_ref().map(Path::new);
-        let file = named.filter(|name| name.extension().is_some_and(|ending| ending == "tool"));
+    fn load_tool(&self) -> Result<Option<Interpreted>, Box<dyn Error>> {
+        let path = self.tool.as_ref().map(Path::new);
+        let file =
+            path.filter(|path| path.extension().is_some_and(|extension| extension == "tool"));
         let loaded = file.map(Interpreted::load).transpose()?;
         if let Some(tool) = loaded.as_ref().filter(|tool| !tool.warnings().is_empty()) {
             eprintln!("{}", tool.warnings());
@@ -90,14 +91,14 @@ impl WorkPrecision {
     }
 }
 
-fn words() -> Vec<&'static str> {
-    let mut words = work_precision::scenes();
-    words.push(ALL);
-    words
+fn scene_names() -> Vec<&'static str> {
+    let mut names = work_precision::scenes();
+    names.push(ALL);
+    names
 }
 
 /// Reads a part and a tool path along it.
-fn own<'t>(
+fn read_own<'t>(
     (part, unit): (&Path, Unit),
     tool: &'t dyn Tool,
     path: &Path,
@@ -109,14 +110,14 @@ fn own<'t>(
         let (path, name) = (path.display(), &tool.info().name);
         eprintln!("{path}:{line}: CUTTER is not compared: it cannot describe `{name}`");
     }
-    let file = part.display();
+    let part_file = part.display();
     let Geometry::Mesh(mesh) = Geometry::read(part, unit)? else {
-        return Err(format!("{file} has no triangles").into());
+        return Err(format!("{part_file} has no triangles").into());
     };
     for finding in mesh.diagnostics().findings() {
-        eprintln!("{file}: {finding}");
+        eprintln!("{part_file}: {finding}");
     }
     let name = part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned());
-    let poses = program.locations.iter().map(|stop| stop.pose).collect();
+    let poses = program.locations.iter().map(|location| location.pose).collect();
     Ok(Own { mesh, name, tool, poses })
 }

@@ -19,31 +19,31 @@ pub fn both(rate: f64, seconds: f64) -> [LoopReport; 2] {
     let part = block(100_000);
     let timing = (rate, (rate * seconds) as u64);
     std::thread::scope(|scope| {
-        let pressed = scope.spawn(|| looped(&part, timing, true));
-        let empty = scope.spawn(|| looped(&part, timing, false));
-        [pressed, empty].map(|looped| looped.join().expect("a loop panics at nothing"))
+        let pressed = scope.spawn(|| run_loop(&part, timing, true));
+        let empty = scope.spawn(|| run_loop(&part, timing, false));
+        [pressed, empty].map(|thread| thread.join().expect("a loop panics at nothing"))
     })
 }
 
-fn looped(part: &Part, (rate, cycles): (f64, u64), pressed: bool) -> LoopReport {
+fn run_loop(part: &Part, (rate, cycles): (f64, u64), pressed: bool) -> LoopReport {
     let core = Some(usize::from(pressed));
-    for refused in (Realtime { priority: Some(80), core, locked: true }).apply() {
-        eprintln!("{refused}");
+    for error in (Realtime { priority: Some(80), core, locked: true }).apply() {
+        eprintln!("{error}");
     }
     let probe = Probe::new(part, tool("Ball")).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(rate), LIMITS).expect("settings");
     let clock = &mut MonotonicClock::new(AWAKE);
-    let (mut watch, _latest, _samples) = state_channel(1);
-    let never = AtomicBool::new(false);
+    let (mut publisher, _latest, _samples) = state_channel(1);
+    let stop = AtomicBool::new(false);
     if pressed {
-        let wish = |time: f64| upright(-2.0 + 2.2 * (0.5 * time).sin());
+        let hand_position = |time: f64| upright(-2.0 + 2.2 * (0.5 * time).sin());
         let tremor = Tremor { size: 0.02, frequency: 10.0, seed: 1 };
-        let hand =
-            SimulatedHand::new(LIMITS, rate, wish).and_then(|hand| hand.with_tremor(&tremor));
+        let hand = SimulatedHand::new(LIMITS, rate, hand_position)
+            .and_then(|hand| hand.with_tremor(&tremor));
         let mut hand = hand.expect("a hand");
-        session.run(&mut hand, clock, cycles, &mut watch, &never)
+        session.run(&mut hand, clock, cycles, &mut publisher, &stop)
     } else {
-        let mut far = ScriptedDevice::new(LIMITS, |_| Ok(upright(1e6)));
-        session.run(&mut far, clock, cycles, &mut watch, &never)
+        let mut device = ScriptedDevice::new(LIMITS, |_| Ok(upright(1e6)));
+        session.run(&mut device, clock, cycles, &mut publisher, &stop)
     }
 }

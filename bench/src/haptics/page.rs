@@ -23,12 +23,12 @@ pub struct Measured {
 
 /// Update rate in Hz and stiffness in N/mm of walls that people perceived as rendered cleanly. Source: Choi and Tan,
 /// *Effect of update rate on perceived instability of virtual haptic texture*, 2004.
-const FELT: [[f64; 2]; 2] = [[250.0, 0.33], [40_000.0, 0.90]];
+const CLEAN_WALLS: [[f64; 2]; 2] = [[250.0, 0.33], [40_000.0, 0.90]];
 
 /// Returns the plots: file names and SVG contents.
 pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
-    let limits = |name: &str, of: &dyn Fn(&Row) -> f64| {
-        let points = measured.walls.iter().map(|row| [row.rate, of(row)]).collect();
+    let limits = |name: &str, value: &dyn Fn(&Row) -> f64| {
+        let points = measured.walls.iter().map(|row| [row.rate, value(row)]).collect();
         Series::line(name, points)
     };
     let theory = measured.walls.iter().map(|row| [row.rate, row.theory]).collect();
@@ -41,10 +41,10 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
     .with(limits("direct", &|row| row.measured[0]))
     .with(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
     .with(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
-    .with(Series::points("felt as clean (Choi and Tan)", FELT.to_vec()));
-    let axes = |what: &str| (Axis::linear("how deep the hand wants it, mm"), Axis::linear(what));
-    let sheet = |what: &str, title: &str, row: usize| {
-        let (x, y) = axes(what);
+    .with(Series::points("felt as clean (Choi and Tan)", CLEAN_WALLS.to_vec()));
+    let axes = |label: &str| (Axis::linear("how deep the hand wants it, mm"), Axis::linear(label));
+    let sheet = |label: &str, title: &str, row: usize| {
+        let (x, y) = axes(label);
         measured.sheet.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
             let points = points.iter().step_by(20).map(|point| [point[0], point[row]]).collect();
             plot.with(Series::line(*name, points))
@@ -78,8 +78,8 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
 /// Never in practice: writing to a string cannot fail.
 pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
     let mut page = String::new();
-    walls(&mut page, measured)?;
-    shaking(&mut page, measured)?;
+    write_walls(&mut page, measured)?;
+    write_shaking(&mut page, measured)?;
     writeln!(page, "## Energy\n")?;
     writeln!(
         page,
@@ -105,15 +105,15 @@ pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
         page,
         "![where the tool is](haptics-sheet.svg)\n![what the hand feels](haptics-push.svg)\n"
     )?;
-    latency(&mut page, measured)?;
+    write_latency(&mut page, measured)?;
     Ok(page)
 }
 
-fn shown(limit: f64) -> String {
+fn format_limit(limit: f64) -> String {
     if limit.is_finite() { format!("{limit:.2}") } else { "none up to 10⁵".to_owned() }
 }
 
-fn walls(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_walls(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "## How stiff a wall may be\n")?;
     writeln!(
         page,
@@ -125,8 +125,8 @@ fn walls(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "| Hz | theory | direct | with encoders | scaled | coupled | a coupling |")?;
     writeln!(page, "|--:|--:|--:|--:|--:|--:|--:|")?;
     for row in &measured.walls {
-        let [direct, encoded, scaled, coupled] = row.measured.map(shown);
-        let (theory, coupling) = (shown(row.theory), shown(row.coupling));
+        let [direct, encoded, scaled, coupled] = row.measured.map(format_limit);
+        let (theory, coupling) = (format_limit(row.theory), format_limit(row.coupling));
         let rate = row.rate;
         writeln!(
             page,
@@ -136,7 +136,7 @@ fn walls(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page)
 }
 
-fn shaking(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_shaking(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "## What shakes\n")?;
     writeln!(
         page,
@@ -151,16 +151,16 @@ fn shaking(page: &mut String, measured: &Measured) -> fmt::Result {
     for (points, case, shaking) in &measured.shaking {
         let Shaking { force, rough, step, stiffest } = shaking;
         let Case { way, tool, law, how, stiffness } = case;
-        let (way, tool, share) = (way.name(), tool.0, 100.0 * rough / force);
+        let (movement, tool, share) = (way.name(), tool.0, 100.0 * rough / force);
         writeln!(
             page,
-            "| {way} | {tool} | {points} | {law} | {how} | {stiffness} | {force:.3} | {rough:.1e} | {share:.2} % | {step:.1e} | {stiffest:.1} |"
+            "| {movement} | {tool} | {points} | {law} | {how} | {stiffness} | {force:.3} | {rough:.1e} | {share:.2} % | {step:.1e} | {stiffest:.1} |"
         )?;
     }
     writeln!(page)
 }
 
-fn latency(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_latency(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "## How long a cycle takes\n")?;
     writeln!(
         page,
@@ -174,14 +174,14 @@ fn latency(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "|--:|--:|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
     for (rate, seconds, reports) in &measured.latency {
         for (name, report) in ["pressing", "empty"].into_iter().zip(reports) {
-            for (what, times) in [("took", &report.durations), ("late", &report.start_delays)] {
-                let at = |share: f64| times.value_at_quantile(share) as f64 / 1e3;
+            for (quantity, times) in [("took", &report.durations), ("late", &report.start_delays)] {
+                let quantile = |fraction: f64| times.value_at_quantile(fraction) as f64 / 1e3;
                 writeln!(
                     page,
-                    "| {rate} | {seconds} | {name} | {what} | {:.1} | {:.1} | {:.1} | {:.1} | {} | {} | {} |",
-                    at(0.5),
-                    at(0.99),
-                    at(0.999),
+                    "| {rate} | {seconds} | {name} | {quantity} | {:.1} | {:.1} | {:.1} | {:.1} | {} | {} | {} |",
+                    quantile(0.5),
+                    quantile(0.99),
+                    quantile(0.999),
                     times.max() as f64 / 1e3,
                     report.missed,
                     report.skipped,

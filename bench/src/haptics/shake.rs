@@ -13,12 +13,12 @@ use touchoff_tests::haptics::wall::LIMITS;
 /// Update rate, Hz.
 const RATE: f64 = 1000.0;
 /// Duration of the hand's motion, s.
-const SECONDS: f64 = 8.0;
+const MOTION_SECONDS: f64 = 8.0;
 /// Depth inside the wall that the hand aims at, mm. With the hand's impedance it presses with about 0.6 N.
-const INSIDE: f64 = 3.0;
+const TARGET_DEPTH: f64 = 3.0;
 
 /// Lowering of the tool along the edge, mm, so that the contact moves from the flute to the taper and on.
-const DOWN: f64 = 2.5;
+const EDGE_LOWERING: f64 = 2.5;
 
 /// A path of the hand along the tube, at about 10 mm/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,15 +44,15 @@ impl Way {
             Way::Edge => [0.65, 0.90],
         };
         const POSES: usize = 10_000_000;
-        let share = from + (to - from) * time / SECONDS;
-        let pose = ScenePath::Outside.pose((share * POSES as f64) as usize, POSES);
+        let fraction = from + (to - from) * time / MOTION_SECONDS;
+        let pose = ScenePath::Outside.pose((fraction * POSES as f64) as usize, POSES);
         let centre = pose.tip() + pose.axis() * BALL;
         let inward = -Vector3::new(centre.x, centre.y, 0.0).normalize();
         // The approach starts outside: the wall is thinner than the depth that the hand aims at.
-        let inside = INSIDE * (2.0 * time).min(1.0) - 0.3 * (1.0 - 2.0 * time).max(0.0);
-        let down = if self == Way::Edge { DOWN } else { 0.0 };
-        let way = inward * inside - Vector3::z() * down;
-        pose.translated(way).expect("a pose beside the tube")
+        let depth = TARGET_DEPTH * (2.0 * time).min(1.0) - 0.3 * (1.0 - 2.0 * time).max(0.0);
+        let lowering = if self == Way::Edge { EDGE_LOWERING } else { 0.0 };
+        let displacement = inward * depth - Vector3::z() * lowering;
+        pose.translated(displacement).expect("a pose beside the tube")
     }
 }
 
@@ -108,25 +108,25 @@ pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
     let probe = Probe::new(part, case.tool.1).with_law(case.law);
     let mut session = Session::new(probe, &settings, limits).expect("settings");
     let mut hand = SimulatedHand::new(limits, RATE, |time| case.way.pose(time)).expect("a hand");
-    let (mut sums, mut low, mut before) = (Shaking::default(), [Vector3::zeros(); 2], None);
+    let (mut sums, mut filtered, mut previous) = (Shaking::default(), [Vector3::zeros(); 2], None);
     let mut count = 0.0;
     // A first-order low-pass filter at 30 Hz, applied twice.
     let share = 1.0 - (-std::f64::consts::TAU * 30.0 / RATE).exp();
-    for cycle in 0..(SECONDS * RATE) as usize {
+    for cycle in 0..(MOTION_SECONDS * RATE) as usize {
         let Some(state) = session.cycle(&mut hand) else { continue };
         let force = state.wrench_on_hand.force;
-        low[0] += share * (force - low[0]);
-        low[1] += share * (low[0] - low[1]);
+        filtered[0] += share * (force - filtered[0]);
+        filtered[1] += share * (filtered[0] - filtered[1]);
         // The first second, the approach, does not count.
         if cycle as f64 > RATE {
             count += 1.0;
             sums.force += force.norm_squared();
-            sums.rough += (force - low[1]).norm_squared();
+            sums.rough += (force - filtered[1]).norm_squared();
             sums.stiffest = sums.stiffest.max(state.stiffest * limits.stiffness);
-            let step = before.map_or(0.0, |before: Vector3<f64>| (force - before).norm());
+            let step = previous.map_or(0.0, |previous: Vector3<f64>| (force - previous).norm());
             sums.step = sums.step.max(step);
         }
-        before = Some(force);
+        previous = Some(force);
     }
     Shaking { force: (sums.force / count).sqrt(), rough: (sums.rough / count).sqrt(), ..sums }
 }

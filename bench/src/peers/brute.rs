@@ -14,7 +14,7 @@ use touchoff::{Cloud, Pose};
 /// All points in `f64`, with branches.
 pub struct Scalar {
     /// The coordinates alone, since few points need more data.
-    at: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
     points: Vec<Point>,
 }
 
@@ -22,7 +22,7 @@ impl Scalar {
     /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Scalar {
         let points = points(cloud);
-        Scalar { at: points.iter().map(|point| point.at).collect(), points }
+        Scalar { positions: points.iter().map(|point| point.at).collect(), points }
     }
 }
 
@@ -34,8 +34,8 @@ impl Contender for Scalar {
     fn query(&mut self, pose: &Pose) -> Answer {
         let view = View::of(pose);
         let mut sums = Sums::default();
-        for (at, point) in self.at.iter().zip(&self.points) {
-            let arm = view.arm(*at);
+        for (position, point) in self.positions.iter().zip(&self.points) {
+            let arm = view.arm(*position);
             let p = view.turn(arm);
             if formula::beside(p) {
                 continue;
@@ -54,7 +54,7 @@ const WIDTH: usize = 16;
 pub struct Lanes {
     level: Level,
     /// One list of coordinates per axis, padded to full blocks with coordinates far away.
-    at: [Vec<f32>; 3],
+    coordinates: [Vec<f32>; 3],
     points: Vec<Point>,
 }
 
@@ -62,19 +62,19 @@ impl Lanes {
     /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Lanes {
         let points = points(cloud);
-        let room = points.len().next_multiple_of(WIDTH);
-        let at = [0, 1, 2].map(|axis| {
-            let mut list: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();
-            list.resize(room, 1e6);
-            list
+        let padded_length = points.len().next_multiple_of(WIDTH);
+        let coordinates = [0, 1, 2].map(|axis| {
+            let mut padded: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();
+            padded.resize(padded_length, 1e6);
+            padded
         });
-        Lanes { level: Level::new(), at, points }
+        Lanes { level: Level::new(), coordinates, points }
     }
 
     /// Adds one inside point to the sums. Its coordinates are rounded to single precision; the sums are doubles.
-    fn feel(&self, view: &View, at: usize, sums: &mut Sums) {
-        let point = &self.points[at];
-        let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.at[axis][at])));
+    fn add_point(&self, view: &View, index: usize, sums: &mut Sums) {
+        let point = &self.points[index];
+        let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
         let p = view.turn(arm).map(|c| f64::from(c as f32));
         // Within rounding of the surface the two formulas may disagree about the side.
         let evaluation = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
@@ -83,17 +83,21 @@ impl Lanes {
 }
 
 #[inline(always)]
-fn inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
+fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
     let rows = view.single();
     let tip = view.tip.map(|c| c as f32);
     let zero = f32x16::splat(simd, 0.0);
-    for block in 0..lanes.at[0].len() / WIDTH {
-        let place = block * WIDTH..(block + 1) * WIDTH;
-        let lists = [&lanes.at[0][place.clone()], &lanes.at[1][place.clone()], &lanes.at[2][place]];
+    for block in 0..lanes.coordinates[0].len() / WIDTH {
+        let range = block * WIDTH..(block + 1) * WIDTH;
+        let lists = [
+            &lanes.coordinates[0][range.clone()],
+            &lanes.coordinates[1][range.clone()],
+            &lanes.coordinates[2][range],
+        ];
         let depth = formula::magnitude_from(simd, lists, (rows, tip));
         let mut hits = depth.simd_ge(zero).to_bitmask();
         while hits != 0 {
-            lanes.feel(view, block * WIDTH + hits.trailing_zeros() as usize, sums);
+            lanes.add_point(view, block * WIDTH + hits.trailing_zeros() as usize, sums);
             hits &= hits - 1;
         }
     }
@@ -107,7 +111,7 @@ impl Contender for Lanes {
     fn query(&mut self, pose: &Pose) -> Answer {
         let view = View::of(pose);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => inside(simd, self, &view, &mut sums));
+        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
         sums.answer(&view)
     }
 }

@@ -24,15 +24,15 @@ const MARGIN: f32 = 1e-4;
 type TapeOf<E> = <E as BulkEvaluator>::Tape;
 
 /// The indices of x, y and z among a tape's arguments.
-type Places = [usize; 3];
+type ArgumentIndices = [usize; 3];
 
 /// The formula as machine code, and a tree of the points.
 pub struct Fidget {
     tree: Tree<Bounds>,
-    interval: (JitIntervalEval, <JitIntervalEval as TracingEvaluator>::Tape, Places),
-    values: (JitFloatSliceEval, TapeOf<JitFloatSliceEval>, Places),
-    slopes: (JitGradSliceEval, TapeOf<JitGradSliceEval>, Places),
-    near: Vec<usize>,
+    interval: (JitIntervalEval, <JitIntervalEval as TracingEvaluator>::Tape, ArgumentIndices),
+    values: (JitFloatSliceEval, TapeOf<JitFloatSliceEval>, ArgumentIndices),
+    slopes: (JitGradSliceEval, TapeOf<JitGradSliceEval>, ArgumentIndices),
+    candidates: Vec<usize>,
     arms: Vec<[[f64; 3]; 2]>,
     at: [Vec<f32>; 3],
     hits: Vec<usize>,
@@ -51,13 +51,14 @@ impl Fidget {
         let interval = function.interval_tape(Default::default());
         let values = function.float_slice_tape(Default::default());
         let slopes = function.grad_slice_tape(Default::default());
-        let (a, b, c) = (places(&interval), places(&values), places(&slopes));
+        let (a, b, c) =
+            (argument_indices(&interval), argument_indices(&values), argument_indices(&slopes));
         Fidget {
             tree: Tree::new(cloud, LEAF, |bounds, _| bounds),
             interval: (JitIntervalEval::default(), interval, a),
             values: (JitFloatSliceEval::default(), values, b),
             slopes: (JitGradSliceEval::default(), slopes, c),
-            near: Vec::new(),
+            candidates: Vec::new(),
             arms: Vec::new(),
             at: Default::default(),
             hits: Vec::new(),
@@ -67,42 +68,42 @@ impl Fidget {
 
     /// Collects the points of the leaves that the tool may touch, in the tool's frame.
     fn gather(&mut self, view: &View) {
-        let (eval, tape, places) = &mut self.interval;
+        let (eval, tape, indices) = &mut self.interval;
         let (points, leaves) = self.tree.leaves(|bounds| {
             let centre = view.turn(view.arm(bounds.centre));
             let half = view.reach(bounds.half);
             let mut sides = [Interval::from(0.0); 3];
             for axis in 0..3 {
                 let [low, high] = [-1.0, 1.0].map(|sign| (centre[axis] + sign * half[axis]) as f32);
-                sides[places[axis]] = Interval::new(low, high);
+                sides[indices[axis]] = Interval::new(low, high);
             }
-            let (found, _) = eval.eval(tape, &sides).expect("three arguments");
-            found[0].upper() >= -MARGIN
+            let (range, _) = eval.eval(tape, &sides).expect("three arguments");
+            range[0].upper() >= -MARGIN
         });
-        self.near.clear();
+        self.candidates.clear();
         self.arms.clear();
         self.at.iter_mut().for_each(Vec::clear);
         for index in leaves.flatten() {
             let arm = view.arm(points[index].at);
             let p = view.turn(arm);
-            self.near.push(index);
+            self.candidates.push(index);
             self.arms.push([arm, p]);
-            for (coordinate, place) in p.iter().zip(self.values.2) {
-                self.at[place].push(*coordinate as f32);
+            for (coordinate, index) in p.iter().zip(self.values.2) {
+                self.at[index].push(*coordinate as f32);
             }
         }
     }
 }
 
 /// Returns the indices of x, y and z among a tape's arguments.
-fn places(tape: &impl Tape) -> Places {
+fn argument_indices(tape: &impl Tape) -> ArgumentIndices {
     [Var::X, Var::Y, Var::Z].map(|var| tape.vars().get(&var).expect("the formula has all three"))
 }
 
 /// Returns [`super::formula::magnitude`] as a fidget expression.
 fn magnitude() -> Formula {
-    let (x, y, up) = Formula::axes();
-    let z = super::formula::TIP as f32 - up;
+    let (x, y, axial) = Formula::axes();
+    let z = super::formula::TIP as f32 - axial;
     let squared = x.square() + y.square();
     let d = squared.sqrt();
     let above = (z.clone() - 19.0).max(0.0);
@@ -121,35 +122,36 @@ impl Contender for Fidget {
         let view = View::of(pose);
         self.gather(&view);
         let mut sums = Sums::default();
-        if self.near.is_empty() {
+        if self.candidates.is_empty() {
             return sums.answer(&view);
         }
         let (eval, tape, _) = &mut self.values;
         let values = eval.eval(tape, &self.at).expect("lists of one length");
         self.hits.clear();
-        let inside = values[0].iter().enumerate().filter(|(_, value)| **value >= 0.0);
-        self.hits.extend(inside.map(|(index, _)| index));
+        let inside_indices = values[0].iter().enumerate().filter(|(_, value)| **value >= 0.0);
+        self.hits.extend(inside_indices.map(|(index, _)| index));
         if self.hits.is_empty() {
             return sums.answer(&view);
         }
-        let (eval, tape, places) = &mut self.slopes;
-        for (axis, place) in places.iter().enumerate() {
-            let mut one = [0.0; 3];
-            one[axis] = 1.0;
-            let list = &mut self.hits_at[*place];
+        let (eval, tape, indices) = &mut self.slopes;
+        for (axis, index) in indices.iter().enumerate() {
+            let mut unit = [0.0; 3];
+            unit[axis] = 1.0;
+            let list = &mut self.hits_at[*index];
             list.clear();
             let coordinate = |hit: &usize| self.at[self.values.2[axis]][*hit];
-            let grad = |hit| Grad::new(coordinate(hit), one[0], one[1], one[2]);
+            let grad = |hit| Grad::new(coordinate(hit), unit[0], unit[1], unit[2]);
             list.extend(self.hits.iter().map(grad));
         }
         let slopes = eval.eval(tape, &self.hits_at).expect("lists of one length");
         for (hit, slope) in self.hits.iter().zip(&slopes[0]) {
-            let away = [slope.dx, slope.dy, slope.dz].map(|c| -f64::from(c));
-            let length = crate::race::contender::dot(away, away).sqrt();
+            let descent = [slope.dx, slope.dy, slope.dz].map(|c| -f64::from(c));
+            let length = crate::race::contender::dot(descent, descent).sqrt();
             // On the axis the gradient has no radial part.
-            let way = if length > 0.0 { away.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
-            let point = &self.tree.points()[self.near[*hit]];
-            let evaluation = (f64::from(slope.v), way);
+            let direction =
+                if length > 0.0 { descent.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
+            let point = &self.tree.points()[self.candidates[*hit]];
+            let evaluation = (f64::from(slope.v), direction);
             sums.add(self.arms[*hit], (point.weight, point.normal), evaluation);
         }
         sums.answer(&view)

@@ -84,12 +84,13 @@ pub fn housing(squared: f64, z: f64) -> Option<Value> {
 /// Returns the magnitude, and the direction as a unit vector in the tool's frame. On the axis the radial direction is
 /// +x. A direction of length 0 becomes +z.
 #[inline]
-pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Value) -> (f64, [f64; 3]) {
-    let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
+pub fn in_space(p: [f64; 3], squared: f64, (magnitude, direction): Value) -> (f64, [f64; 3]) {
+    let length = (direction[0] * direction[0] + direction[1] * direction[1]).sqrt();
     let d = squared.sqrt();
     let radial = if d > 0.0 { [p[0] / d, p[1] / d] } else { [1.0, 0.0] };
-    let [out, down] = if length > 0.0 { way.map(|c| c / length) } else { [0.0, -1.0] };
-    (magnitude, [out * radial[0], out * radial[1], -down])
+    let [radial_part, axial_part] =
+        if length > 0.0 { direction.map(|c| c / length) } else { [0.0, -1.0] };
+    (magnitude, [radial_part * radial[0], radial_part * radial[1], -axial_part])
 }
 
 /// Returns whether a point is outside judging by its axial position and distance from the axis alone, without branches.
@@ -112,20 +113,24 @@ pub fn magnitude(p: [f64; 3]) -> f64 {
 
 /// Returns five concave functions of `d` and `z` whose maximum is [`magnitude`], each with its two derivatives.
 pub fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
-    let linear = |by_d: f64, by_z: f64, rest: f64| (rest + by_d * d + by_z * z, [by_d, by_z]);
-    let least = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
+    let linear =
+        |by_d: f64, by_z: f64, constant: f64| (constant + by_d * d + by_z * z, [by_d, by_z]);
+    let min = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
     let side = linear(-1.0, 0.0, 3.0);
     let above = (z - 19.0).max(0.0);
-    let far = d.hypot(above);
-    let cutter = (1.0 - far, if far > 0.0 { [-d / far, -above / far] } else { [0.0; 2] });
+    let from_centre = d.hypot(above);
+    let cutter = (
+        1.0 - from_centre,
+        if from_centre > 0.0 { [-d / from_centre, -above / from_centre] } else { [0.0; 2] },
+    );
     [
         linear(-1.0, -1.0, 14.0),
         linear(0.0, -1.0, 11.0),
-        least(side, linear(-1.0, -1.0, 16.0)),
-        least(side, linear(-2.0, -1.0, 17.0)),
+        min(side, linear(-1.0, -1.0, 16.0)),
+        min(side, linear(-2.0, -1.0, 17.0)),
         cutter,
     ]
-    .map(|piece| least(piece, least(linear(0.0, 1.0, 0.0), linear(-1.0, 0.0, 5.0))))
+    .map(|piece| min(piece, min(linear(0.0, 1.0, 0.0), linear(-1.0, 0.0, 5.0))))
 }
 
 /// Returns [`magnitude`] at sixteen points, given by `x² + y²` and the thesis's `z`.
@@ -152,10 +157,13 @@ pub fn magnitude_from<S: Simd>(
     let x = f32x16::from_slice(simd, xs) - tip[0];
     let y = f32x16::from_slice(simd, ys) - tip[1];
     let z = f32x16::from_slice(simd, zs) - tip[2];
-    let across = x * rows[0][0] + y * rows[0][1] + z * rows[0][2];
-    let beside = x * rows[1][0] + y * rows[1][1] + z * rows[1][2];
-    let along = x * rows[2][0] + y * rows[2][1] + z * rows[2][2];
-    magnitude_lanes(across * across + beside * beside, f32x16::splat(simd, TIP as f32) - along)
+    let local_x = x * rows[0][0] + y * rows[0][1] + z * rows[0][2];
+    let local_y = x * rows[1][0] + y * rows[1][1] + z * rows[1][2];
+    let local_z = x * rows[2][0] + y * rows[2][1] + z * rows[2][2];
+    magnitude_lanes(
+        local_x * local_x + local_y * local_y,
+        f32x16::splat(simd, TIP as f32) - local_z,
+    )
 }
 
 /// Returns whether a box of the tool's frame, given by its centre and half extents, may touch the tool. It cannot if it
@@ -174,6 +182,6 @@ pub fn may_touch(centre: [f64; 3], half: [f64; 3]) -> bool {
         h if h < 9.0 => 3.0,
         _ => RADIUS,
     };
-    let beyond = [0, 1].map(|axis| (centre[axis].abs() - half[axis]).max(0.0));
-    beyond[0] * beyond[0] + beyond[1] * beyond[1] <= radius * radius
+    let gaps = [0, 1].map(|axis| (centre[axis].abs() - half[axis]).max(0.0));
+    gaps[0] * gaps[0] + gaps[1] * gaps[1] <= radius * radius
 }

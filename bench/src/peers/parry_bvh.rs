@@ -13,14 +13,14 @@ use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use touchoff::{Cloud, Pose};
 
-const BLOCK: usize = 64;
+const POINTS_PER_BLOCK: usize = 64;
 const WIDTH: usize = 16;
 
 /// Margin in mm, larger than the single-precision error at coordinates below 100 mm.
 const MARGIN: f64 = 1e-4;
 
 /// Coordinates of 64 points, padded with coordinates far away.
-struct Block([[f32; BLOCK]; 3]);
+struct Block([[f32; POINTS_PER_BLOCK]; 3]);
 
 /// Blocks of points in `parry3d`'s hierarchy.
 pub struct ParryBvh {
@@ -28,18 +28,18 @@ pub struct ParryBvh {
     bvh: Bvh,
     blocks: Vec<Block>,
     points: Vec<Point>,
-    found: Vec<u32>,
+    found_blocks: Vec<u32>,
 }
 
 impl ParryBvh {
     /// Sorts the points of a cloud into blocks and builds the hierarchy.
     pub fn new(cloud: &Cloud) -> ParryBvh {
         let mut points = points(cloud);
-        order(&mut points, BLOCK);
+        order(&mut points, POINTS_PER_BLOCK);
         let boxes: Vec<Aabb> = points
-            .chunks(BLOCK)
-            .map(|some| {
-                let bounds = Bounds::of(some.iter().map(|point| Bounds::at(point.at)));
+            .chunks(POINTS_PER_BLOCK)
+            .map(|chunk| {
+                let bounds = Bounds::of(chunk.iter().map(|point| Bounds::at(point.at)));
                 let corner = |sign: f64| {
                     let at = |axis: usize| {
                         (bounds.centre[axis] + sign * (bounds.half[axis] + MARGIN)) as f32
@@ -50,35 +50,37 @@ impl ParryBvh {
             })
             .collect();
         let blocks = points
-            .chunks(BLOCK)
-            .map(|some| {
+            .chunks(POINTS_PER_BLOCK)
+            .map(|chunk| {
                 let coordinate = |axis: usize, at: usize| {
-                    some.get(at).map_or(1e6, |point| point.at[axis] as f32)
+                    chunk.get(at).map_or(1e6, |point| point.at[axis] as f32)
                 };
                 Block([0, 1, 2].map(|axis| std::array::from_fn(|at| coordinate(axis, at))))
             })
             .collect();
         let bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        ParryBvh { level: Level::new(), bvh, blocks, points, found: Vec::new() }
+        ParryBvh { level: Level::new(), bvh, blocks, points, found_blocks: Vec::new() }
     }
 }
 
 /// Adds the points of the found blocks that are inside to the sums.
 #[inline(always)]
-fn inside<S: Simd>(simd: S, this: &ParryBvh, view: &View, sums: &mut Sums) {
+fn add_points_inside<S: Simd>(simd: S, method: &ParryBvh, view: &View, sums: &mut Sums) {
     let rows = view.single();
     let tip = view.tip.map(|c| c as f32);
     let margin = f32x16::splat(simd, -MARGIN as f32);
-    for found in &this.found {
-        let Block([xs, ys, zs]) = &this.blocks[*found as usize];
-        for part in 0..BLOCK / WIDTH {
-            let place = part * WIDTH..(part + 1) * WIDTH;
-            let lists = [&xs[place.clone()], &ys[place.clone()], &zs[place]];
+    for block in &method.found_blocks {
+        let Block([xs, ys, zs]) = &method.blocks[*block as usize];
+        for lane_group in 0..POINTS_PER_BLOCK / WIDTH {
+            let range = lane_group * WIDTH..(lane_group + 1) * WIDTH;
+            let lists = [&xs[range.clone()], &ys[range.clone()], &zs[range]];
             let depth = formula::magnitude_from(simd, lists, (rows, tip));
             let mut hits = depth.simd_ge(margin).to_bitmask();
             while hits != 0 {
-                let at = *found as usize * BLOCK + part * WIDTH + hits.trailing_zeros() as usize;
-                this.points[at].feel(view, sums);
+                let index = *block as usize * POINTS_PER_BLOCK
+                    + lane_group * WIDTH
+                    + hits.trailing_zeros() as usize;
+                method.points[index].feel(view, sums);
                 hits &= hits - 1;
             }
         }
@@ -92,7 +94,7 @@ impl Contender for ParryBvh {
 
     fn query(&mut self, pose: &Pose) -> Answer {
         let view = View::of(pose);
-        self.found.clear();
+        self.found_blocks.clear();
         let leaves = self.bvh.leaves(|node| {
             let (low, high) = (node.mins(), node.maxs());
             let ends = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
@@ -100,9 +102,9 @@ impl Contender for ParryBvh {
             let half = ends.map(|(low, high)| 0.5 * (f64::from(high) - f64::from(low)));
             formula::may_touch(view.turn(view.arm(centre)), view.reach(half))
         });
-        self.found.extend(leaves);
+        self.found_blocks.extend(leaves);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => inside(simd, self, &view, &mut sums));
+        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
         sums.answer(&view)
     }
 }

@@ -7,7 +7,7 @@
 //! whole surface, not only points of it.
 
 use crate::race::contender::{Answer, Contender};
-use parry3d::math::{Pose as Place, Rotation, Vector};
+use parry3d::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d::query::contact;
 use parry3d::shape::{Compound, SharedShape, TriMesh};
 use touchoff::{Mesh, Pose};
@@ -26,23 +26,23 @@ impl ParryContact {
     pub fn new(mesh: &Mesh) -> ParryContact {
         // The axes of parry's cylinders and cones are along y, with the cone's apex up. Here that y axis points from
         // the spindle to the tip, and positions are those of the centres.
-        let turn = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);
-        let at = |z: f32| Place::from_parts(Vector::new(0.0, 0.0, z), turn);
+        let rotation = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);
+        let pose_at = |z: f32| ParryPose::from_parts(Vector::new(0.0, 0.0, z), rotation);
         let tool = Compound::new(vec![
-            (at(14.5), SharedShape::cylinder(5.5, 5.0)),
-            (at(13.5), SharedShape::cylinder(6.5, 3.0)),
-            (at(5.5), SharedShape::cone(1.5, 3.0)),
-            (at(3.5), SharedShape::cylinder(2.5, 1.0)),
-            (at(1.0), SharedShape::ball(1.0)),
+            (pose_at(14.5), SharedShape::cylinder(5.5, 5.0)),
+            (pose_at(13.5), SharedShape::cylinder(6.5, 3.0)),
+            (pose_at(5.5), SharedShape::cone(1.5, 3.0)),
+            (pose_at(3.5), SharedShape::cylinder(2.5, 1.0)),
+            (pose_at(1.0), SharedShape::ball(1.0)),
         ]);
-        let vertices = mesh.vertices().iter().map(|v| single([v.x, v.y, v.z])).collect();
+        let vertices = mesh.vertices().iter().map(|v| to_single([v.x, v.y, v.z])).collect();
         let part =
             TriMesh::new(vertices, mesh.triangles().to_vec()).expect("the tube has triangles");
         ParryContact { tool, part }
     }
 }
 
-fn single(v: [f64; 3]) -> Vector {
+fn to_single(v: [f64; 3]) -> Vector {
     Vector::new(v[0] as f32, v[1] as f32, v[2] as f32)
 }
 
@@ -54,13 +54,13 @@ impl Contender for ParryContact {
     fn query(&mut self, pose: &Pose) -> Answer {
         let isometry = pose.to_isometry();
         let q = isometry.rotation.coords.map(|c| c as f32);
-        let place = Place::from_parts(
-            single(pose.tip().coords.into()),
+        let parry_pose = ParryPose::from_parts(
+            to_single(pose.tip().coords.into()),
             Rotation::from_xyzw(q.x, q.y, q.z, q.w).normalize(),
         );
-        let found = contact(&place, &self.tool, &Place::IDENTITY, &self.part, 0.0)
+        let deepest = contact(&parry_pose, &self.tool, &ParryPose::IDENTITY, &self.part, 0.0)
             .expect("parry knows contacts of compounds and meshes");
-        let depth = found.map_or(0.0, |contact| -f64::from(contact.dist)).max(0.0);
-        Answer { colliding: usize::from(found.is_some()), depth, wrench: None }
+        let depth = deepest.map_or(0.0, |contact| -f64::from(contact.dist)).max(0.0);
+        Answer { colliding: usize::from(deepest.is_some()), depth, wrench: None }
     }
 }

@@ -70,16 +70,16 @@ impl Bounds {
     }
 
     /// Returns the bounding box of several boxes.
-    pub fn of(all: impl Iterator<Item = Bounds>) -> Bounds {
+    pub fn of(boxes: impl Iterator<Item = Bounds>) -> Bounds {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for one in all {
+        for other in boxes {
             for axis in 0..3 {
-                low[axis] = low[axis].min(one.centre[axis] - one.half[axis]);
-                high[axis] = high[axis].max(one.centre[axis] + one.half[axis]);
+                low[axis] = low[axis].min(other.centre[axis] - other.half[axis]);
+                high[axis] = high[axis].max(other.centre[axis] + other.half[axis]);
             }
         }
-        let half = |sign: f64| [0, 1, 2].map(|axis| 0.5 * (high[axis] + sign * low[axis]));
-        Bounds { centre: half(1.0), half: half(-1.0) }
+        let combine = |sign: f64| [0, 1, 2].map(|axis| 0.5 * (high[axis] + sign * low[axis]));
+        Bounds { centre: combine(1.0), combine: combine(-1.0) }
     }
 }
 
@@ -94,7 +94,7 @@ pub struct Tree<N> {
     /// The levels, from the root down.
     levels: Vec<Vec<N>>,
     nodes: Vec<u32>,
-    below: Vec<u32>,
+    next_nodes: Vec<u32>,
 }
 
 impl<N> Tree<N> {
@@ -107,17 +107,19 @@ impl<N> Tree<N> {
         loop {
             let level: Vec<N> = points
                 .chunks(size)
-                .map(|some| node(Bounds::of(some.iter().map(|point| Bounds::at(point.at))), some))
+                .map(|chunk| {
+                    node(Bounds::of(chunk.iter().map(|point| Bounds::at(point.at))), chunk)
+                })
                 .collect();
-            let done = level.len() == 1;
+            let is_root = level.len() == 1;
             levels.push(level);
-            if done {
+            if is_root {
                 break;
             }
             size *= CHILDREN;
         }
         levels.reverse();
-        Tree { points, leaf, levels, nodes: Vec::new(), below: Vec::new() }
+        Tree { points, leaf, levels, nodes: Vec::new(), next_nodes: Vec::new() }
     }
 
     /// Returns all points, in the tree's order.

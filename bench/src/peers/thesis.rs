@@ -16,9 +16,9 @@ use touchoff::{Cloud, Pose};
 const LEAF: usize = 16;
 
 /// Number of directions of an 18-DOP: the axes, and the bisectors of each two axes and their opposites.
-const WAYS: usize = 9;
+const DIRECTIONS: usize = 9;
 const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
-const WAY: [[f64; 3]; WAYS] = [
+const DIRECTION_VECTORS: [[f64; 3]; DIRECTIONS] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],
@@ -32,14 +32,14 @@ const WAY: [[f64; 3]; WAYS] = [
 
 /// The lower and upper bound along each direction.
 #[derive(Clone, Copy)]
-struct Dop([[f64; 2]; WAYS]);
+struct Dop([[f64; 2]; DIRECTIONS]);
 
 impl Dop {
-    const NOTHING: Dop = Dop([[f64::INFINITY, f64::NEG_INFINITY]; WAYS]);
+    const EMPTY: Dop = Dop([[f64::INFINITY, f64::NEG_INFINITY]; DIRECTIONS]);
 
     fn include(&mut self, other: &Dop) {
-        for (mine, [low, high]) in self.0.iter_mut().zip(other.0) {
-            *mine = [mine[0].min(low), mine[1].max(high)];
+        for (own, [low, high]) in self.0.iter_mut().zip(other.0) {
+            *own = [own[0].min(low), own[1].max(high)];
         }
     }
 
@@ -58,29 +58,29 @@ impl Dop {
 struct Node {
     volume: Dop,
     size: f64,
-    below: Below,
+    children: Children,
 }
 
-enum Below {
+enum Children {
     Nodes([Box<Node>; 2]),
     Points(Vec<Point>),
 }
 
 fn build(points: &mut [Point]) -> Box<Node> {
-    let mut volume = Dop::NOTHING;
+    let mut volume = Dop::EMPTY;
     for point in &*points {
-        volume.include(&Dop(WAY.map(|way| [dot(way, point.at); 2])));
+        volume.include(&Dop(DIRECTION_VECTORS.map(|direction| [dot(direction, point.at); 2])));
     }
     let (size, axis) = volume.longest();
-    let below = if points.len() <= LEAF {
-        Below::Points(points.to_vec())
+    let children = if points.len() <= LEAF {
+        Children::Points(points.to_vec())
     } else {
-        let half = points.len() / 2;
-        points.select_nth_unstable_by(half, |a, b| a.at[axis].total_cmp(&b.at[axis]));
-        let (low, high) = points.split_at_mut(half);
-        Below::Nodes([build(low), build(high)])
+        let middle = points.len() / 2;
+        points.select_nth_unstable_by(middle, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+        let (low, high) = points.split_at_mut(middle);
+        Children::Nodes([build(low), build(high)])
     };
-    Box::new(Node { volume, size, below })
+    Box::new(Node { volume, size, children })
 }
 
 /// A frustum about the tool's axis: the distances of its ends from the tip, and the radii there, mm.
@@ -95,40 +95,40 @@ const SPINDLE: Frustum = Frustum { ends: [7.0, 9.0], radii: [3.0, 3.0] };
 const HOUSING: Frustum = Frustum { ends: [9.0, 20.0], radii: [5.0, 5.0] };
 
 /// The tip's coordinate along each direction, and the component of the tool's axis along each.
-struct Ways {
-    tip: [f64; WAYS],
-    axis: [f64; WAYS],
+struct Projections {
+    tip: [f64; DIRECTIONS],
+    axis: [f64; DIRECTIONS],
 }
 
-impl Ways {
+impl Projections {
     fn bound(&self, frustum: &Frustum) -> Dop {
-        Dop(std::array::from_fn(|way| {
-            let across = (1.0 - self.axis[way] * self.axis[way]).max(0.0).sqrt();
-            let disc =
-                |end: usize| (frustum.ends[end] * self.axis[way], frustum.radii[end] * across);
-            let ((a, a_reach), (b, b_reach)) = (disc(0), disc(1));
+        Dop(std::array::from_fn(|direction| {
+            let sine = (1.0 - self.axis[direction] * self.axis[direction]).max(0.0).sqrt();
+            let extent =
+                |end: usize| (frustum.ends[end] * self.axis[direction], frustum.radii[end] * sine);
+            let ((a, a_reach), (b, b_reach)) = (extent(0), extent(1));
             let (low, high) = ((a - a_reach).min(b - b_reach), (a + a_reach).max(b + b_reach));
-            [self.tip[way] + low, self.tip[way] + high]
+            [self.tip[direction] + low, self.tip[direction] + high]
         }))
     }
 
     /// Returns the bounds of the ball of radius 1 at the tip.
     fn ball(&self) -> Dop {
-        let centre = |way: usize| self.tip[way] + self.axis[way];
-        Dop(std::array::from_fn(|way| [centre(way) - 1.0, centre(way) + 1.0]))
+        let centre = |direction: usize| self.tip[direction] + self.axis[direction];
+        Dop(std::array::from_fn(|direction| [centre(direction) - 1.0, centre(direction) + 1.0]))
     }
 }
 
-fn both(mut a: Dop, b: &Dop) -> Dop {
+fn union(mut a: Dop, b: &Dop) -> Dop {
     a.include(b);
     a
 }
 
 /// The decision tree of a leaf of the tool, as a function of `d²` and the thesis's `z`.
-type Splits = fn(f64, f64) -> Option<(f64, [f64; 2])>;
+type DecisionTree = fn(f64, f64) -> Option<(f64, [f64; 2])>;
 
 /// The tool's tree: its leaves are cutter, spindle and housing; the neck combines the first two.
-const LEAVES: [Splits; 3] = [
+const LEAVES: [DecisionTree; 3] = [
     |squared, z| if z >= 15.0 { formula::cutter(squared, z) } else { None },
     |squared, z| if z > 11.0 && z < 15.0 { formula::spindle(squared, z) } else { None },
     |squared, z| if z <= 11.0 { formula::housing(squared, z) } else { None },
@@ -137,7 +137,7 @@ const NECK: usize = 3;
 const WHOLE: usize = 4;
 
 /// Returns the children of a volume of the tool.
-fn below(volume: usize) -> Option<[usize; 2]> {
+fn children_of(volume: usize) -> Option<[usize; 2]> {
     match volume {
         WHOLE => Some([NECK, 2]),
         NECK => Some([0, 1]),
@@ -156,38 +156,40 @@ impl Tool {
     fn at(pose: &Pose) -> Tool {
         let view = View::of(pose);
         let axis: [f64; 3] = pose.axis().into();
-        let ways =
-            Ways { tip: WAY.map(|way| dot(way, view.tip)), axis: WAY.map(|way| dot(way, axis)) };
-        let cutter = both(ways.ball(), &ways.bound(&CUTTER));
-        let spindle = both(ways.bound(&TAPER), &ways.bound(&SPINDLE));
-        let housing = ways.bound(&HOUSING);
-        let neck = both(cutter, &spindle);
-        let volumes = [cutter, spindle, housing, neck, both(neck, &housing)];
+        let projections = Projections {
+            tip: DIRECTION_VECTORS.map(|direction| dot(direction, view.tip)),
+            axis: DIRECTION_VECTORS.map(|direction| dot(direction, axis)),
+        };
+        let cutter = union(projections.ball(), &projections.bound(&CUTTER));
+        let spindle = union(projections.bound(&TAPER), &projections.bound(&SPINDLE));
+        let housing = projections.bound(&HOUSING);
+        let neck = union(cutter, &spindle);
+        let volumes = [cutter, spindle, housing, neck, union(neck, &housing)];
         Tool { view, volumes, sums: Sums::default() }
     }
 
     /// Descends both trees at once.
-    fn meet(&mut self, node: &Node, volume: usize) {
+    fn descend(&mut self, node: &Node, volume: usize) {
         if !node.volume.overlaps(&self.volumes[volume]) {
             return;
         }
-        match (&node.below, below(volume)) {
-            (Below::Points(points), None) => self.feel(points, LEAVES[volume]),
-            (Below::Nodes(nodes), parts)
+        match (&node.children, children_of(volume)) {
+            (Children::Points(points), None) => self.add_points(points, LEAVES[volume]),
+            (Children::Nodes(nodes), parts)
                 if parts.is_none() || node.size > self.volumes[volume].longest().0 =>
             {
-                nodes.iter().for_each(|node| self.meet(node, volume));
+                nodes.iter().for_each(|node| self.descend(node, volume));
             }
-            (_, parts) => parts.into_iter().flatten().for_each(|part| self.meet(node, part)),
+            (_, parts) => parts.into_iter().flatten().for_each(|part| self.descend(node, part)),
         }
     }
 
-    fn feel(&mut self, points: &[Point], splits: Splits) {
+    fn add_points(&mut self, points: &[Point], decision_tree: DecisionTree) {
         for point in points {
             let arm = self.view.arm(point.at);
             let p = self.view.turn(arm);
             let squared = p[0] * p[0] + p[1] * p[1];
-            if let Some(evaluation) = splits(squared, formula::TIP - p[2]) {
+            if let Some(evaluation) = decision_tree(squared, formula::TIP - p[2]) {
                 let evaluation = formula::in_space(p, squared, evaluation);
                 self.sums.add([arm, p], (point.weight, point.normal), evaluation);
             }
@@ -212,7 +214,7 @@ impl Contender for Thesis {
 
     fn query(&mut self, pose: &Pose) -> Answer {
         let mut tool = Tool::at(pose);
-        tool.meet(&self.0, WHOLE);
+        tool.descend(&self.0, WHOLE);
         tool.sums.answer(&tool.view)
     }
 }

@@ -34,12 +34,12 @@ pub struct Part<'a> {
 }
 
 /// Maximum number of pieces examined.
-const MOST: usize = 1_000_000;
+const MAX_PIECES: usize = 1_000_000;
 
 fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let reach = corners.iter().map(|corner| (corner - middle).norm()).fold(0.0, f64::max);
-    (middle, reach * (1.0 + 1e-12))
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let reach = corners.iter().map(|corner| (corner - centroid).norm()).fold(0.0, f64::max);
+    (centroid, reach * (1.0 + 1e-12))
 }
 
 impl<'a> Part<'a> {
@@ -47,8 +47,9 @@ impl<'a> Part<'a> {
     pub fn new(mesh: &'a Mesh) -> Part<'a> {
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
-            let (middle, reach) = ball(&mesh.triangle(TriangleId(id)).map(|corner| corner.coords));
-            (Point3::from(middle), reach)
+            let (centroid, reach) =
+                ball(&mesh.triangle(TriangleId(id)).map(|corner| corner.coords));
+            (Point3::from(centroid), reach)
         });
         let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
         for corners in mesh.triangles() {
@@ -66,53 +67,60 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + more`, the other surfaces
-    /// up to `more`, in the part's unit. If `more` is negative, the other surfaces must keep that distance.
-    pub fn judge(&self, stand: &Stand, posture: &Posture, tolerance: f64, more: f64) -> Verdict {
+    /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + allowance`, the other
+    /// surfaces up to `allowance`, in the part's unit. If `allowance` is negative, the other surfaces must keep that
+    /// distance.
+    pub fn judge(
+        &self,
+        stand: &Stand,
+        posture: &Posture,
+        tolerance: f64,
+        allowance: f64,
+    ) -> Verdict {
         let length = stand.length;
-        let asked = Asked { stand, cuts: tolerance + more, rest: more };
-        let mut open = Vec::new();
+        let limits = Limits { stand, cutting: tolerance + allowance, non_cutting: allowance };
+        let mut pending = Vec::new();
         let [radius, height] = stand.extent();
-        let keep = (-more).max(0.0);
-        for (id, (middle, reach)) in self.balls.iter().enumerate() {
-            let off = middle - posture.tip;
-            let z = off.dot(&posture.axis);
-            let near = radius + reach + keep;
-            if z + reach + keep < 0.0
-                || z - reach - keep > height
-                || off.norm_squared() - z * z > near * near * (1.0 + 1e-9)
+        let min_distance = (-allowance).max(0.0);
+        for (id, (centroid, reach)) in self.balls.iter().enumerate() {
+            let offset = centroid - posture.tip;
+            let z = offset.dot(&posture.axis);
+            let reach_limit = radius + reach + min_distance;
+            if z + reach + min_distance < 0.0
+                || z - reach - min_distance > height
+                || offset.norm_squared() - z * z > reach_limit * reach_limit * (1.0 + 1e-9)
             {
                 continue;
             }
             let corners =
                 self.mesh.triangle(TriangleId(id as u32)).map(|corner| corner - posture.tip);
-            open.extend(asked.piece(&posture.axis, corners));
+            pending.extend(limits.piece(&posture.axis, corners));
         }
-        open.sort_by(|a, b| a.bound.total_cmp(&b.bound));
-        let (least, mut looked) = (1e-10 * (self.size + radius + height), 0);
-        let mut left = false;
-        while let Some(piece) = open.pop() {
-            looked += 1;
-            if piece.over > 0.0 {
-                return Verdict::Blocked(piece.over);
+        pending.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+        let (min_reach, mut examined) = (1e-10 * (self.size + radius + height), 0);
+        let mut undecided = false;
+        while let Some(piece) = pending.pop() {
+            examined += 1;
+            if piece.excess > 0.0 {
+                return Verdict::Blocked(piece.excess);
             }
-            if looked > MOST {
+            if examined > MAX_PIECES {
                 return Verdict::Open;
             }
-            if piece.reach < least {
-                left = true;
+            if piece.reach < min_reach {
+                undecided = true;
                 continue;
             }
             let [a, b, c] = piece.corners;
             let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
             let longest = (0..3).max_by(|k, l| sides[*k].total_cmp(&sides[*l])).unwrap_or(0);
             let [a, b, c] = [0, 1, 2].map(|k| piece.corners[(longest + k) % 3]);
-            let middle = 0.5 * (a + b);
-            for half in [[a, middle, c], [middle, b, c]] {
-                open.extend(asked.piece(&posture.axis, half));
+            let midpoint = 0.5 * (a + b);
+            for piece_half in [[a, midpoint, c], [midpoint, b, c]] {
+                pending.extend(limits.piece(&posture.axis, piece_half));
             }
         }
-        if left {
+        if undecided {
             return Verdict::Open;
         }
         // No triangle intersects the forbidden part of the tool, so that part is inside or outside as a whole.
@@ -124,33 +132,36 @@ impl<'a> Part<'a> {
     }
 
     /// Returns whether a point is inside a closed part, by counting the signed crossings of a random ray.
-    fn contains(&self, place: Point3<f64>) -> bool {
-        let mut draw = Rng::new(9);
+    fn contains(&self, point: Point3<f64>) -> bool {
+        let mut rng = Rng::new(9);
         for _ in 0..16 {
-            if let Some(turns) = self.turns(place, Vector3::from(draw.direction())) {
-                return turns > 0;
+            if let Some(crossings) = self.signed_crossings(point, Vector3::from(rng.direction())) {
+                return crossings > 0;
             }
         }
         false
     }
 
     /// Returns the signed number of crossings of a ray. Returns `None` if the ray is too near to an edge.
-    fn turns(&self, place: Point3<f64>, way: Vector3<f64>) -> Option<i32> {
-        let mut turns = 0;
-        for (id, (middle, reach)) in self.balls.iter().enumerate() {
-            let off = middle - place;
-            let along = off.dot(&way);
-            if along < -reach || off.norm_squared() - along * along > 1.1 * reach * reach {
+    fn signed_crossings(&self, point: Point3<f64>, direction: Vector3<f64>) -> Option<i32> {
+        let mut crossings = 0;
+        for (id, (centroid, reach)) in self.balls.iter().enumerate() {
+            let offset = centroid - point;
+            let distance_along = offset.dot(&direction);
+            if distance_along < -reach
+                || offset.norm_squared() - distance_along * distance_along > 1.1 * reach * reach
+            {
                 continue;
             }
             // Intersection of Möller and Trumbore 1997.
             let [a, b, c] = self.mesh.triangle(TriangleId(id as u32));
-            let (u, v, from) = (b - a, c - a, place - a);
-            let p = way.cross(&v);
+            let (u, v, offset_from_a) = (b - a, c - a, point - a);
+            let p = direction.cross(&v);
             let det = u.dot(&p);
             let scale = u.norm() * v.norm();
-            let q = from.cross(&u);
-            let (s, t, far) = (from.dot(&p) / det, way.dot(&q) / det, v.dot(&q) / det);
+            let q = offset_from_a.cross(&u);
+            let (s, t, ray_distance) =
+                (offset_from_a.dot(&p) / det, direction.dot(&q) / det, v.dot(&q) / det);
             if det.abs() < 1e-9 * scale {
                 return None;
             }
@@ -158,11 +169,11 @@ impl<'a> Part<'a> {
             if inner.abs() < 1e-7 {
                 return None;
             }
-            if inner > 0.0 && far > 0.0 {
-                turns += if det > 0.0 { -1 } else { 1 };
+            if inner > 0.0 && ray_distance > 0.0 {
+                crossings += if det > 0.0 { -1 } else { 1 };
             }
         }
-        Some(turns)
+        Some(crossings)
     }
 }
 
@@ -171,37 +182,42 @@ struct Piece {
     corners: [Vector3<f64>; 3],
     reach: f64,
     /// Excess of the depth at the centroid over the allowed depth.
-    over: f64,
+    excess: f64,
     /// Upper bound of that excess on the piece.
     bound: f64,
 }
 
 /// The allowed depths of cutting surfaces and of the other surfaces.
-struct Asked<'a> {
+struct Limits<'a> {
     stand: &'a Stand,
-    cuts: f64,
-    rest: f64,
+    cutting: f64,
+    non_cutting: f64,
 }
 
-impl Asked<'_> {
+impl Limits<'_> {
     /// Evaluates a piece given by its corners relative to the tip. Returns `None` if no point of it collides.
     fn piece(&self, axis: &Vector3<f64>, corners: [Vector3<f64>; 3]) -> Option<Piece> {
-        let (middle, reach) = ball(&corners);
-        let z = middle.dot(axis);
-        let at = [(middle - z * axis).norm(), 0.0, z].map(|part| part / self.stand.length);
-        let [depth, cuts, rest] = self.stand.evaluation(at);
-        let most = depth + reach;
+        let (centroid, reach) = ball(&corners);
+        let z = centroid.dot(axis);
+        let meridian_point =
+            [(centroid - z * axis).norm(), 0.0, z].map(|coordinate| coordinate / self.stand.length);
+        let [depth, cutting, non_cutting] = self.stand.evaluation(meridian_point);
+        let max_depth = depth + reach;
         // The other surfaces are not the nearest to any point of the piece inside the tool, or no point is inside.
-        let apart = most < 0.0 || rest - reach > most;
-        let bound_cuts = if most > 0.0 { most - self.cuts } else { f64::NEG_INFINITY };
-        let bound_rest = if apart { reach - rest } else { most } - self.rest;
-        let bound = bound_cuts.max(bound_rest);
+        let is_separate = max_depth < 0.0 || non_cutting - reach > max_depth;
+        let cutting_bound =
+            if max_depth > 0.0 { max_depth - self.cutting } else { f64::NEG_INFINITY };
+        let non_cutting_bound =
+            if is_separate { reach - non_cutting } else { max_depth } - self.non_cutting;
+        let bound = cutting_bound.max(non_cutting_bound);
         if bound <= 0.0 {
             return None;
         }
         let inside = depth > 0.0;
-        let over_cuts = if inside && cuts <= rest { depth - self.cuts } else { f64::NEG_INFINITY };
-        let over_rest = if inside && rest <= cuts { depth } else { -rest } - self.rest;
-        Some(Piece { corners, reach, over: over_cuts.max(over_rest), bound })
+        let cutting_excess =
+            if inside && cutting <= non_cutting { depth - self.cutting } else { f64::NEG_INFINITY };
+        let non_cutting_excess =
+            if inside && non_cutting <= cutting { depth } else { -non_cutting } - self.non_cutting;
+        Some(Piece { corners, reach, excess: cutting_excess.max(non_cutting_excess), bound })
     }
 }

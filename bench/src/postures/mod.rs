@@ -102,7 +102,7 @@ struct Choice {
 }
 
 /// Distances, as shares of the tolerance, at which a refused posture that is free is tested for a near collision.
-const CLOSE: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+const NEAR_COLLISION_SHARES: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// The distance that counts as rounding, as a share of the part's and the tool's size.
 const ROUNDING: f64 = 1e-9;
@@ -111,10 +111,10 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// If a tool is not in the library, or cannot be used in a sweep.
-pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
-    let mesh = wanted.mesh;
+pub fn measure(task: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
+    let mesh = task.mesh;
     let find = |name: &&str| tools_library::find(name).ok_or_else(|| format!("no tool `{name}`"));
-    let tools: Vec<&dyn Tool> = wanted
+    let tools: Vec<&dyn Tool> = task
         .tools
         .iter()
         .map(|name| find(name).map(|tool| tool as &dyn Tool))
@@ -122,11 +122,11 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
     let length = |tool: &&dyn Tool| tool.info().unit.factor_to(mesh.unit());
     let stands: Vec<Stand> = tools
         .iter()
-        .zip(&wanted.tools)
-        .map(|(tool, name)| Stand::new(name, length(tool), wanted.tolerance))
+        .zip(&task.tools)
+        .map(|(tool, name)| Stand::new(name, length(tool), task.tolerance))
         .collect::<Result<_, _>>()?;
-    let (tolerance, niceness) = (wanted.tolerance, wanted.niceness);
-    let directions = Directions::spread(wanted.hemisphere);
+    let (tolerance, niceness) = (task.tolerance, task.niceness);
+    let directions = Directions::spread(task.hemisphere);
     let bvh = TriangleBvh::new(mesh);
     let rules = Rules { tolerance, niceness, allowed: Vec::new() };
     let start = Instant::now();
@@ -134,16 +134,16 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
     let mut rows = vec![MapRow::default(); mesh.triangles().len()];
     let mut tally = SweepStats::default();
     let batches: Vec<usize> = (0..sweep.batches()).collect();
-    let done = sweep.run(&batches, |batch| {
+    let outcome = sweep.run(&batches, |batch| {
         tally += batch.stats;
         batch.rows.into_iter().for_each(|(id, row)| rows[id as usize] = row);
         ControlFlow::<()>::Continue(())
     });
-    debug_assert!(done.is_continue());
-    let swept = start.elapsed().as_secs_f64();
+    debug_assert!(outcome.is_continue());
+    let sweep_seconds = start.elapsed().as_secs_f64();
     let part = Part::new(mesh);
     let size = stands.iter().map(|stand| stand.extent()[0] + stand.extent()[1]);
-    let again = Again {
+    let validation = Validation {
         mesh,
         part: &part,
         directions: directions.list(),
@@ -152,65 +152,70 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
         niceness,
         rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
     };
-    let mut draw = Rng::new(wanted.seed);
+    let mut rng = Rng::new(task.seed);
     let start = Instant::now();
-    let chosen = accessible(&rows, wanted.draws, &mut draw);
-    let accessible =
-        gather(chosen.into_par_iter().map(|choice| again.accessible(&choice)).collect());
-    let chosen = again.facing(&rows, wanted.draws, &mut draw);
-    let refused = gather(chosen.into_par_iter().map(|choice| again.refused(&choice)).collect());
-    let (all, any, reach) = coverage(mesh, &rows, &wanted.tools);
+    let choices = draw_accessible(&rows, task.draws, &mut rng);
+    let accessible = sort_results(
+        choices.into_par_iter().map(|choice| validation.check_accessible(&choice)).collect(),
+    );
+    let choices = validation.draw_refused(&rows, task.draws, &mut rng);
+    let refused = sort_results(
+        choices.into_par_iter().map(|choice| validation.check_refused(&choice)).collect(),
+    );
+    let (all, any, reach) = coverage(mesh, &rows, &task.tools);
     Ok(Found {
         tally,
-        seconds: [swept, start.elapsed().as_secs_f64()],
+        seconds: [sweep_seconds, start.elapsed().as_secs_f64()],
         all,
         any,
         reach,
         accessible,
         refused,
-        rounding: again.rounding,
+        rounding: validation.rounding,
     })
 }
 
-fn has(set: &[u64], direction: usize) -> bool {
+fn contains(set: &[u64], direction: usize) -> bool {
     set[direction / 64] >> (direction % 64) & 1 == 1
 }
 
 /// Draws from the postures that the sweep found accessible, with uniform probability.
-fn accessible(rows: &[MapRow], count: usize, draw: &mut Rng) -> Vec<Choice> {
-    let mut ends = Vec::new();
+fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
+    let mut cumulative = Vec::new();
     let mut sum = 0u64;
     for (triangle, row) in rows.iter().enumerate() {
         for access in &row.access {
             sum += access.directions.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
-            ends.push((sum, triangle as u32, access));
+            cumulative.push((sum, triangle as u32, access));
         }
     }
     if sum == 0 {
         return Vec::new();
     }
     let choice = |_| {
-        let nth = draw.bits() % sum;
-        let at = ends.partition_point(|(end, _, _)| *end <= nth);
-        let (end, triangle, access) = ends[at];
-        let members = (0..64 * access.directions.len()).filter(|k| has(&access.directions, *k));
-        let left = (end - nth - 1) as usize;
-        let direction = members.rev().nth(left)?;
+        let draw = rng.bits() % sum;
+        let index =
+            cumulative.partition_point(|(cumulative_count, _, _)| *cumulative_count <= draw);
+        let (cumulative_count, triangle, access) = cumulative[index];
+        let members =
+            (0..64 * access.directions.len()).filter(|k| contains(&access.directions, *k));
+        let remaining = (cumulative_count - draw - 1) as usize;
+        let direction = members.rev().nth(remaining)?;
         Some(Choice { triangle, tool: access.tool.into(), direction })
     };
     (0..count).filter_map(choice).collect()
 }
 
-fn gather(all: Vec<Result<(), (bool, Odd)>>) -> Drawn {
-    let mut drawn = Drawn { judged: all.len(), ..Drawn::default() };
-    for (open, odd) in all.into_iter().filter_map(Result::err) {
-        if open { drawn.open.push(odd) } else { drawn.wrong.push(odd) }
+fn sort_results(results: Vec<Result<(), (bool, Odd)>>) -> Drawn {
+    let mut drawn = Drawn { judged: results.len(), ..Drawn::default() };
+    for (is_open, finding) in results.into_iter().filter_map(Result::err) {
+        if is_open { drawn.open.push(finding) } else { drawn.wrong.push(finding) }
     }
     drawn
 }
 
 /// The data for the validation of postures.
-struct Again<'a> {
+struct Validation<'a> {
     mesh: &'a Mesh,
     part: &'a Part<'a>,
     directions: &'a [[f64; 3]],
@@ -220,18 +225,19 @@ struct Again<'a> {
     rounding: f64,
 }
 
-impl Again<'_> {
-    fn postures(&self, choice: &Choice, more: f64) -> Vec<stand::Posture> {
+impl Validation<'_> {
+    fn postures(&self, choice: &Choice, tolerance_factor: f64) -> Vec<stand::Posture> {
         let [a, b, c] = self.mesh.triangle(TriangleId(choice.triangle));
-        let place = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
         let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
         let axis = Vector3::from(self.directions[choice.direction]);
-        let mut all = self.stands[choice.tool].postures(place, normal, axis, more);
-        all.retain(|posture| posture.niceness > self.niceness);
-        all
+        let mut postures =
+            self.stands[choice.tool].postures(centroid, normal, axis, tolerance_factor);
+        postures.retain(|posture| posture.niceness > self.niceness);
+        postures
     }
 
-    fn at(&self, choice: &Choice) -> String {
+    fn describe(&self, choice: &Choice) -> String {
         let [x, y, z] = self.directions[choice.direction];
         let name = touchoff_tests::oracle::Oracle::name(&self.stands[choice.tool].oracle);
         format!(
@@ -240,12 +246,12 @@ impl Again<'_> {
         )
     }
 
-    fn judge(&self, choice: &Choice, posture: &stand::Posture, more: f64) -> Verdict {
-        self.part.judge(&self.stands[choice.tool], posture, self.tolerance, more)
+    fn judge(&self, choice: &Choice, posture: &stand::Posture, allowance: f64) -> Verdict {
+        self.part.judge(&self.stands[choice.tool], posture, self.tolerance, allowance)
     }
 
     /// Checks that one of the postures of a choice is free. The error has the finding, and whether it is undecided.
-    fn accessible(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+    fn check_accessible(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
         let verdicts: Vec<Verdict> = self
             .postures(choice, 2.0)
             .iter()
@@ -254,53 +260,57 @@ impl Again<'_> {
         if verdicts.contains(&Verdict::Free) {
             return Ok(());
         }
-        let open = verdicts.contains(&Verdict::Open);
-        let what = match &verdicts[..] {
+        let is_open = verdicts.contains(&Verdict::Open);
+        let finding = match &verdicts[..] {
             [] => "no contact".to_owned(),
-            all => format!("{all:?}"),
+            verdicts => format!("{verdicts:?}"),
         };
-        Err((open, Odd { at: self.at(choice), what }))
+        Err((is_open, Odd { at: self.describe(choice), what: finding }))
     }
 
     /// Draws postures that face a triangle and that the sweep did not find accessible.
-    fn facing(&self, rows: &[MapRow], count: usize, draw: &mut Rng) -> Vec<Choice> {
-        let mut chosen = Vec::new();
+    fn draw_refused(&self, rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
+        let mut choices = Vec::new();
         for _ in 0..100 * count {
-            if chosen.len() == count {
+            if choices.len() == count {
                 break;
             }
-            let mut below = |most: usize| (draw.bits() % most as u64) as usize;
-            let (triangle, tool) = (below(rows.len()), below(self.stands.len()));
-            let direction = below(self.directions.len());
-            let of = rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
+            let mut random_below = |limit: usize| (rng.bits() % limit as u64) as usize;
+            let (triangle, tool) = (random_below(rows.len()), random_below(self.stands.len()));
+            let direction = random_below(self.directions.len());
+            let tool_access =
+                rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
             let choice = Choice { triangle: triangle as u32, tool, direction };
-            if of.is_some_and(|access| !has(&access.directions, direction))
+            if tool_access.is_some_and(|access| !contains(&access.directions, direction))
                 && !self.postures(&choice, -1.0).is_empty()
             {
-                chosen.push(choice);
+                choices.push(choice);
             }
         }
-        chosen
+        choices
     }
 
     /// Checks that all postures of a choice are blocked. The error has the finding, and whether it is undecided.
-    fn refused(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+    fn check_refused(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
         for posture in self.postures(choice, -1.0) {
             let verdict = self.judge(choice, &posture, 0.0);
             if matches!(verdict, Verdict::Blocked(_)) {
                 continue;
             }
-            let near = CLOSE.iter().find(|near| {
-                let closer = self.judge(choice, &posture, -*near * self.tolerance);
-                matches!(closer, Verdict::Blocked(_))
+            let near_share = NEAR_COLLISION_SHARES.iter().find(|near_share| {
+                let closer_verdict = self.judge(choice, &posture, -*near_share * self.tolerance);
+                matches!(closer_verdict, Verdict::Blocked(_))
             });
-            let what = match near {
-                Some(near) => format!("{verdict:?}, blocked if {near:e} of the tolerance nearer"),
+            let finding = match near_share {
+                Some(near_share) => {
+                    format!("{verdict:?}, blocked if {near_share:e} of the tolerance nearer")
+                }
                 None => format!("{verdict:?}, blocked by nothing near"),
             };
             // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
-            let open = verdict == Verdict::Open || near.is_some_and(|near| *near <= 1e-6);
-            return Err((open, Odd { at: self.at(choice), what }));
+            let is_open = verdict == Verdict::Open
+                || near_share.is_some_and(|near_share| *near_share <= 1e-6);
+            return Err((is_open, Odd { at: self.describe(choice), what: finding }));
         }
         Ok(())
     }
@@ -311,24 +321,24 @@ type Share = (usize, f64);
 /// Returns number and area of all triangles, of those that any tool reaches, and the reach of each tool.
 fn coverage(mesh: &Mesh, rows: &[MapRow], tools: &[&str]) -> (Share, Share, Vec<Reach>) {
     let (mut all, mut any) = ((0, 0.0), (0, 0.0));
-    let none = |tool: &&str| Reach { tool: (*tool).to_owned(), ..Reach::default() };
-    let mut reach: Vec<Reach> = tools.iter().map(none).collect();
+    let empty_reach = |tool: &&str| Reach { tool: (*tool).to_owned(), ..Reach::default() };
+    let mut reach: Vec<Reach> = tools.iter().map(empty_reach).collect();
     for (id, row) in rows.iter().enumerate() {
         let area = mesh.area(TriangleId(id as u32));
         all = (all.0 + 1, all.1 + area);
-        let mut reached = false;
+        let mut is_reached = false;
         for access in &row.access {
             let count: u64 =
                 access.directions.iter().map(|word| u64::from(word.count_ones())).sum();
             if count > 0 {
-                let of = &mut reach[usize::from(access.tool)];
-                of.triangles += 1;
-                of.area += area;
-                of.postures += count;
-                reached = true;
+                let tool_reach = &mut reach[usize::from(access.tool)];
+                tool_reach.triangles += 1;
+                tool_reach.area += area;
+                tool_reach.postures += count;
+                is_reached = true;
             }
         }
-        if reached {
+        if is_reached {
             any = (any.0 + 1, any.1 + area);
         }
     }

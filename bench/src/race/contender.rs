@@ -53,8 +53,8 @@ impl View {
     /// Returns the half extents along the tool's axes of a box with these half extents along the world's axes.
     #[inline]
     pub fn reach(&self, half: [f64; 3]) -> [f64; 3] {
-        let along = |row: [f64; 3]| dot([row[0].abs(), row[1].abs(), row[2].abs()], half);
-        [along(self.rows[0]), along(self.rows[1]), along(self.rows[2])]
+        let extent = |row: [f64; 3]| dot([row[0].abs(), row[1].abs(), row[2].abs()], half);
+        [extent(self.rows[0]), extent(self.rows[1]), extent(self.rows[2])]
     }
 
     /// Returns the rows in single precision.
@@ -92,17 +92,18 @@ impl Sums {
     ) {
         self.colliding += 1;
         self.depth = self.depth.max(magnitude);
-        let push = weight * magnitude;
-        let (pushed, pulled) = (push * Vector3::from(normal), push * Vector3::from(direction));
-        self.part[0] += pushed;
-        self.part[1] += Vector3::from(arm).cross(&pushed);
-        self.tool[0] -= pulled;
-        self.tool[1] -= Vector3::from(p).cross(&pulled);
+        let force_scale = weight * magnitude;
+        let (normal_force, direction_force) =
+            (force_scale * Vector3::from(normal), force_scale * Vector3::from(direction));
+        self.part[0] += normal_force;
+        self.part[1] += Vector3::from(arm).cross(&normal_force);
+        self.tool[0] -= direction_force;
+        self.tool[1] -= Vector3::from(p).cross(&direction_force);
     }
 
     /// Returns the answer, with both sums in the world frame.
     pub fn answer(&self, view: &View) -> Answer {
-        let sum = |at: usize| view.back(self.tool[at]) + self.part[at];
+        let sum = |index: usize| view.back(self.tool[index]) + self.part[index];
         Answer { colliding: self.colliding, depth: self.depth, wrench: Some([sum(0), sum(1)]) }
     }
 }

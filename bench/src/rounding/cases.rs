@@ -64,50 +64,51 @@ pub struct Case {
 }
 
 /// Returns a power of ten with a random exponent between two numbers.
-fn magnitude(low: f64, high: f64, draw: &mut Rng) -> f64 {
-    10f64.powf(draw.between(low, high))
+fn random_magnitude(low: f64, high: f64, rng: &mut Rng) -> f64 {
+    10f64.powf(rng.between(low, high))
 }
 
-fn one_of<T: Copy>(list: &[T], draw: &mut Rng) -> T {
-    list[draw.bits() as usize % list.len()]
+fn pick<T: Copy>(list: &[T], rng: &mut Rng) -> T {
+    list[rng.bits() as usize % list.len()]
 }
 
-fn toward(at: Point, step: f64, way: Point) -> Point {
-    [0, 1, 2].map(|k| at[k] + step * way[k])
+fn advance(point: Point, step: f64, direction: Point) -> Point {
+    [0, 1, 2].map(|k| point[k] + step * direction[k])
 }
 
-/// Returns a random unit vector perpendicular to `way`.
-fn beside(way: Point, draw: &mut Rng) -> Point {
+/// Returns a random unit vector perpendicular to `direction`.
+fn perpendicular(direction: Point, rng: &mut Rng) -> Point {
     loop {
-        let other = draw.direction();
-        let along = way[0] * other[0] + way[1] * other[1] + way[2] * other[2];
-        let across = toward(other, -along, way);
-        let size = across.iter().map(|part| part * part).sum::<f64>().sqrt();
-        if size > 0.1 {
-            return across.map(|part| part / size);
+        let candidate = rng.direction();
+        let dot =
+            direction[0] * candidate[0] + direction[1] * candidate[1] + direction[2] * candidate[2];
+        let across = advance(candidate, -dot, direction);
+        let norm = across.iter().map(|component| component * component).sum::<f64>().sqrt();
+        if norm > 0.1 {
+            return across.map(|component| component / norm);
         }
     }
 }
 
-/// Returns a random triangle of about this size and with this normal. The point `at` is a corner, on an edge or inside.
-fn about(at: Point, normal: Point, size: f64, draw: &mut Rng) -> [Point; 3] {
-    let first = beside(normal, draw);
+/// Returns a random triangle of about this size and with this normal. `point` is a corner, on an edge or inside.
+fn triangle_at(point: Point, normal: Point, size: f64, rng: &mut Rng) -> [Point; 3] {
+    let first = perpendicular(normal, rng);
     let second = [
         normal[1] * first[2] - normal[2] * first[1],
         normal[2] * first[0] - normal[0] * first[2],
         normal[0] * first[1] - normal[1] * first[0],
     ];
-    let (across, up) = (size * draw.between(0.2, 1.0), size * draw.between(0.2, 1.0));
-    let shift = size * draw.between(-0.5, 1.0);
-    let part = draw.between(0.0, 1.0);
-    let weights = match draw.bits() % 3 {
+    let (width, height) = (size * rng.between(0.2, 1.0), size * rng.between(0.2, 1.0));
+    let shift = size * rng.between(-0.5, 1.0);
+    let fraction = rng.between(0.0, 1.0);
+    let weights = match rng.bits() % 3 {
         0 => [1.0, 0.0, 0.0],
-        1 => [1.0 - part, part, 0.0],
-        _ => [0.4, 0.6 * part, 0.6 - 0.6 * part],
+        1 => [1.0 - fraction, fraction, 0.0],
+        _ => [0.4, 0.6 * fraction, 0.6 - 0.6 * fraction],
     };
-    let flat = [[0.0, 0.0], [across, 0.0], [shift, up]];
-    let base = [0, 1].map(|k| weights.iter().zip(&flat).map(|(w, p)| w * p[k]).sum::<f64>());
-    flat.map(|p| toward(toward(at, p[0] - base[0], first), p[1] - base[1], second))
+    let corners = [[0.0, 0.0], [width, 0.0], [shift, height]];
+    let base = [0, 1].map(|k| weights.iter().zip(&corners).map(|(w, p)| w * p[k]).sum::<f64>());
+    corners.map(|p| advance(advance(point, p[0] - base[0], first), p[1] - base[1], second))
 }
 
 /// A tool for which cases are generated, and its largest radius.
@@ -118,45 +119,49 @@ struct Sketch<'a> {
 
 impl Sketch<'_> {
     /// Rotates a point `[d, z]` and a vector with radial and axial components about the axis by one random angle.
-    fn turned(at: Flat, way: Flat, draw: &mut Rng) -> (Point, Point) {
-        let (sin, cos) = match draw.bits() % 4 {
+    fn revolve(point: Flat, vector: Flat, rng: &mut Rng) -> (Point, Point) {
+        let (sin, cos) = match rng.bits() % 4 {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
-            _ => draw.between(0.0, TAU).sin_cos(),
+            _ => rng.between(0.0, TAU).sin_cos(),
         };
-        let lift = |[d, z]: Flat| [d * cos, d * sin, z];
-        (lift(at), lift(way))
+        let to_space = |[d, z]: Flat| [d * cos, d * sin, z];
+        (to_space(point), to_space(vector))
     }
 
     /// Returns a point inside the tool or slightly outside, mostly near the tip.
-    fn place(&self, draw: &mut Rng) -> Point {
+    fn random_point(&self, rng: &mut Rng) -> Point {
         let height = self.cutter.extent[1];
-        let high = if draw.bits().is_multiple_of(2) { height } else { height.min(self.radius) };
-        let at = [draw.between(0.0, self.radius), draw.between(-0.02, 1.0) * high];
-        Self::turned(at, [1.0, 0.0], draw).0
+        let max_height =
+            if rng.bits().is_multiple_of(2) { height } else { height.min(self.radius) };
+        let point = [rng.between(0.0, self.radius), rng.between(-0.02, 1.0) * max_height];
+        Self::revolve(point, [1.0, 0.0], rng).0
     }
 
-    fn any(&self, size: f64, draw: &mut Rng) -> [Point; 3] {
-        about(self.place(draw), draw.direction(), size, draw)
+    fn triangle_in_any_orientation(&self, size: f64, rng: &mut Rng) -> [Point; 3] {
+        triangle_at(self.random_point(rng), rng.direction(), size, rng)
     }
 
     /// Returns a random size of the order of the tool's radius.
-    fn size(&self, draw: &mut Rng) -> f64 {
-        self.radius * magnitude(-1.5, 1.5, draw)
+    fn size(&self, rng: &mut Rng) -> f64 {
+        self.radius * random_magnitude(-1.5, 1.5, rng)
     }
 
-    fn sliver(&self, height: f64, draw: &mut Rng) -> [Point; 3] {
-        let (at, along) = (self.place(draw), draw.direction());
-        let (length, part) = (self.size(draw), draw.between(-0.5, 1.5));
-        let from = toward(at, -length * draw.between(0.0, 1.0), along);
-        let third =
-            toward(toward(from, part * length, along), height * length, beside(along, draw));
-        [from, toward(from, length, along), third]
+    fn sliver(&self, height: f64, rng: &mut Rng) -> [Point; 3] {
+        let (point, direction) = (self.random_point(rng), rng.direction());
+        let (length, fraction) = (self.size(rng), rng.between(-0.5, 1.5));
+        let start = advance(point, -length * rng.between(0.0, 1.0), direction);
+        let third = advance(
+            advance(start, fraction * length, direction),
+            height * length,
+            perpendicular(direction, rng),
+        );
+        [start, advance(start, length, direction), third]
     }
 
-    fn degenerate(&self, draw: &mut Rng) -> [Point; 3] {
-        let [a, b, c] = self.sliver(0.0, draw);
-        match draw.bits() % 4 {
+    fn degenerate(&self, rng: &mut Rng) -> [Point; 3] {
+        let [a, b, c] = self.sliver(0.0, rng);
+        match rng.bits() % 4 {
             0 => [a, b, a],
             1 => [b, b, b],
             _ => [a, b, c],
@@ -164,169 +169,179 @@ impl Sketch<'_> {
     }
 
     /// Returns a point under a joint of the profile and the outward direction there, between the two normals.
-    fn under_joint(&self, draw: &mut Rng) -> (Point, Point) {
+    fn under_joint(&self, rng: &mut Rng) -> (Point, Point) {
         let segments = &self.cutter.outline.segments;
-        let k = 1 + draw.bits() as usize % (segments.len() - 1);
-        let ([a, b], part) = (
+        let k = 1 + rng.bits() as usize % (segments.len() - 1);
+        let ([a, b], fraction) = (
             [outward(&segments[k - 1], 1.0), outward(&segments[k], 0.0)],
-            one_of(&[0.0, 1.0, 0.5, draw.between(0.0, 1.0)], draw),
+            pick(&[0.0, 1.0, 0.5, rng.between(0.0, 1.0)], rng),
         );
-        let way = unit([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
-        let deep = self.radius * one_of(&[0.0, magnitude(-12.0, 0.0, draw)], draw);
+        let direction = unit([a[0] + fraction * (b[0] - a[0]), a[1] + fraction * (b[1] - a[1])]);
+        let depth = self.radius * pick(&[0.0, random_magnitude(-12.0, 0.0, rng)], rng);
         let joint = segments[k].from;
-        let at = [(joint[0] - deep * way[0]).max(0.0), joint[1] - deep * way[1]];
-        Self::turned(at, way, draw)
+        let point = [(joint[0] - depth * direction[0]).max(0.0), joint[1] - depth * direction[1]];
+        Self::revolve(point, direction, rng)
     }
 
-    fn joint(&self, size: f64, draw: &mut Rng) -> [Point; 3] {
-        let (at, way) = self.under_joint(draw);
-        let normal = if draw.bits().is_multiple_of(2) { way } else { draw.direction() };
-        about(at, normal, size, draw)
+    fn joint(&self, size: f64, rng: &mut Rng) -> [Point; 3] {
+        let (point, outward_direction) = self.under_joint(rng);
+        let normal = if rng.bits().is_multiple_of(2) { outward_direction } else { rng.direction() };
+        triangle_at(point, normal, size, rng)
     }
 
-    fn centre(&self, draw: &mut Rng) -> [Point; 3] {
+    fn centre(&self, rng: &mut Rng) -> [Point; 3] {
         let centres = self.cutter.outline.segments.iter().filter_map(|segment| segment.centre);
-        let axis = [0.0, draw.between(0.0, self.cutter.extent[1])];
-        let places: Vec<Flat> = centres.filter(|at| at[0] >= 0.0).chain([axis]).collect();
-        let turn = draw.between(0.0, TAU).sin_cos();
-        let (at, way) = Self::turned(one_of(&places, draw), [turn.0, turn.1], draw);
-        let normal = if draw.bits().is_multiple_of(2) { way } else { draw.direction() };
-        about(at, normal, self.size(draw), draw)
+        let axis = [0.0, rng.between(0.0, self.cutter.extent[1])];
+        let points: Vec<Flat> = centres.filter(|point| point[0] >= 0.0).chain([axis]).collect();
+        let sine_cosine = rng.between(0.0, TAU).sin_cos();
+        let (point, direction) =
+            Self::revolve(pick(&points, rng), [sine_cosine.0, sine_cosine.1], rng);
+        let normal = if rng.bits().is_multiple_of(2) { direction } else { rng.direction() };
+        triangle_at(point, normal, self.size(rng), rng)
     }
 
-    fn level(&self, draw: &mut Rng) -> [Point; 3] {
-        let mut at = self.place(draw);
-        let segment = one_of(&self.cutter.outline.segments, draw);
+    fn level(&self, rng: &mut Rng) -> [Point; 3] {
+        let mut point = self.random_point(rng);
+        let segment = pick(&self.cutter.outline.segments, rng);
         let centre = segment.centre.unwrap_or(segment.to);
-        at[2] = one_of(&[at[2], segment.from[1], segment.to[1], centre[1]], draw);
-        let mut triangle = about(at, [0.0, 0.0, 1.0], self.size(draw), draw);
-        triangle.iter_mut().for_each(|corner| corner[2] = at[2]);
+        point[2] = pick(&[point[2], segment.from[1], segment.to[1], centre[1]], rng);
+        let mut triangle = triangle_at(point, [0.0, 0.0, 1.0], self.size(rng), rng);
+        triangle.iter_mut().for_each(|corner| corner[2] = point[2]);
         triangle
     }
 
-    fn tangent(&self, draw: &mut Rng) -> [Point; 3] {
-        let segment = one_of(&self.cutter.outline.segments, draw);
-        let part = draw.between(0.0, 1.0);
-        let way = outward(&segment, part);
-        let off = match draw.bits() % 3 {
+    fn tangent(&self, rng: &mut Rng) -> [Point; 3] {
+        let segment = pick(&self.cutter.outline.segments, rng);
+        let fraction = rng.between(0.0, 1.0);
+        let normal = outward(&segment, fraction);
+        let offset = match rng.bits() % 3 {
             0 => 0.0,
-            1 => magnitude(-17.0, -6.0, draw),
-            _ => -magnitude(-17.0, -6.0, draw),
+            1 => random_magnitude(-17.0, -6.0, rng),
+            _ => -random_magnitude(-17.0, -6.0, rng),
         };
-        let mut on = [0, 1].map(|k| segment.from[k] + part * (segment.to[k] - segment.from[k]));
+        let mut surface_point =
+            [0, 1].map(|k| segment.from[k] + fraction * (segment.to[k] - segment.from[k]));
         if let Some(centre) = segment.centre {
-            let arm = [on[0] - centre[0], on[1] - centre[1]];
+            let from_centre = [surface_point[0] - centre[0], surface_point[1] - centre[1]];
             let radius = (segment.from[0] - centre[0]).hypot(segment.from[1] - centre[1]);
-            let reach = radius / arm[0].hypot(arm[1]);
-            on = [centre[0] + reach * arm[0], centre[1] + reach * arm[1]];
+            let factor = radius / from_centre[0].hypot(from_centre[1]);
+            surface_point =
+                [centre[0] + factor * from_centre[0], centre[1] + factor * from_centre[1]];
         }
-        let off = off * self.radius;
-        let at = [(on[0] + off * way[0]).max(0.0), on[1] + off * way[1]];
-        let (at, way) = Self::turned(at, way, draw);
-        about(at, way, self.size(draw), draw)
+        let offset = offset * self.radius;
+        let point = [
+            (surface_point[0] + offset * normal[0]).max(0.0),
+            surface_point[1] + offset * normal[1],
+        ];
+        let (point, normal) = Self::revolve(point, normal, rng);
+        triangle_at(point, normal, self.size(rng), rng)
     }
 
-    fn fan(&self, draw: &mut Rng) -> Vec<[Point; 3]> {
-        let (at, way) = self.under_joint(draw);
-        let count = 2 + draw.bits() as usize % 4;
-        let size = self.size(draw);
-        let rim = |draw: &mut Rng| {
-            let across = toward(at, size * draw.between(0.1, 1.0), beside(way, draw));
-            toward(across, size * draw.between(-0.5, 0.1), way)
+    fn fan(&self, rng: &mut Rng) -> Vec<[Point; 3]> {
+        let (apex, direction) = self.under_joint(rng);
+        let count = 2 + rng.bits() as usize % 4;
+        let size = self.size(rng);
+        let rim = |rng: &mut Rng| {
+            let base = advance(apex, size * rng.between(0.1, 1.0), perpendicular(direction, rng));
+            advance(base, size * rng.between(-0.5, 0.1), direction)
         };
-        let first = rim(draw);
+        let first = rim(rng);
         let mut last = first;
         let mut triangles = Vec::new();
         for k in 0..count {
-            let next = if k + 1 == count { first } else { rim(draw) };
-            triangles.push([at, last, next]);
+            let next = if k + 1 == count { first } else { rim(rng) };
+            triangles.push([apex, last, next]);
             last = next;
         }
         triangles
     }
 
-    fn triangles(&self, family: Family, draw: &mut Rng) -> Vec<[Point; 3]> {
-        let size = self.size(draw);
+    fn triangles(&self, family: Family, rng: &mut Rng) -> Vec<[Point; 3]> {
+        let size = self.size(rng);
         match family {
-            Family::Any => vec![self.any(size, draw)],
+            Family::Any => vec![self.triangle_in_any_orientation(size, rng)],
             Family::Sliver => {
-                let height = one_of(&[1e-8, 1e-12, magnitude(-13.0, -2.0, draw)], draw);
-                vec![self.sliver(height, draw)]
+                let height = pick(&[1e-8, 1e-12, random_magnitude(-13.0, -2.0, rng)], rng);
+                vec![self.sliver(height, rng)]
             }
-            Family::Degenerate => vec![self.degenerate(draw), self.any(0.1 * size, draw)],
-            Family::Joint => vec![self.joint(size, draw)],
-            Family::Centre => vec![self.centre(draw)],
-            Family::Level => vec![self.level(draw)],
-            Family::Tangent => vec![self.tangent(draw)],
+            Family::Degenerate => {
+                vec![self.degenerate(rng), self.triangle_in_any_orientation(0.1 * size, rng)]
+            }
+            Family::Joint => vec![self.joint(size, rng)],
+            Family::Centre => vec![self.centre(rng)],
+            Family::Level => vec![self.level(rng)],
+            Family::Tangent => vec![self.tangent(rng)],
             Family::Size => {
-                let size = self.radius * magnitude(-6.0, 6.0, draw);
-                match draw.bits() % 2 {
-                    0 => vec![self.any(size, draw)],
-                    _ => vec![self.joint(size, draw)],
+                let size = self.radius * random_magnitude(-6.0, 6.0, rng);
+                match rng.bits() % 2 {
+                    0 => vec![self.triangle_in_any_orientation(size, rng)],
+                    _ => vec![self.joint(size, rng)],
                 }
             }
-            Family::Fan => self.fan(draw),
+            Family::Fan => self.fan(rng),
             Family::Far | Family::Drift => {
                 let plain = &Family::ALL[..9];
-                self.triangles(one_of(plain, draw), draw)
+                self.triangles(pick(plain, rng), rng)
             }
         }
     }
 }
 
 fn unit(v: Flat) -> Flat {
-    let size = v[0].hypot(v[1]);
-    if size > 0.0 { v.map(|part| part / size) } else { [0.0, 1.0] }
+    let norm = v[0].hypot(v[1]);
+    if norm > 0.0 { v.map(|component| component / norm) } else { [0.0, 1.0] }
 }
 
-/// Returns the unit normal of a profile segment, out of the material, at parameter `part` in 0 to 1.
-fn outward(segment: &Segment, part: f64) -> Flat {
+/// Returns the unit normal of a profile segment, out of the material, at parameter `fraction` in 0 to 1.
+fn outward(segment: &Segment, fraction: f64) -> Flat {
     let ([a, b], [c, d]) = (segment.from, segment.to);
-    let at = [a + part * (c - a), b + part * (d - b)];
+    let point = [a + fraction * (c - a), b + fraction * (d - b)];
     let Some(centre) = segment.centre else { return unit([d - b, a - c]) };
-    let arm = unit([at[0] - centre[0], at[1] - centre[1]]);
-    if segment.is_hollow() { arm.map(|part| -part) } else { arm }
+    let normal = unit([point[0] - centre[0], point[1] - centre[1]]);
+    if segment.is_hollow() { normal.map(|component| -component) } else { normal }
 }
 
 /// Returns a random pose: the identity, an axis along a coordinate axis, or any rotation. The tip is within a few tool
 /// sizes of the origin, or farther for [`Family::Far`].
-fn pose(family: Family, size: f64, draw: &mut Rng) -> Pose {
-    let far = if family == Family::Far { magnitude(0.0, 12.0, draw) } else { 3.0 };
-    let tip = Point3::from(draw.direction()) * (size * far);
-    match draw.bits() % 6 {
+fn pose(family: Family, size: f64, rng: &mut Rng) -> Pose {
+    let distance = if family == Family::Far { random_magnitude(0.0, 12.0, rng) } else { 3.0 };
+    let tip = Point3::from(rng.direction()) * (size * distance);
+    match rng.bits() % 6 {
         0 if family != Family::Far => Pose::default(),
         0 | 1 => {
             let mut axis = Vector3::zeros();
-            axis[draw.bits() as usize % 3] = one_of(&[1.0, -1.0], draw);
-            made(tip, axis)
+            axis[rng.bits() as usize % 3] = pick(&[1.0, -1.0], rng);
+            pose_from_axis(tip, axis)
         }
         2 => {
-            let turn = loop {
-                let turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
-                let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let quaternion = loop {
+                let quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
+                let norm =
+                    quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
                 if norm > 0.1 {
                     // The norm deviates from 1 by almost as much as a pose accepts.
-                    break turn.map(|part| part / norm * draw.between(0.9991, 1.0009));
+                    break quaternion
+                        .map(|component| component / norm * rng.between(0.9991, 1.0009));
                 }
             };
-            Pose::from_quaternion(tip, turn).expect("a quaternion")
+            Pose::from_quaternion(tip, quaternion).expect("a quaternion")
         }
-        _ => made(tip, Vector3::from(draw.direction()) * draw.between(0.9991, 1.0009)),
+        _ => pose_from_axis(tip, Vector3::from(rng.direction()) * rng.between(0.9991, 1.0009)),
     }
 }
 
-fn made(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
+fn pose_from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
     Pose::from_axis(tip, axis).expect("an axis")
 }
 
 /// Returns a pose after many rotations about the origin, some of which are undone immediately.
-fn drifted(pose: Pose, draw: &mut Rng) -> Pose {
+fn drift(pose: Pose, rng: &mut Rng) -> Pose {
     let mut pose = pose;
     for _ in 0..12 {
-        let axis = Vector3::from(draw.direction());
+        let axis = Vector3::from(rng.direction());
         let step = Pose::from_axis(Point3::origin(), axis).expect("an axis");
         pose = pose.then(&step);
-        if draw.bits().is_multiple_of(2) {
+        if rng.bits().is_multiple_of(2) {
             pose = pose.relative_to(&step);
         }
     }
@@ -334,14 +349,18 @@ fn drifted(pose: Pose, draw: &mut Rng) -> Pose {
 }
 
 /// Returns a random case of a family for a tool.
-pub fn case(family: Family, cutter: &Cutter, draw: &mut Rng) -> Case {
+pub fn case(family: Family, cutter: &Cutter, rng: &mut Rng) -> Case {
     let [radius, height] = cutter.extent;
-    let drawn = Sketch { cutter, radius }.triangles(family, draw);
-    let mut pose = pose(family, radius + height, draw);
+    let triangles = Sketch { cutter, radius }.triangles(family, rng);
+    let mut pose = pose(family, radius + height, rng);
     if family == Family::Drift {
-        pose = drifted(pose, draw);
+        pose = drift(pose, rng);
     }
-    let world = |p: Point| -> Point { (pose.tip() + pose.rotation() * Vector3::from(p)).into() };
-    let tolerance = one_of(&[0.0, 1e-9], draw) * radius.max(height);
-    Case { triangles: drawn.iter().map(|corners| corners.map(world)).collect(), pose, tolerance }
+    let to_world = |p: Point| -> Point { (pose.tip() + pose.rotation() * Vector3::from(p)).into() };
+    let tolerance = pick(&[0.0, 1e-9], rng) * radius.max(height);
+    Case {
+        triangles: triangles.iter().map(|corners| corners.map(to_world)).collect(),
+        pose,
+        tolerance,
+    }
 }

@@ -29,10 +29,10 @@ pub struct Cutter {
 }
 
 /// A profile: the name, and the end points of its segments with the centre if the segment is an arc.
-type Drawn = (&'static str, &'static [(Flat, Option<Flat>)]);
+type ProfilePoints = (&'static str, &'static [(Flat, Option<Flat>)]);
 
 /// The profiles at scale 1, mm; each begins at the origin.
-const PROFILES: [Drawn; 11] = [
+const PROFILES: [ProfilePoints; 11] = [
     ("Ball", &[([5., 5.], Some([0., 5.])), ([5., 22.], None), ([0., 22.], None)]),
     ("Flat", &[([6., 0.], None), ([6., 26.], None), ([0., 26.], None)]),
     (
@@ -138,42 +138,46 @@ pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
     let (name, points) = PROFILES[number % PROFILES.len()];
     let exponent = SCALES[number / PROFILES.len()];
     let scale = 2f64.powi(exponent);
-    let scaled = |point: Flat| point.map(|part| part * scale);
+    let scaled = |point: Flat| point.map(|coordinate| coordinate * scale);
     let mut segments = Vec::new();
     let mut from = [0.0, 0.0];
     for &(to, centre) in points {
         segments.push(Segment { from, to: scaled(to), centre: centre.map(scaled) });
         from = scaled(to);
     }
-    let most = |axis: usize| segments.iter().fold(0.0f64, |most, part| most.max(part.to[axis]));
-    let far = |segment: &Segment| {
+    let max_coordinate =
+        |axis: usize| segments.iter().fold(0.0f64, |max, segment| max.max(segment.to[axis]));
+    let farthest_point = |segment: &Segment| {
         let [x, y] = segment.centre?;
         Some(x.hypot(y) + (segment.to[0] - x).hypot(segment.to[1] - y))
     };
-    let reach = segments.iter().filter_map(far).fold(most(0).max(most(1)), f64::max);
+    let reach = segments
+        .iter()
+        .filter_map(farthest_point)
+        .fold(max_coordinate(0).max(max_coordinate(1)), f64::max);
     Ok(Cutter {
         reach,
         name: format!("{name}·2^{exponent}"),
-        tool: Interpreted::parse(&Source::new("cutter.tool", &*text(name, &segments)))?,
+        tool: Interpreted::parse(&Source::new("cutter.tool", &*source_text(name, &segments)))?,
         reference: Reference::new(&restated(name, &segments)),
-        extent: [most(0), most(1)],
+        extent: [max_coordinate(0), max_coordinate(1)],
         outline: Outline::new(segments),
     })
 }
 
 /// Returns the source text of the tool.
-fn text(name: &str, segments: &[Segment]) -> String {
+fn source_text(name: &str, segments: &[Segment]) -> String {
     let mut text = format!("tool {name} {{ units mm; profile {{ start (0, 0);");
     for (k, segment) in segments.iter().enumerate() {
         let [d, z] = segment.to;
-        let written = match segment.centre {
+        let result = match segment.centre {
             Some([x, y]) => {
-                let bent = if segment.is_hollow() { " concave" } else { "" };
-                write!(text, " arc to ({d}, {z}) center ({x}, {y}){bent} as s{k} cutting;")
+                let concave = if segment.is_hollow() { " concave" } else { "" };
+                write!(text, " arc to ({d}, {z}) center ({x}, {y}){concave} as s{k} cutting;")
             }
             None => write!(text, " line to ({d}, {z}) as s{k} cutting;"),
         };
-        written.expect("a text has room");
+        result.expect("a text has room");
     }
     text + " } niceness cutting: 1; }"
 }
@@ -181,7 +185,7 @@ fn text(name: &str, segments: &[Segment]) -> String {
 /// Returns the tool as the 256-bit reference reads it.
 fn restated(name: &'static str, segments: &[Segment]) -> Restated {
     let exact = |point: Flat| point.map(Big::exactly);
-    let way = |segment: &Segment| Way {
+    let step = |segment: &Segment| Way {
         to: exact(segment.to),
         centre: segment.centre.map(exact),
         surface: "all",
@@ -189,7 +193,7 @@ fn restated(name: &'static str, segments: &[Segment]) -> Restated {
     Restated {
         name,
         start: exact([0.0, 0.0]),
-        ways: segments.iter().map(way).collect(),
+        ways: segments.iter().map(step).collect(),
         cutting: Vec::new(),
         niceness: |_, _, _| 1.0,
     }
@@ -203,15 +207,19 @@ mod tests {
 
     #[test]
     fn doubles_and_256_bits_agree() {
-        let mut draw = Rng::new(1);
+        let mut rng = Rng::new(1);
         for number in 0..COUNT {
             let cutter = cutter(number).expect("a tool");
             let [radius, height] = cutter.extent;
             for _ in 0..200 {
-                let (d, z) = (draw.between(0.0, 1.2 * radius), draw.between(-0.1, 1.1) * height);
+                let (d, z) = (rng.between(0.0, 1.2 * radius), rng.between(-0.1, 1.1) * height);
                 let exact = cutter.reference.depth(&At::new([d, 0.0, z])).to_f64();
-                let off = (cutter.outline.depth([d, z]) - exact).abs();
-                assert!(off < 1e-13 * (radius + height), "{} {d} {z}: {off:e}", cutter.name);
+                let difference = (cutter.outline.depth([d, z]) - exact).abs();
+                assert!(
+                    difference < 1e-13 * (radius + height),
+                    "{} {d} {z}: {difference:e}",
+                    cutter.name
+                );
             }
         }
     }

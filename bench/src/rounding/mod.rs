@@ -24,7 +24,7 @@ use touchoff_tests::oracle::draw::Rng;
 use truth::{Place, Point, Scene};
 
 /// Number of violations listed per family.
-const SHOWN: usize = 4;
+const MAX_LISTED: usize = 4;
 
 /// The largest of several values, and the case that has it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,7 +36,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    fn see(&mut self, other: Worst) {
+    fn update(&mut self, other: Worst) {
         if other.figure.is_nan() || other.figure > self.figure {
             *self = other;
         }
@@ -101,14 +101,14 @@ impl Row {
         self.alone += other.alone;
         self.certain += other.certain;
         self.wider += other.wider;
-        self.widest.see(other.widest);
-        self.above.see(other.above);
-        self.below.see(other.below);
+        self.widest.update(other.widest);
+        self.above.update(other.above);
+        self.below.update(other.below);
         self.exceeded += other.exceeded;
         self.off += other.off;
         self.shallow += other.shallow;
         self.shown.extend(other.shown);
-        self.shown.truncate(SHOWN);
+        self.shown.truncate(MAX_LISTED);
     }
 
     /// Returns the number of wrong answers.
@@ -116,9 +116,9 @@ impl Row {
         self.exceeded + self.off + self.shallow
     }
 
-    fn show(&mut self, text: String) {
-        if self.shown.len() < SHOWN {
-            self.shown.push(text);
+    fn list_violation(&mut self, description: String) {
+        if self.shown.len() < MAX_LISTED {
+            self.shown.push(description);
         }
     }
 }
@@ -147,10 +147,10 @@ impl Rounding {
     /// # Panics
     /// If the certifier rejects the tool.
     pub fn ask(&self, number: u64, rows: &mut [Row]) {
-        let mut draw = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
-        let kind = number as usize % Family::ALL.len();
-        let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
-        let case = cases::case(Family::ALL[kind], cutter, &mut draw);
+        let mut rng = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let family_index = number as usize % Family::ALL.len();
+        let cutter = &self.cutters[rng.bits() as usize % self.cutters.len()];
+        let case = cases::case(Family::ALL[family_index], cutter, &mut rng);
         let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
         let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
         // A mesh needs a positive area; a sliver may have none.
@@ -159,37 +159,37 @@ impl Rounding {
         };
         let bvh = TriangleBvh::new(&mesh);
         let mut certifier = Certifier::new(&bvh, &cutter.tool).expect("a tool with a profile");
-        let found = certifier.deepest(&case.pose, case.tolerance);
+        let penetration = certifier.deepest(&case.pose, case.tolerance);
         let scene = Scene::new(cutter, &case.pose, &case.triangles);
-        let judge = Judge {
+        let validation = Validation {
             case: &case,
             scene: &scene,
-            interval: [found.depth.low, found.depth.high],
+            interval: [penetration.depth.low, penetration.depth.high],
             pinch: self.pinch,
         };
-        judge.judge(found.witness, &mut draw, &mut rows[kind], number);
+        validation.run(penetration.witness, &mut rng, &mut rows[family_index], number);
     }
 
     /// Returns a readable description of the case with this number.
     pub fn describe(&self, number: u64) -> String {
-        let mut draw = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let mut rng = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
         let family = Family::ALL[number as usize % Family::ALL.len()];
-        let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
-        format!("{} {:?}", cutter.name, cases::case(family, cutter, &mut draw))
+        let cutter = &self.cutters[rng.bits() as usize % self.cutters.len()];
+        format!("{} {:?}", cutter.name, cases::case(family, cutter, &mut rng))
     }
 }
 
 /// An answer to validate.
-struct Judge<'a> {
+struct Validation<'a> {
     case: &'a Case,
     scene: &'a Scene<'a>,
     interval: [f64; 2],
     pinch: f64,
 }
 
-impl Judge<'_> {
-    fn judge(&self, witness: Option<Witness>, draw: &mut Rng, row: &mut Row, number: u64) {
-        let [rounding, skew] = self.promised();
+impl Validation<'_> {
+    fn run(&self, witness: Option<Witness>, rng: &mut Rng, row: &mut Row, number: u64) {
+        let [rounding, skew] = self.promised_widening();
         let widening = rounding + skew;
         let tolerance = self.case.tolerance.max(4.0 * rounding);
         let [mut low, mut high] = self.interval;
@@ -198,105 +198,120 @@ impl Judge<'_> {
             high -= self.pinch * (tolerance + widening);
         }
         let size = self.scene.cutter.extent[0].max(self.scene.cutter.extent[1]);
-        let alone = self.scene.exact_depth(&self.scene.deepest(draw));
-        let near = &alone + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
-        let beside = witness.map(|witness| self.beside(&witness));
-        let truth = self.truth(alone, beside.as_ref(), draw);
+        let unaided_depth = self.scene.exact_depth(&self.scene.deepest(rng));
+        let is_near = &unaided_depth + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
+        let nearest = witness.map(|witness| self.nearest_to(&witness));
+        let true_depth = self.best_depth(unaided_depth, nearest.as_ref(), rng);
         row.cases += 1;
-        row.touching += u64::from(truth > Big::zero());
-        row.alone += u64::from(near);
-        row.certain += u64::from(Big::exactly(low) <= truth);
-        let wide = high - low - tolerance - rounding - 2.0 * widening;
-        row.wider += u64::from(wide > 0.01 * widening);
-        let worst = |figure: f64| Worst { figure, case: number };
-        row.widest.see(worst(wide / widening));
-        let text = || format!("case {number}: [{low:e}, {high:e}], {} in 256 bits", truth.to_f64());
-        if !(0.0 <= low && high.is_finite()) || truth > Big::exactly(high) {
+        row.touching += u64::from(true_depth > Big::zero());
+        row.alone += u64::from(is_near);
+        row.certain += u64::from(Big::exactly(low) <= true_depth);
+        let excess_width = high - low - tolerance - rounding - 2.0 * widening;
+        row.wider += u64::from(excess_width > 0.01 * widening);
+        let worst_of = |figure: f64| Worst { figure, case: number };
+        row.widest.update(worst_of(excess_width / widening));
+        let describe =
+            || format!("case {number}: [{low:e}, {high:e}], {} in 256 bits", true_depth.to_f64());
+        if !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high) {
             row.exceeded += 1;
-            row.show(format!("{}: above it", text()));
+            row.list_violation(format!("{}: above it", describe()));
         }
-        let Some(Beside { place, way, rounded }) = beside else {
+        let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
             if low > 0.0 {
                 row.shallow += 1;
-                row.show(format!("{}: no witness", text()));
+                row.list_violation(format!("{}: no witness", describe()));
             }
             return;
         };
-        let depth = self.scene.exact_depth(&place);
-        if way > rounded + widening {
+        let depth = self.scene.exact_depth(&point_on_triangle);
+        if distance > rounding_distance + widening {
             row.off += 1;
-            row.show(format!("{}: the witness is {way:e} off its triangle", text()));
-        } else if low > 0.0 && Big::exactly(low) > &depth + &Big::exactly(way + rounded) {
+            row.list_violation(format!(
+                "{}: the witness is {distance:e} off its triangle",
+                describe()
+            ));
+        } else if low > 0.0
+            && Big::exactly(low) > &depth + &Big::exactly(distance + rounding_distance)
+        {
             row.shallow += 1;
-            row.show(format!("{}: the witness is {:e} deep", text(), depth.to_f64()));
+            row.list_violation(format!("{}: the witness is {:e} deep", describe(), depth.to_f64()));
         }
         if low > 0.0 {
             // The certifier subtracts two roundings and the skew from the depth that it computed. It adds one rounding,
             // the skew and the tolerance.
             let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
-            let [taken, added] = [2.0, 1.0].map(|times| times * rounding + skewed);
-            let off = (&truth - &Big::exactly(low + taken)).to_f64();
-            row.above.see(worst((off - tolerance) / added));
-            row.below.see(worst((-off - rounded) / taken));
+            let [subtracted, added] = [2.0, 1.0].map(|factor| factor * rounding + skewed);
+            let error = (&true_depth - &Big::exactly(low + subtracted)).to_f64();
+            row.above.update(worst_of((error - tolerance) / added));
+            row.below.update(worst_of((-error - rounding_distance) / subtracted));
         }
     }
 
     /// Returns the largest 256-bit depth of the search result, of the point next to the witness and of a climb from
     /// there, or 0 if none is inside.
-    fn truth(&self, alone: Big, beside: Option<&Beside>, draw: &mut Rng) -> Big {
-        let mut truth = if alone.is_negative() { Big::zero() } else { alone };
-        let Some(Beside { place, way, rounded }) = beside else { return truth };
-        let step = 1e-3_f64.min(1e3 * (way + rounded) / self.scene.cutter.extent[0] + 1e-12);
-        let climbed = self.scene.climb(place, step, 60, draw).1;
-        for place in [*place, climbed] {
-            let depth = self.scene.exact_depth(&place);
-            if depth > truth {
-                truth = depth;
+    fn best_depth(&self, unaided_depth: Big, nearest: Option<&NearestPoint>, rng: &mut Rng) -> Big {
+        let mut true_depth = if unaided_depth.is_negative() { Big::zero() } else { unaided_depth };
+        let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
+            return true_depth;
+        };
+        let step = 1e-3_f64
+            .min(1e3 * (distance + rounding_distance) / self.scene.cutter.extent[0] + 1e-12);
+        let climbed = self.scene.climb(point_on_triangle, step, 60, rng).1;
+        for point_on_triangle in [*point_on_triangle, climbed] {
+            let depth = self.scene.exact_depth(&point_on_triangle);
+            if depth > true_depth {
+                true_depth = depth;
             }
         }
-        truth
+        true_depth
     }
 
     /// Returns the promised rounding and the promised skew. The rounding is 64 ε of the tool's reach plus the part's
     /// size. The skew is the largest over the triangles of `12 ε r s/h`, or of the triangle's height `h` if that is
     /// less.
-    fn promised(&self) -> [f64; 2] {
+    fn promised_widening(&self) -> [f64; 2] {
         let corners = || self.case.triangles.iter().flatten();
         let extent = [0, 1, 2].map(|axis| {
-            let parts = || corners().map(|corner| corner[axis]);
-            parts().fold(f64::NEG_INFINITY, f64::max) - parts().fold(f64::INFINITY, f64::min)
+            let coordinates = || corners().map(|corner| corner[axis]);
+            coordinates().fold(f64::NEG_INFINITY, f64::max)
+                - coordinates().fold(f64::INFINITY, f64::min)
         });
-        let part = extent.into_iter().fold(0.0, f64::max);
+        let part_size = extent.into_iter().fold(0.0, f64::max);
         let skew = self.scene.triangles.iter().map(skew).fold(0.0, f64::max);
-        [64.0 * f64::EPSILON * (self.scene.cutter.reach + part), skew]
+        [64.0 * f64::EPSILON * (self.scene.cutter.reach + part_size), skew]
     }
 
     /// Returns the point of the witness's triangle that is approximately nearest to the witness.
-    fn beside(&self, witness: &Witness) -> Beside {
+    fn nearest_to(&self, witness: &Witness) -> NearestPoint {
         let (tip, rotation) = (self.case.pose.tip(), self.case.pose.rotation());
-        let inside: Point = (rotation.transpose() * (witness.point - tip)).into();
-        let place = self.scene.nearest(witness.triangle.index(), inside);
-        let at = self.scene.point(&place);
-        let way = (0..3).map(|k| (inside[k] - at[k]).powi(2)).sum::<f64>().sqrt();
-        let reach = inside.iter().fold(0.0f64, |most, part| most.max(part.abs()));
-        Beside { place, way, rounded: 8.0 * f64::EPSILON * (tip.coords.amax() + reach) }
+        let tool_point: Point = (rotation.transpose() * (witness.point - tip)).into();
+        let point_on_triangle = self.scene.nearest(witness.triangle.index(), tool_point);
+        let point = self.scene.point(&point_on_triangle);
+        let distance = (0..3).map(|k| (tool_point[k] - point[k]).powi(2)).sum::<f64>().sqrt();
+        let max_coordinate =
+            tool_point.iter().fold(0.0f64, |max, coordinate| max.max(coordinate.abs()));
+        NearestPoint {
+            point_on_triangle,
+            distance,
+            rounding_distance: 8.0 * f64::EPSILON * (tip.coords.amax() + max_coordinate),
+        }
     }
 }
 
 /// A point of a triangle next to a witness.
-struct Beside {
-    place: Place,
+struct NearestPoint {
+    point_on_triangle: Place,
     /// The distance between the two.
-    way: f64,
+    distance: f64,
     /// The distance by which rounding in the world frame may have moved the witness.
-    rounded: f64,
+    rounding_distance: f64,
 }
 
 /// Returns the promised error bound of the line of greatest depth in a triangle: `12 ε r s/h`, at most `h`. `r` is the
 /// distance of the farthest corner from the tip, `s` the shortest edge and `h` the height over the longest edge.
 fn skew(corners: &[Point; 3]) -> f64 {
     let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
-    let norm = |v: Point| v.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let norm = |v: Point| v.iter().map(|component| component * component).sum::<f64>().sqrt();
     let [a, b, c] = *corners;
     let edges = [edge(a, b), edge(b, c), edge(c, a)];
     let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
@@ -304,10 +319,10 @@ fn skew(corners: &[Point; 3]) -> f64 {
     let ([x, y, z], [u, v, w]) = (edges[0], edges[1]);
     let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
     let height = if longest > 0.0 { area / longest } else { 0.0 };
-    let far = corners.iter().copied().map(norm).fold(0.0, f64::max);
+    let max_distance = corners.iter().copied().map(norm).fold(0.0, f64::max);
     // Differences of corners that were rounded once determine the height to within a few units of rounding.
     let height = height + 8.0 * f64::EPSILON * longest;
-    (12.0 * f64::EPSILON * far * (shortest / height)).min(height)
+    (12.0 * f64::EPSILON * max_distance * (shortest / height)).min(height)
 }
 
 /// Returns the rows as Markdown tables, with a list of violations.
@@ -337,7 +352,7 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
             row.shallow
         )?;
     }
-    let sum = |of: fn(&Row) -> u64| rows.iter().map(of).sum::<u64>();
+    let sum = |value: fn(&Row) -> u64| rows.iter().map(value).sum::<u64>();
     writeln!(
         page,
         "\n{} cases, {} of them in contact, {} wider, {} violations.\n\n## Violated\n",

@@ -13,9 +13,9 @@ use touchoff_tests::oracle::reference::At;
 pub type Point = [f64; 3];
 
 /// Number of starting points of the search, steps per start, and additional steps for the best of them.
-const STARTS: usize = 3;
-const STEPS: usize = 60;
-const MORE: usize = 120;
+const CLIMBS: usize = 3;
+const STEPS_PER_CLIMB: usize = 60;
+const FINAL_STEPS: usize = 120;
 
 /// A tool at a pose, and triangles.
 pub struct Scene<'a> {
@@ -41,7 +41,7 @@ fn inverse(columns: &[[Big; 3]; 3]) -> [[Big; 3]; 3] {
     let [x, y, z] = columns;
     let rows = [cross(y, z), cross(z, x), cross(x, y)];
     let determinant = dot(&rows[0], x);
-    rows.map(|row| row.map(|part| &part / &determinant))
+    rows.map(|row| row.map(|component| &component / &determinant))
 }
 
 fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
@@ -53,7 +53,7 @@ fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-fn minus(a: Point, b: Point) -> Point {
+fn subtract(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -70,34 +70,36 @@ fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
 /// plane, if it is inside, and the feet on the edges, since the plane of a sliver is poorly conditioned.
 fn nearest(p: Point, corners: &[Point; 3]) -> Point {
     let [a, b, c] = *corners;
-    let off = |weights: &Point| {
-        let way = minus(p, mean(corners, *weights));
-        product(way, way)
+    let squared_distance = |weights: &Point| {
+        let difference = subtract(p, mean(corners, *weights));
+        product(difference, difference)
     };
     let edges = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
-        let way = minus(corners[to], corners[from]);
-        let part = product(minus(p, corners[from]), way) / product(way, way);
+        let edge = subtract(corners[to], corners[from]);
+        let fraction = product(subtract(p, corners[from]), edge) / product(edge, edge);
         // This form maps NaN to 0, so an edge without length gives its first end.
-        let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+        let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
         let mut weights = [0.0; 3];
-        weights[from] = 1.0 - part;
-        weights[to] = part;
+        weights[from] = 1.0 - fraction;
+        weights[to] = fraction;
         weights
     });
-    let (e, f) = (minus(b, a), minus(c, a));
+    let (e, f) = (subtract(b, a), subtract(c, a));
     let (ee, ef, ff) = (product(e, e), product(e, f), product(f, f));
     let area = ee * ff - ef * ef;
     // Iterative refinement: the first weights of a sliver have few correct digits.
     let [mut v, mut w] = [0.0; 2];
     for _ in 0..3 {
-        let left = minus(p, mean(corners, [1.0 - v - w, v, w]));
-        let (of_e, of_f) = (product(e, left), product(f, left));
+        let residual = subtract(p, mean(corners, [1.0 - v - w, v, w]));
+        let (of_e, of_f) = (product(e, residual), product(f, residual));
         v += (ff * of_e - ef * of_f) / area;
         w += (ee * of_f - ef * of_e) / area;
     }
     let inside = (v >= 0.0 && w >= 0.0 && v + w <= 1.0).then_some([1.0 - v - w, v, w]);
-    let all = edges.into_iter().chain(inside);
-    all.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or([1.0, 0.0, 0.0])
+    let candidates = edges.into_iter().chain(inside);
+    candidates
+        .min_by(|a, b| squared_distance(a).total_cmp(&squared_distance(b)))
+        .unwrap_or([1.0, 0.0, 0.0])
 }
 
 impl<'a> Scene<'a> {
@@ -106,11 +108,11 @@ impl<'a> Scene<'a> {
         let rotation = pose.rotation();
         let columns = [0, 1, 2].map(|k| [0, 1, 2].map(|i| Big::exactly(rotation[(i, k)])));
         let (rows, tip) = (inverse(&columns), pose.tip().coords);
-        let place = |corner: Point| {
-            let off = [0, 1, 2].map(|k| &Big::exactly(corner[k]) - &Big::exactly(tip[k]));
-            [0, 1, 2].map(|k| dot(&rows[k], &off))
+        let to_tool = |corner: Point| {
+            let offset = [0, 1, 2].map(|k| &Big::exactly(corner[k]) - &Big::exactly(tip[k]));
+            [0, 1, 2].map(|k| dot(&rows[k], &offset))
         };
-        let exact: Vec<_> = triangles.iter().map(|corners| corners.map(place)).collect();
+        let exact: Vec<_> = triangles.iter().map(|corners| corners.map(to_tool)).collect();
         let double = |corners: &[[Big; 3]; 3]| {
             let [a, b, c] = corners;
             [a, b, c].map(|[x, y, z]| [x.to_f64(), y.to_f64(), z.to_f64()])
@@ -134,11 +136,11 @@ impl<'a> Scene<'a> {
         let corners = &self.exact[place.triangle];
         let weights = place.weights.map(Big::exactly);
         let sum = &(&weights[0] + &weights[1]) + &weights[2];
-        let at = [0, 1, 2].map(|axis| {
+        let point = [0, 1, 2].map(|axis| {
             let column = [0, 1, 2].map(|k| corners[k][axis].clone());
             &dot(&weights, &column) / &sum
         });
-        self.cutter.reference.depth(&At::of(at))
+        self.cutter.reference.depth(&At::of(point))
     }
 
     /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.
@@ -147,47 +149,47 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the deepest point found by the random search.
-    pub fn deepest(&self, draw: &mut Rng) -> Place {
+    pub fn deepest(&self, rng: &mut Rng) -> Place {
         let mut starts = Vec::new();
         for triangle in 0..self.triangles.len() {
-            self.starts(triangle, draw, &mut starts);
+            self.starts(triangle, rng, &mut starts);
         }
         let mut starts: Vec<_> =
             starts.into_iter().map(|place| (self.depth(&place), place)).collect();
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        starts.truncate(STARTS);
-        let climbed = starts.iter().map(|(_, place)| self.climb(place, 0.3, STEPS, draw));
+        starts.truncate(CLIMBS);
+        let climbed = starts.iter().map(|(_, place)| self.climb(place, 0.3, STEPS_PER_CLIMB, rng));
         let best = climbed.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a triangle has starts");
-        self.climb(&best.1, best.2, MORE, draw).1
+        self.climb(&best.1, best.2, FINAL_STEPS, rng).1
     }
 
     /// Appends starting points: corners, points on edges and inside, and feet of points of the tool.
-    fn starts(&self, triangle: usize, draw: &mut Rng, starts: &mut Vec<Place>) {
-        let mut push = |weights: Point| starts.push(Place { triangle, weights });
+    fn starts(&self, triangle: usize, rng: &mut Rng, starts: &mut Vec<Place>) {
+        let mut add = |weights: Point| starts.push(Place { triangle, weights });
         for k in 0..3 {
             let mut corner = [0.0; 3];
             corner[k] = 1.0;
-            push(corner);
+            add(corner);
             for _ in 0..3 {
-                let part = draw.between(0.0, 1.0);
+                let fraction = rng.between(0.0, 1.0);
                 let mut edge = [0.0; 3];
-                edge[k] = part;
-                edge[(k + 1) % 3] = 1.0 - part;
-                push(edge);
+                edge[k] = fraction;
+                edge[(k + 1) % 3] = 1.0 - fraction;
+                add(edge);
             }
         }
         for _ in 0..6 {
-            push([0; 3].map(|_| draw.between(0.0, 1.0)));
+            add([0; 3].map(|_| rng.between(0.0, 1.0)));
         }
         let corners = &self.triangles[triangle];
         let height = self.cutter.extent[1];
         for _ in 0..4 {
-            push(nearest([0.0, 0.0, draw.between(0.0, height)], corners));
+            add(nearest([0.0, 0.0, rng.between(0.0, height)], corners));
         }
         for segment in &self.cutter.outline.segments {
             let [d, z] = segment.centre.unwrap_or(segment.to);
-            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-            push(nearest([d * cos, d * sin, z], corners));
+            let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
+            add(nearest([d * cos, d * sin, z], corners));
         }
     }
 
@@ -195,35 +197,35 @@ impl<'a> Scene<'a> {
     /// grows after an improvement and shrinks otherwise.
     pub fn climb(
         &self,
-        from: &Place,
+        start: &Place,
         step: f64,
         steps: usize,
-        draw: &mut Rng,
+        rng: &mut Rng,
     ) -> (f64, Place, f64) {
-        let (mut best, mut at, mut step) = (self.depth(from), *from, step);
-        let mut last = [0.0; 3];
+        let (mut best, mut current, mut step) = (self.depth(start), *start, step);
+        let mut last_change = [0.0; 3];
         for k in 0..steps {
             if step < 1e-17 {
                 break;
             }
             // Few directions lead up along a ridge, so the last successful direction is tried again.
-            let turn = if k % 3 == 0 && last != [0.0; 3] {
-                last
+            let change = if k % 3 == 0 && last_change != [0.0; 3] {
+                last_change
             } else {
-                let [u, v] = [draw.between(-1.0, 1.0), draw.between(-1.0, 1.0)];
+                let [u, v] = [rng.between(-1.0, 1.0), rng.between(-1.0, 1.0)];
                 [u, v, -u - v]
             };
-            let moved = [0, 1, 2].map(|k| (at.weights[k] + step * turn[k]).max(0.0));
+            let moved = [0, 1, 2].map(|k| (current.weights[k] + step * change[k]).max(0.0));
             let sum = moved[0] + moved[1] + moved[2];
-            let next = Place { weights: moved.map(|part| part / sum), ..at };
+            let next = Place { weights: moved.map(|weight| weight / sum), ..current };
             let depth = self.depth(&next);
             if depth > best {
-                (best, at, last) = (depth, next, turn);
+                (best, current, last_change) = (depth, next, change);
                 step = (step * 1.8).min(0.5);
             } else {
                 step *= 0.7;
             }
         }
-        (best, at, step)
+        (best, current, step)
     }
 }

@@ -12,40 +12,41 @@ pub(super) struct Bracket {
     pub owners: [Option<usize>; 2],
 }
 
-/// Returns brackets along each splitting curve and each segment of the surface, at about `most` of its points.
-pub(super) fn brackets(subject: &Subject, most: usize, draw: &mut Rng) -> Vec<Bracket> {
+/// Returns brackets along each splitting curve and each segment of the surface, at about
+/// `max_points` of its points.
+pub(super) fn brackets(subject: &Subject, max_points: usize, rng: &mut Rng) -> Vec<Bracket> {
     let mut found = Vec::new();
     for curve in subject.oracle.curve_points() {
-        let step = curve.len().div_ceil(most).max(1);
-        let first = draw.bits() as usize % step;
+        let step = curve.len().div_ceil(max_points).max(1);
+        let first = rng.bits() as usize % step;
         for p in curve.iter().skip(first).step_by(step) {
             let axes: &[usize] = if subject.oracle.revolved() { &[2, 0] } else { &[2, 0, 1] };
-            found.extend(axes.iter().filter_map(|axis| across(subject, *p, *axis)));
+            found.extend(axes.iter().filter_map(|axis| bracket_at(subject, *p, *axis)));
         }
     }
     found
 }
 
 /// Returns the border that a coordinate line crosses at a point or within 1e-6 of the tool's size.
-fn across(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
-    let owner = |at: f64| {
+fn bracket_at(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
+    let owner = |value: f64| {
         let mut p = p;
-        p[axis] = at;
+        p[axis] = value;
         // A distance from the axis cannot be negative.
-        let beyond = subject.oracle.revolved() && axis == 0 && at < 0.0;
-        (!beyond).then(|| subject.truth.owner(&place(p)))
+        let is_negative_distance = subject.oracle.revolved() && axis == 0 && value < 0.0;
+        (!is_negative_distance).then(|| subject.truth.owner(&place(p)))
     };
-    let here = p[axis];
-    let exactly = [[here.next_down(), here], [here, here.next_up()]];
-    let near = [1e-9, 1e-6].map(|part| part * subject.scale());
-    let near = near.map(|reach| [here - reach, here + reach]);
-    for ends in exactly.into_iter().chain(near) {
+    let coordinate = p[axis];
+    let adjacent = [[coordinate.next_down(), coordinate], [coordinate, coordinate.next_up()]];
+    let intervals = [1e-9, 1e-6].map(|fraction| fraction * subject.scale());
+    let intervals = intervals.map(|reach| [coordinate - reach, coordinate + reach]);
+    for ends in adjacent.into_iter().chain(intervals) {
         let (Some(first), Some(last)) = (owner(ends[0]), owner(ends[1])) else { continue };
         if first != last {
-            return narrowed(ends, first, &|at| owner(at).flatten()).map(|(ends, owners)| {
-                let point = |at: f64| {
+            return bisect(ends, first, &|value| owner(value).flatten()).map(|(ends, owners)| {
+                let point = |value: f64| {
                     let mut p = p;
-                    p[axis] = at;
+                    p[axis] = value;
                     p
                 };
                 Bracket { ends: ends.map(point), owners }
@@ -57,38 +58,38 @@ fn across(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
 
 /// Bisects an interval until its ends are adjacent doubles. Toward 0 that would take a thousand steps. Such an interval
 /// is given up, since 0 itself was tried.
-fn narrowed(
+fn bisect(
     [mut a, mut b]: [f64; 2],
     first: Option<usize>,
     owner: &dyn Fn(f64) -> Option<usize>,
 ) -> Option<([f64; 2], [Option<usize>; 2])> {
     for _ in 0..80 {
-        let middle = a + (b - a) / 2.0;
-        if middle <= a || middle >= b {
+        let midpoint = a + (b - a) / 2.0;
+        if midpoint <= a || midpoint >= b {
             return Some(([a, b], [first, owner(b)]));
         }
-        if owner(middle) == first { a = middle } else { b = middle }
+        if owner(midpoint) == first { a = midpoint } else { b = midpoint }
     }
     None
 }
 
 /// Returns the rotations about z of a point in the half plane y = 0: onto x and y exactly, and by a random angle. A
 /// point of a solid without rotational symmetry is returned unchanged.
-pub(super) fn turned(subject: &Subject, p: [f64; 3], draw: &mut Rng) -> Vec<[f64; 3]> {
+pub(super) fn rotated_copies(subject: &Subject, p: [f64; 3], rng: &mut Rng) -> Vec<[f64; 3]> {
     if !subject.oracle.revolved() {
         return vec![p];
     }
     let [d, _, z] = p;
-    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+    let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
     vec![p, [0.0, -d, z], [d * cos, d * sin, z]]
 }
 
 /// Returns whether a point lies exactly on the border of two regions: their depths agree to 1e-60 of the tool's size.
 /// The depth outside is 0.
-pub(super) fn exact(subject: &Subject, p: [f64; 3], owners: [Option<usize>; 2]) -> bool {
-    let at: Place = place(p);
+pub(super) fn is_exact(subject: &Subject, p: [f64; 3], owners: [Option<usize>; 2]) -> bool {
+    let exact_point: Place = place(p);
     let depths = owners.map(|owner| match owner {
-        Some(region) => subject.truth.claim(&at, region).map(|claim| claim.depth),
+        Some(region) => subject.truth.claim(&exact_point, region).map(|claim| claim.depth),
         None => Some(touchoff_tests::oracle::big::Big::zero()),
     });
     match depths {

@@ -2,7 +2,7 @@
 
 use super::judge::Judge;
 use super::ledger::{Item, Kind, Ledger, Row};
-use super::text::profile;
+use super::text::profile_text;
 use super::truth::Profiled;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
@@ -12,9 +12,9 @@ use touchoff_tests::oracle::restated::{Restated, Way};
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Rejected by the compiler; the location is the message.
-const REFUSED: Kind = Kind::told("refused", "");
+const REJECTED: Kind = Kind::told("refused", "");
 /// A profile that must be rejected, but was accepted.
-const TAKEN: Kind = Kind::never("taken");
+const ACCEPTED: Kind = Kind::never("taken");
 
 /// A step of a profile: the end point, and the centre if it is an arc.
 type Step = ([f64; 2], Option<[f64; 2]>);
@@ -24,7 +24,7 @@ struct Case {
     name: &'static str,
     start: [f64; 2],
     steps: Vec<Step>,
-    wrong: bool,
+    is_invalid: bool,
 }
 
 fn line(d: f64, z: f64) -> Step {
@@ -36,19 +36,22 @@ fn arc(d: f64, z: f64, centre: [f64; 2]) -> Step {
 }
 
 fn case(name: &'static str, steps: Vec<Step>) -> Case {
-    Case { name, start: [0.0, 0.0], steps, wrong: false }
+    Case { name, start: [0.0, 0.0], steps, is_invalid: false }
 }
 
-fn wrong(name: &'static str, steps: Vec<Step>) -> Case {
-    Case { wrong: true, ..case(name, steps) }
+fn invalid(name: &'static str, steps: Vec<Step>) -> Case {
+    Case { is_invalid: true, ..case(name, steps) }
 }
 
 fn cases() -> Vec<Case> {
     let end = || line(0.0, 9.0);
-    let mut all = vec![
-        wrong("edge of no length", vec![line(2.0, 0.0), line(2.0, 0.0), line(2.0, 9.0), end()]),
-        wrong("arc of 0°", vec![line(2.0, 0.0), arc(2.0, 0.0, [1.0, 0.0]), line(2.0, 9.0), end()]),
-        wrong(
+    let mut cases = vec![
+        invalid("edge of no length", vec![line(2.0, 0.0), line(2.0, 0.0), line(2.0, 9.0), end()]),
+        invalid(
+            "arc of 0°",
+            vec![line(2.0, 0.0), arc(2.0, 0.0, [1.0, 0.0]), line(2.0, 9.0), end()],
+        ),
+        invalid(
             "vertex repeated later",
             vec![
                 line(2.0, 0.0),
@@ -59,8 +62,8 @@ fn cases() -> Vec<Case> {
                 end(),
             ],
         ),
-        wrong("edge on the axis", vec![line(0.0, 3.0), line(2.0, 4.0), line(2.0, 9.0), end()]),
-        wrong(
+        invalid("edge on the axis", vec![line(0.0, 3.0), line(2.0, 4.0), line(2.0, 9.0), end()]),
+        invalid(
             "edge through itself",
             vec![
                 line(4.0, 0.0),
@@ -71,11 +74,11 @@ fn cases() -> Vec<Case> {
                 end(),
             ],
         ),
-        wrong(
+        invalid(
             "touching itself",
             vec![line(4.0, 0.0), line(4.0, 6.0), line(2.0, 0.0), line(2.0, 9.0), end()],
         ),
-        wrong("no inside", vec![line(2.0, 0.0), line(0.0, 0.0)]),
+        invalid("no inside", vec![line(2.0, 0.0), line(0.0, 0.0)]),
         case("half circle", vec![arc(0.0, 4.0, [0.0, 2.0])]),
         case(
             "half circle off the axis",
@@ -162,11 +165,11 @@ fn cases() -> Vec<Case> {
             vec![line(2.0, 0.0), arc(2.0, 8.0, [-1e9, 4.0]), line(2.0, 9.0), end()],
         ),
         case("turn of 1e-8", vec![line(2.0, 0.0), line(2.0, 4.0), line(2.00000005, 9.0), end()]),
-        wrong(
+        invalid(
             "turn of 1e-10",
             vec![line(2.0, 0.0), line(2.0, 4.0), line(2.0000000005, 9.0), end()],
         ),
-        wrong(
+        invalid(
             "turn of 1e-12",
             vec![line(2.0, 0.0), line(2.0, 4.0), line(2.000000000005, 9.0), end()],
         ),
@@ -176,33 +179,33 @@ fn cases() -> Vec<Case> {
         ),
         case("disc of 1e-12", vec![line(9.0, 0.0), line(9.0, 1e-12), line(0.0, 1e-12)]),
     ];
-    all.push(Case {
+    cases.push(Case {
         start: [0.0, 1.0],
         ..case("hollow below", vec![line(1.0, 1.0), line(3.0, 0.0), line(3.0, 9.0), end()])
     });
-    all.push(Case {
+    cases.push(Case {
         start: [0.5, 0.0],
-        ..wrong("beginning off the axis", vec![line(2.0, 0.0), line(2.0, 9.0), end()])
+        ..invalid("beginning off the axis", vec![line(2.0, 0.0), line(2.0, 9.0), end()])
     });
-    all
+    cases
 }
 
 fn restated(case: &Case) -> Restated {
     let point = |p: [f64; 2]| p.map(Big::decimal);
-    let way =
+    let segment =
         |(to, centre): &Step| Way { to: point(*to), centre: centre.map(point), surface: "side" };
     Restated {
         name: "Case",
         start: point(case.start),
-        ways: case.steps.iter().map(way).collect(),
+        ways: case.steps.iter().map(segment).collect(),
         cutting: Vec::new(),
         niceness: |_, _, _| 1.0,
     }
 }
 
 /// Returns points on the surface, at 1e-16 to 1 of the tool's size from it, on the axis and anywhere.
-fn points(oracle: &Nearest, count: usize, draw: &mut Rng) -> Vec<[f64; 3]> {
-    let surface: Vec<[f64; 2]> = oracle.profile().surface().into_iter().flatten().collect();
+fn points(oracle: &Nearest, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
+    let surface: Vec<[f64; 2]> = oracle.profile_text().surface().into_iter().flatten().collect();
     let [radius, height] = oracle.extent();
     let mut points = Vec::new();
     for [d, z] in oracle.corners() {
@@ -211,36 +214,36 @@ fn points(oracle: &Nearest, count: usize, draw: &mut Rng) -> Vec<[f64; 3]> {
         }
     }
     while points.len() < count {
-        let [d, z] = surface[draw.bits() as usize % surface.len()];
-        let reach = 10f64.powf(draw.between(-16.0, 0.0));
-        let across = d + reach * radius * draw.between(-1.0, 1.0);
-        let along = z + reach * height * draw.between(-1.0, 1.0);
-        let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+        let [d, z] = surface[rng.bits() as usize % surface.len()];
+        let distance = 10f64.powf(rng.between(-16.0, 0.0));
+        let point_d = d + distance * radius * rng.between(-1.0, 1.0);
+        let point_z = z + distance * height * rng.between(-1.0, 1.0);
+        let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
         points.push([d, 0.0, z]);
-        points.push([across * cos, across * sin, along]);
-        points.push([0.0, 0.0, draw.between(0.0, height)]);
-        let [x, y] = [0; 2].map(|_| draw.between(-1.1, 1.1) * radius);
-        points.push([x, y, draw.between(-0.1, 1.1) * height]);
+        points.push([point_d * cos, point_d * sin, point_z]);
+        points.push([0.0, 0.0, rng.between(0.0, height)]);
+        let [x, y] = [0; 2].map(|_| rng.between(-1.1, 1.1) * radius);
+        points.push([x, y, rng.between(-0.1, 1.1) * height]);
     }
     points
 }
 
 /// Validates every case.
-pub(super) fn degenerate(item: Item, count: usize, draw: &mut Rng) -> Vec<Row> {
+pub(super) fn degenerate_profiles(item: Item, count: usize, rng: &mut Rng) -> Vec<Row> {
     let mut rows = Vec::new();
     for case in cases() {
         let mut ledger = Ledger::new(item, case.name);
         let restated = restated(&case);
-        match Interpreted::parse(&Source::new("case", profile(&restated, "1"))) {
+        match Interpreted::parse(&Source::new("case", profile_text(&restated, "1"))) {
             Err(error) => {
-                let said = error.to_string();
-                let first = said.lines().next().unwrap_or_default().to_owned();
-                ledger.tell(REFUSED, 1, 0.0, &first);
+                let message = error.to_string();
+                let first = message.lines().next().unwrap_or_default().to_owned();
+                ledger.tell(REJECTED, 1, 0.0, &first);
             }
             Ok(tool) => {
-                ledger.count(TAKEN, case.wrong, || case.name.to_owned());
+                ledger.count(ACCEPTED, case.is_invalid, || case.name.to_owned());
                 let truth = Profiled::new(&tool, &restated);
-                let points = points(&Nearest::new(&restated), count, draw);
+                let points = points(&Nearest::new(&restated), count, rng);
                 Judge::new(&tool, &truth).points(&points, &mut ledger);
             }
         }

@@ -1,63 +1,65 @@
 //! Item 10: invalid or minimal input, which must give typed errors or meaningful results.
 
 use super::ledger::{Item, Kind, Ledger, Row};
-use super::moved::pose;
-use super::scene::{Asked, Given};
+use super::scene::{PointSet, ProbeCheck};
+use super::translated::pose;
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Cloud, Mesh, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
 /// Rejected; the location is the message.
-const REFUSED: Kind = Kind::told("refused", "");
+const REJECTED: Kind = Kind::told("refused", "");
 /// Invalid input that was accepted, or valid input that was rejected.
-const WRONG: Kind = Kind::never("taken, or refused, wrongly");
-const SENSE: Kind = Kind::never("no sense");
+const WRONG_OUTCOME: Kind = Kind::never("taken, or refused, wrongly");
+const SENSELESS_RESULT: Kind = Kind::never("no sense");
 
 const MM: Unit = Unit::Millimetre;
 
 /// Validates clouds of one point, of equal points and of points that are all inside, for one tool.
-pub(super) fn few(subject: &Subject, poses: usize, draw: &mut Rng, ledger: &mut Ledger) {
-    let one = Given::about(subject, 1, 2f64.powi(-30), draw);
-    let same = |count: usize| Given {
-        points: vec![one.points[0]; count],
-        normals: vec![one.normals[0]; count],
+pub(super) fn small_clouds(subject: &Subject, poses: usize, rng: &mut Rng, ledger: &mut Ledger) {
+    let single = PointSet::near_tool(subject, 1, 2f64.powi(-30), rng);
+    let same = |count: usize| PointSet {
+        points: vec![single.points[0]; count],
+        normals: vec![single.normals[0]; count],
         weights: vec![0.5; count],
-        unit: one.unit,
+        unit: single.unit,
     };
-    let inside = inside(subject, 40, draw);
+    let interior = points_inside(subject, 40, rng);
     let (tool, truth) = (subject.tool, &*subject.truth);
-    for given in [one.clone(), same(2), same(16), same(17), same(300), inside.clone()] {
+    for point_set in [single.clone(), same(2), same(16), same(17), same(300), interior.clone()] {
         for k in 0..poses {
-            let pose = if k == 0 { Pose::default() } else { pose(Point3::origin(), draw) };
-            let there = given.at(&pose, 2f64.powi(-30));
-            let part = there.part();
-            Asked { tool, truth, given: &there, part: &part }.at(&pose, ledger);
+            let pose = if k == 0 { Pose::default() } else { pose(Point3::origin(), rng) };
+            let placed = point_set.transformed(&pose, 2f64.powi(-30));
+            let part = placed.part();
+            ProbeCheck { tool, truth, point_set: &placed, part: &part }.check(&pose, ledger);
         }
     }
-    let part = inside.part();
-    let all = Probe::new(&part, tool).contacts(&Pose::default()).len();
-    ledger.count(SENSE, all != inside.points.len(), || format!("{all} of all are felt"));
+    let part = interior.part();
+    let contacts = Probe::new(&part, tool).contacts(&Pose::default()).len();
+    ledger.count(SENSELESS_RESULT, contacts != interior.points.len(), || {
+        format!("{contacts} of all are felt")
+    });
 }
 
 /// Returns points that are all inside, by at least a thousandth of the tool's radius.
-fn inside(subject: &Subject, count: usize, draw: &mut Rng) -> Given {
-    let mut given = Given::about(subject, count, 2f64.powi(-30), draw);
+fn points_inside(subject: &Subject, count: usize, rng: &mut Rng) -> PointSet {
+    let mut point_set = PointSet::near_tool(subject, count, 2f64.powi(-30), rng);
     let [radius, height] = subject.oracle.extent();
-    let mut tries = 0;
-    for p in &mut given.points {
+    let mut attempts = 0;
+    for p in &mut point_set.points {
         loop {
-            let [x, y] = [0; 2].map(|_| draw.between(-radius, radius));
-            let at = [x, y, draw.between(0.0, height)];
-            tries += 1;
-            assert!(tries < 1_000_000, "a tool has an inside");
-            if subject.oracle.signed_distance(at) < -1e-3 * radius {
-                *p = Point3::from(at);
+            let [x, y] = [0; 2].map(|_| rng.between(-radius, radius));
+            let candidate = [x, y, rng.between(0.0, height)];
+            attempts += 1;
+            assert!(attempts < 1_000_000, "a tool has an inside");
+            if subject.oracle.signed_distance(candidate) < -1e-3 * radius {
+                *p = Point3::from(candidate);
                 break;
             }
         }
     }
-    given
+    point_set
 }
 
 /// Makes a cloud of three points after `change` has made one thing wrong.
@@ -85,7 +87,7 @@ struct Lists {
 fn mesh(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<String, String> {
     let corners = corners.iter().map(|p| Point3::from(*p)).collect();
     let mesh = Mesh::new(corners, triangles.to_vec(), MM).map_err(|e| e.to_string())?;
-    let mut said = format!("{} triangles", mesh.triangles().len());
+    let mut description = format!("{} triangles", mesh.triangles().len());
     for cloud in
         [Cloud::sample(&mesh, Sampling::monte_carlo(50)), Cloud::sample(&mesh, Sampling::new(50))]
     {
@@ -96,17 +98,17 @@ fn mesh(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<String, String> 
         if !finite {
             return Ok("a cloud without sense".to_owned());
         }
-        said += &format!(", {} points", cloud.len());
+        description += &format!(", {} points", cloud.len());
     }
-    Ok(said)
+    Ok(description)
 }
 
-fn at(tip: [f64; 3], axis: [f64; 3]) -> Result<String, String> {
+fn pose_from_axis(tip: [f64; 3], axis: [f64; 3]) -> Result<String, String> {
     let pose = Pose::from_axis(Point3::from(tip), Vector3::from(axis));
     pose.map(|_| "a pose".to_owned()).map_err(|e| e.to_string())
 }
 
-fn by(quaternion: [f64; 4]) -> Result<String, String> {
+fn pose_from_quaternion(quaternion: [f64; 4]) -> Result<String, String> {
     let pose = Pose::from_quaternion(Point3::origin(), quaternion);
     pose.map(|_| "a pose".to_owned()).map_err(|e| e.to_string())
 }
@@ -119,15 +121,15 @@ fn outcomes() -> Vec<Outcome> {
     let infinite = f64::INFINITY;
     let tetrahedron = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-    let moved = |place: usize, at: f64| {
+    let with_coordinate = |corner: usize, value: f64| {
         let mut corners = tetrahedron;
-        corners[place][1] = at;
+        corners[corner][1] = value;
         corners
     };
     let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
-    let with = |more: [u32; 3]| {
+    let with_face = |face: [u32; 3]| {
         let mut faces = faces.to_vec();
-        faces.push(more);
+        faces.push(face);
         faces
     };
     vec![
@@ -158,36 +160,37 @@ fn outcomes() -> Vec<Outcome> {
         ("mesh: nothing", true, mesh(&[], &[])),
         ("mesh: no triangle", true, mesh(&tetrahedron, &[])),
         ("mesh: tetrahedron", false, mesh(&tetrahedron, &faces)),
-        ("mesh: a triangle without area", false, mesh(&tetrahedron, &with([0, 1, 1]))),
+        ("mesh: a triangle without area", false, mesh(&tetrahedron, &with_face([0, 1, 1]))),
         ("mesh: only triangles without area", true, mesh(&flat, &[[0, 1, 2], [1, 2, 3]])),
-        ("mesh: no such vertex", true, mesh(&tetrahedron, &with([0, 1, 4]))),
-        ("mesh: NaN", true, mesh(&moved(3, nan), &faces)),
-        ("mesh: infinite", true, mesh(&moved(3, infinite), &faces)),
-        ("mesh: a sliver of 1e-300", false, mesh(&moved(2, 1e-300), &faces)),
-        ("pose: NaN", true, at([nan, 0.0, 0.0], [0.0, 0.0, 1.0])),
-        ("pose: infinite", true, at([0.0, infinite, 0.0], [0.0, 0.0, 1.0])),
-        ("pose: axis 0", true, at([0.0; 3], [0.0; 3])),
-        ("pose: axis NaN", true, at([0.0; 3], [0.0, nan, 1.0])),
-        ("pose: axis 2", true, at([0.0; 3], [0.0, 0.0, 2.0])),
-        ("pose: quaternion 0", true, by([0.0; 4])),
-        ("pose: quaternion NaN", true, by([0.0, 0.0, 0.0, nan])),
-        ("pose: quaternion 1e-160", true, by([1e-160, 0.0, 0.0, 1e-160])),
+        ("mesh: no such vertex", true, mesh(&tetrahedron, &with_face([0, 1, 4]))),
+        ("mesh: NaN", true, mesh(&with_coordinate(3, nan), &faces)),
+        ("mesh: infinite", true, mesh(&with_coordinate(3, infinite), &faces)),
+        ("mesh: a sliver of 1e-300", false, mesh(&with_coordinate(2, 1e-300), &faces)),
+        ("pose: NaN", true, pose_from_axis([nan, 0.0, 0.0], [0.0, 0.0, 1.0])),
+        ("pose: infinite", true, pose_from_axis([0.0, infinite, 0.0], [0.0, 0.0, 1.0])),
+        ("pose: axis 0", true, pose_from_axis([0.0; 3], [0.0; 3])),
+        ("pose: axis NaN", true, pose_from_axis([0.0; 3], [0.0, nan, 1.0])),
+        ("pose: axis 2", true, pose_from_axis([0.0; 3], [0.0, 0.0, 2.0])),
+        ("pose: quaternion 0", true, pose_from_quaternion([0.0; 4])),
+        ("pose: quaternion NaN", true, pose_from_quaternion([0.0, 0.0, 0.0, nan])),
+        ("pose: quaternion 1e-160", true, pose_from_quaternion([1e-160, 0.0, 0.0, 1e-160])),
     ]
 }
 
 /// Checks the input that does not depend on a tool.
-pub(super) fn refused(item: Item) -> Vec<Row> {
+pub(super) fn invalid_input(item: Item) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (name, wrong, outcome) in outcomes() {
+    for (name, must_fail, outcome) in outcomes() {
         let mut ledger = Ledger::new(item, name);
         match &outcome {
-            Ok(said) => {
-                ledger.count(WRONG, wrong, || said.clone());
-                ledger.count(SENSE, said.contains("without sense"), || said.clone());
+            Ok(message) => {
+                ledger.count(WRONG_OUTCOME, must_fail, || message.clone());
+                ledger
+                    .count(SENSELESS_RESULT, message.contains("without sense"), || message.clone());
             }
-            Err(said) => {
-                ledger.count(WRONG, !wrong, || said.clone());
-                ledger.tell(REFUSED, 1, 0.0, said);
+            Err(message) => {
+                ledger.count(WRONG_OUTCOME, !must_fail, || message.clone());
+                ledger.tell(REJECTED, 1, 0.0, message);
             }
         }
         rows.extend(ledger.rows());
@@ -206,6 +209,6 @@ fn huge_weights(item: Item) -> Vec<Row> {
     let tool = tools_library::find("D2Ball").expect("a tool of the library");
     let wrench = Probe::new(&part, tool).wrench(&Pose::default());
     let finite = wrench.force.iter().chain(&wrench.torque).all(|c| c.is_finite());
-    ledger.count(SENSE, !finite, || format!("{wrench:?}"));
+    ledger.count(SENSELESS_RESULT, !finite, || format!("{wrench:?}"));
     ledger.rows()
 }

@@ -54,21 +54,21 @@ impl Answer {
 
 /// Evaluates a tool at points, at a SIMD level. The result is `None` for points outside.
 pub fn answers(tool: &dyn Tool, level: Level, points: &[[f64; 3]]) -> Vec<Option<Answer>> {
-    let (mut list, mut evaluation) = (PointBatch::default(), Evaluations::default());
-    points.iter().for_each(|p| list.push(*p));
-    tool.evaluate(level, Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
-    let one = |at: usize| {
-        (evaluation.inside[at / 8] >> (at % 8) & 1 == 1).then(|| {
-            let [ux, uy, uz] = [0, 1, 2].map(|k| evaluation.direction[k][at]);
-            let [gx, gy, gz] = [0, 1, 2].map(|k| evaluation.gradient[k][at]);
-            let (depth, magnitude) = (evaluation.depth[at], evaluation.magnitude[at]);
+    let (mut batch, mut evaluation) = (PointBatch::default(), Evaluations::default());
+    points.iter().for_each(|p| batch.push(*p));
+    tool.evaluate(level, Outputs::EVERYTHING, &batch, 1.0, &mut evaluation);
+    let answer_at = |index: usize| {
+        (evaluation.inside[index / 8] >> (index % 8) & 1 == 1).then(|| {
+            let [ux, uy, uz] = [0, 1, 2].map(|k| evaluation.direction[k][index]);
+            let [gx, gy, gz] = [0, 1, 2].map(|k| evaluation.gradient[k][index]);
+            let (depth, magnitude) = (evaluation.depth[index], evaluation.magnitude[index]);
             Answer {
-                region: evaluation.region[at] as usize,
-                numbers: [depth, magnitude, evaluation.niceness[at], ux, uy, uz, gx, gy, gz],
+                region: evaluation.region[index] as usize,
+                numbers: [depth, magnitude, evaluation.niceness[index], ux, uy, uz, gx, gy, gz],
             }
         })
     };
-    (0..points.len()).map(one).collect()
+    (0..points.len()).map(answer_at).collect()
 }
 
 /// A tool under validation.
@@ -95,82 +95,85 @@ impl<'a> Judge<'a> {
     /// Validates all points and returns their evaluations for further checks.
     pub fn points(&self, points: &[[f64; 3]], ledger: &mut Ledger) -> Vec<Option<Answer>> {
         let lanes = answers(self.tool, Level::new(), points);
-        let singly = answers(self.tool, Level::baseline(), points);
-        for ((p, one), other) in points.iter().zip(&lanes).zip(&singly) {
+        let baseline = answers(self.tool, Level::baseline(), points);
+        for ((p, answer), baseline_answer) in points.iter().zip(&lanes).zip(&baseline) {
             let bits = |answer: &Option<Answer>| answer.map(|a| (a.region, a.bits()));
-            ledger.count(UNLIKE, bits(one) != bits(other), || format!("{p:?}"));
-            self.point(*p, one.as_ref(), ledger);
+            ledger.count(UNLIKE, bits(answer) != bits(baseline_answer), || format!("{p:?}"));
+            self.point(*p, answer.as_ref(), ledger);
         }
         lanes
     }
 
     fn point(&self, p: [f64; 3], answer: Option<&Answer>, ledger: &mut Ledger) {
-        let at = place(p);
-        let exact = self.truth.depth(&at);
+        let exact_point = place(p);
+        let exact = self.truth.depth(&exact_point);
         let depth = exact.to_f64();
         let regions = &self.tool.info().regions;
-        let shown = || match answer {
+        let describe = || match answer {
             Some(answer) => format!("{p:?} in `{}`", regions[answer.region].name),
             None => format!("{p:?}"),
         };
-        let wrong = answer.is_some() == exact.is_negative() && depth.abs() > DOUBT * self.ulp;
-        ledger.count(SIDES, wrong, shown);
+        let is_wrong_side =
+            answer.is_some() == exact.is_negative() && depth.abs() > DOUBT * self.ulp;
+        ledger.count(SIDES, is_wrong_side, describe);
         let Some(answer) = answer else { return self.outside(p, &exact, ledger) };
         let [_, magnitude, niceness, ..] = answer.numbers;
         let finite = answer.numbers.iter().all(|v| v.is_finite());
-        let sense = finite && answer.depth() >= 0.0 && magnitude >= 0.0 && niceness >= 0.0;
-        ledger.count(SENSELESS, !sense, shown);
+        let is_sensible = finite && answer.depth() >= 0.0 && magnitude >= 0.0 && niceness >= 0.0;
+        ledger.count(SENSELESS, !is_sensible, describe);
         if !finite {
             return;
         }
         // A point that is inside only by rounding has depth 0.
-        let found = Big::exactly(answer.depth());
-        let off = if exact.is_negative() { found } else { &exact - &found };
-        ledger.see(self.depth, off.abs().to_f64() / self.ulp, shown);
-        let Some(claim) = self.truth.claim(&at, answer.region) else {
-            return ledger.count(OWNERS, true, shown);
+        let computed = Big::exactly(answer.depth());
+        let error = if exact.is_negative() { computed } else { &exact - &computed };
+        ledger.see(self.depth, error.abs().to_f64() / self.ulp, describe);
+        let Some(claim) = self.truth.claim(&exact_point, answer.region) else {
+            return ledger.count(OWNERS, true, describe);
         };
-        let behind = claim.behind > DOUBT * self.ulp && !exact.is_negative();
-        ledger.count(OWNERS, behind, shown);
+        let is_wrong_owner = claim.behind > DOUBT * self.ulp && !exact.is_negative();
+        ledger.count(OWNERS, is_wrong_owner, describe);
         let u = answer.direction().map(Big::exactly);
-        let size = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
-        let unit = &size - &Big::exactly(1.0);
-        ledger.see(LENGTH, unit.abs().to_f64() / f64::EPSILON, shown);
-        let apart = |claim: &Claim| {
-            let parts = u.iter().zip(&claim.direction).map(|(a, b)| (a - b).to_f64().powi(2));
-            parts.sum::<f64>().sqrt()
+        let norm = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
+        let length_error = &norm - &Big::exactly(1.0);
+        ledger.see(LENGTH, length_error.abs().to_f64() / f64::EPSILON, describe);
+        let distance_to = |claim: &Claim| {
+            let squares = u.iter().zip(&claim.direction).map(|(a, b)| (a - b).to_f64().powi(2));
+            squares.sum::<f64>().sqrt()
         };
         let (rho, scale) = (claim.singular, self.truth.scale());
         // At a singular point the direction fixed by the language is expected. A centre on the axis need not be a
         // double, so the directions one ulp beside it along z are accepted too.
-        let (blur, apart) = if rho == 0.0 {
-            let beside = [-1.0, 0.0, 1.0].map(|ulps| {
-                let [x, y, z] = at.clone();
+        let (amplification, direction_error) = if rho == 0.0 {
+            let neighbours = [-1.0, 0.0, 1.0].map(|ulps| {
+                let [x, y, z] = exact_point.clone();
                 let p = [x, y, &z + &Big::exactly(ulps * self.ulp)];
-                self.truth.claim(&p, answer.region).map_or(f64::INFINITY, |c| apart(&c))
+                self.truth
+                    .claim(&p, answer.region)
+                    .map_or(f64::INFINITY, |claim| distance_to(&claim))
             });
-            (1.0, beside.into_iter().fold(apart(&claim), f64::min))
+            (1.0, neighbours.into_iter().fold(distance_to(&claim), f64::min))
         } else {
-            ((scale / rho).max(1.0), apart(&claim))
+            ((scale / rho).max(1.0), distance_to(&claim))
         };
-        ledger.see(DIRECTION, apart / (8.0 * f64::EPSILON * blur), shown);
+        ledger.see(DIRECTION, direction_error / (8.0 * f64::EPSILON * amplification), describe);
     }
 
     fn outside(&self, p: [f64; 3], exact: &Big, ledger: &mut Ledger) {
         let clearance = self.tool.clearance(p);
-        let sense = clearance.is_finite() && clearance >= 0.0;
-        ledger.count(SENSELESS, !sense, || format!("{p:?}, {clearance} outside"));
-        if !sense {
+        let is_sensible = clearance.is_finite() && clearance >= 0.0;
+        ledger.count(SENSELESS, !is_sensible, || format!("{p:?}, {clearance} outside"));
+        if !is_sensible {
             return;
         }
-        let over = &Big::exactly(clearance) - &-exact;
+        let excess = &Big::exactly(clearance) - &-exact;
         // A point inside by less than the doubt has distance 0.
-        let over = if exact.is_negative() { over } else { Big::exactly(clearance) };
-        let bound = !self.tool.info().is_exact() && over.is_negative();
-        let off = if bound { 0.0 } else { over.abs().to_f64() };
+        let excess = if exact.is_negative() { excess } else { Big::exactly(clearance) };
+        let is_lower_bound = !self.tool.info().is_exact() && excess.is_negative();
+        let error = if is_lower_bound { 0.0 } else { excess.abs().to_f64() };
         // Beyond the tool's size, rounding grows with the point's coordinates.
-        let far = p.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let ulp = self.ulp.max(f64::EPSILON * far);
-        ledger.see(self.clearance, off / ulp, || format!("{p:?}"));
+        let max_coordinate = p.iter().fold(0.0, |max: f64, c| max.max(c.abs()));
+        let ulp = self.ulp.max(f64::EPSILON * max_coordinate);
+        ledger.see(self.clearance, error / ulp, || format!("{p:?}"));
     }
 }

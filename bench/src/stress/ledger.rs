@@ -128,10 +128,10 @@ impl Ledger {
     }
 
     /// Records a case, and whether the event occurred.
-    pub fn count(&mut self, kind: Kind, wrong: bool, place: impl FnOnce() -> String) {
+    pub fn count(&mut self, kind: Kind, occurred: bool, place: impl FnOnce() -> String) {
         let row = self.row(kind);
         row.cases += 1;
-        if wrong {
+        if occurred {
             if row.worst == 0.0 {
                 row.place = place();
             }
@@ -150,8 +150,8 @@ impl Ledger {
     }
 
     fn row(&mut self, kind: Kind) -> &mut Row {
-        let known = self.rows.iter().position(|row| row.kind == kind);
-        let index = known.unwrap_or_else(|| {
+        let existing = self.rows.iter().position(|row| row.kind == kind);
+        let index = existing.unwrap_or_else(|| {
             let (item, tool) = (self.item, self.tool.clone());
             self.rows.push(Row { item, kind, tool, cases: 0, worst: 0.0, place: String::new() });
             self.rows.len() - 1

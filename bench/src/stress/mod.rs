@@ -4,19 +4,18 @@
 //! the last bit. All random numbers come from one seed, tool by tool and item by item, so a page does not depend on the
 //! number of cores.
 
-mod alike;
 mod axis;
+mod border_points;
 mod borders;
 mod corners;
 mod cycles;
 mod degenerate;
 mod denormal;
+mod equivalent;
 mod input;
 pub mod judge;
 mod leaves;
 pub mod ledger;
-mod moved;
-mod near;
 pub mod page;
 mod poses;
 mod scaled;
@@ -24,6 +23,7 @@ mod scene;
 mod section;
 mod tangent;
 mod text;
+mod translated;
 pub mod truth;
 
 use crate::parallel;
@@ -33,11 +33,11 @@ use truth::{Subject, subjects};
 
 /// The exponents -300, -290 … 300.
 const POWERS: [i32; 61] = {
-    let (mut powers, mut power, mut at) = ([0; 61], -300, 0);
-    while at < powers.len() {
-        powers[at] = power;
+    let (mut powers, mut power, mut index) = ([0; 61], -300, 0);
+    while index < powers.len() {
+        powers[index] = power;
         power += 10;
-        at += 1;
+        index += 1;
     }
     powers
 };
@@ -106,45 +106,49 @@ pub fn measure(
     tool: impl Fn(&str) -> bool,
 ) -> Vec<Row> {
     let subjects: Vec<Subject> = subjects().into_iter().filter(|s| tool(s.name())).collect();
-    let items = Item::all().filter(|one| item(*one));
+    let items = Item::all().filter(|candidate| item(*candidate));
     let mut tasks: Vec<(Item, &Subject)> =
         items.flat_map(|item| subjects.iter().map(move |subject| (item, subject))).collect();
     tasks.sort_by_key(|(item, subject)| (*item, subject.name()));
-    let rows = parallel::rows(tasks.len(), |k| one(amount, tasks[k].0, tasks[k].1));
+    let rows = parallel::rows(tasks.len(), |k| measure_item(amount, tasks[k].0, tasks[k].1));
     let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     if item(Item(9)) {
-        rows.extend(degenerate::degenerate(Item(9), amount.degenerate, &mut Rng::new(amount.seed)));
+        rows.extend(degenerate::degenerate_profiles(
+            Item(9),
+            amount.degenerate,
+            &mut Rng::new(amount.seed),
+        ));
     }
     if item(Item(10)) {
-        rows.extend(input::refused(Item(10)));
+        rows.extend(input::invalid_input(Item(10)));
     }
     rows.sort_by_key(|row| row.item);
     rows
 }
 
 /// Returns the rows of one item for one tool.
-fn one(amount: Amount, item: Item, subject: &Subject) -> Vec<Row> {
+fn measure_item(amount: Amount, item: Item, subject: &Subject) -> Vec<Row> {
     let name = subject.name();
     let mut ledger = Ledger::new(item, name);
-    let letters = name.bytes().fold(0u64, |sum, c| sum.wrapping_mul(31).wrapping_add(c.into()));
-    let mut draw = Rng::new(amount.seed ^ letters.wrapping_mul(64).wrapping_add(item.0 as u64));
+    let name_hash = name.bytes().fold(0u64, |sum, c| sum.wrapping_mul(31).wrapping_add(c.into()));
+    let mut rng = Rng::new(amount.seed ^ name_hash.wrapping_mul(64).wrapping_add(item.0 as u64));
     match item.0 {
-        1 => near::exactly(subject, amount.borders, &mut draw, &mut ledger),
-        2 => near::beside(subject, amount.borders, &mut draw, &mut ledger),
-        3 => corners::meeting(subject, amount.starts, &mut draw, &mut ledger),
-        4 => axis::axis(subject, amount.heights, &mut ledger),
-        5 => scaled::scaled(subject, amount.scaled, &mut draw, &mut ledger),
-        6 => moved::moved(subject, amount.scene, &mut draw, &mut ledger),
-        7 => poses::poses(subject, amount.scene.0, &mut draw, &mut ledger),
-        8 => tangent::tangent(subject, amount.scene.0 / 8, &mut draw, &mut ledger),
-        10 => input::few(subject, amount.scene.1, &mut draw, &mut ledger),
+        1 => border_points::on_borders(subject, amount.borders, &mut rng, &mut ledger),
+        2 => border_points::beside_borders(subject, amount.borders, &mut rng, &mut ledger),
+        3 => corners::equidistant_points(subject, amount.starts, &mut rng, &mut ledger),
+        4 => axis::axis_points(subject, amount.heights, &mut ledger),
+        5 => scaled::scaled_scenes(subject, amount.scaled, &mut rng, &mut ledger),
+        6 => translated::translated_scenes(subject, amount.scene, &mut rng, &mut ledger),
+        7 => poses::aligned_poses(subject, amount.scene.0, &mut rng, &mut ledger),
+        8 => tangent::tangent_contacts(subject, amount.scene.0 / 8, &mut rng, &mut ledger),
+        10 => input::small_clouds(subject, amount.scene.1, &mut rng, &mut ledger),
         11 => {
             let poses = amount.scene.1.div_ceil(4);
-            leaves::leaves(subject, (amount.orders, poses), &mut draw, &mut ledger);
+            leaves::leaves(subject, (amount.orders, poses), &mut rng, &mut ledger);
         }
-        12 => cycles::cycles(subject, amount.cycles, &mut draw, &mut ledger),
-        13 => denormal::denormal(subject, amount.scene.0, &mut draw, &mut ledger),
-        14 => alike::alike(subject, amount.scene, &mut draw, &mut ledger),
+        12 => cycles::cycles(subject, amount.cycles, &mut rng, &mut ledger),
+        13 => denormal::denormal(subject, amount.scene.0, &mut rng, &mut ledger),
+        14 => equivalent::equivalent_scenes(subject, amount.scene, &mut rng, &mut ledger),
         _ => {}
     }
     ledger.rows()

@@ -4,7 +4,7 @@ use super::ledger::{ITEMS, Item, Kind, Row};
 use std::fmt::Write;
 
 /// Description of each item.
-const ASKED: [&str; ITEMS.len()] = [
+const DESCRIPTIONS: [&str; ITEMS.len()] = [
     "Where the truth in 256 bits goes from one owner to another, or from inside to outside, the two doubles side by side between which it does \
      are found by halving, along z and along d; and every vertex and centre is taken. There the contract of section 1 is held, and what the code \
      says is compared with the depth that *each* neighbour has there in 256 bits. Last, what it says on the two sides is compared, less \
@@ -49,16 +49,22 @@ pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
         if own.is_empty() {
             continue;
         }
-        writeln!(page, "## {}. {}\n\n{}\n", item.0, first_up(item.name()), ASKED[item.0 - 1])?;
-        worst(&own, &mut page)?;
+        writeln!(
+            page,
+            "## {}. {}\n\n{}\n",
+            item.0,
+            capitalized(item.name()),
+            DESCRIPTIONS[item.0 - 1]
+        )?;
+        write_worst(&own, &mut page)?;
         match item.0 {
-            9 => cases(&own, &mut page)?,
-            10 => cases(&own, &mut page)?,
-            12 => checksums(&own, &mut page)?,
+            9 => write_cases(&own, &mut page)?,
+            10 => write_cases(&own, &mut page)?,
+            12 => write_checksums(&own, &mut page)?,
             _ => {}
         }
     }
-    shares(rows, &mut page)?;
+    write_shares(rows, &mut page)?;
     page += "## Missed\n\n";
     let missed: Vec<String> =
         rows.iter().filter(|row| row.missed()).map(|row| format!("- {}", row.shown())).collect();
@@ -66,13 +72,15 @@ pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
     Ok(page)
 }
 
-fn first_up(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
 /// Formats a number with about three digits.
-fn figure(value: f64) -> String {
+fn format_value(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
         v if v.fract() == 0.0 && v.abs() < 1e9 => format!("{v}"),
@@ -82,13 +90,13 @@ fn figure(value: f64) -> String {
 }
 
 /// Formats text for a table cell, without vertical bars and line breaks.
-fn cell(text: &str) -> String {
+fn code_cell(text: &str) -> String {
     let flat: String = text.replace('|', "/").replace('\n', " ");
     if flat.is_empty() { String::new() } else { format!("`{}`", flat.replace('`', "'")) }
 }
 
 /// Writes the worst row of each kind over all tools.
-fn worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
+fn write_worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     let mut kinds: Vec<Kind> = Vec::new();
     for row in rows.iter().filter(|row| row.kind.what != "refused") {
         if !kinds.contains(&row.kind) {
@@ -101,34 +109,34 @@ fn worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
         let own = || rows.iter().filter(|row| row.kind == kind);
         let cases: usize = own().map(|row| row.cases).sum();
         let total: f64 = own().map(|row| row.worst).sum();
-        let Some(most) = own().max_by(|a, b| a.worst.total_cmp(&b.worst)) else { continue };
+        let Some(worst_row) = own().max_by(|a, b| a.worst.total_cmp(&b.worst)) else { continue };
         let (value, bar) = match kind.bar {
             0.0 => (total, "0".to_owned()),
-            f64::INFINITY => (most.worst, "told".to_owned()),
-            bar => (most.worst, figure(bar)),
+            f64::INFINITY => (worst_row.worst, "told".to_owned()),
+            bar => (worst_row.worst, format_value(bar)),
         };
         let (tool, place) = if value == 0.0 {
             (String::new(), String::new())
         } else {
-            (most.tool.clone(), cell(&most.place))
+            (worst_row.tool.clone(), code_cell(&worst_row.place))
         };
         writeln!(
             page,
             "| {} | {cases} | {} | {bar} | {} | {tool} | {place} |",
-            cell_text(kind.what),
-            figure(value),
-            cell_text(kind.unit),
+            escape_bars(kind.what),
+            format_value(value),
+            escape_bars(kind.unit),
         )?;
     }
     writeln!(page)
 }
 
-fn cell_text(text: &str) -> String {
+fn escape_bars(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
 /// Writes the outcome of each case.
-fn cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
+fn write_cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
         if !names.contains(&row.tool.as_str()) && tools_library::find(&row.tool).is_none() {
@@ -138,37 +146,43 @@ fn cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "| case | comes to |\n|---|---|")?;
     for name in names {
         let own = || rows.iter().filter(|row| row.tool == name);
-        let refused = own().find(|row| row.kind.what == "refused");
+        let rejection = own().find(|row| row.kind.what == "refused");
         let missed: Vec<String> = own().filter(|row| row.missed()).map(|row| row.shown()).collect();
         let depth = own().find(|row| row.kind.what == "depth");
-        let said = match (refused, depth) {
-            _ if !missed.is_empty() => format!("**missed**: {}", cell(&missed.join("; "))),
-            (Some(refused), _) => format!("refused: {}", cell(&refused.place)),
+        let outcome = match (rejection, depth) {
+            _ if !missed.is_empty() => format!("**missed**: {}", code_cell(&missed.join("; "))),
+            (Some(rejection), _) => format!("refused: {}", code_cell(&rejection.place)),
             (_, Some(depth)) => {
                 format!(
                     "exact: depth to {} ulp(S) at {} points inside",
-                    figure(depth.worst),
+                    format_value(depth.worst),
                     depth.cases
                 )
             }
             _ => "taken".to_owned(),
         };
-        writeln!(page, "| {name} | {said} |")?;
+        writeln!(page, "| {name} | {outcome} |")?;
     }
     writeln!(page)
 }
 
-fn checksums(rows: &[&Row], page: &mut String) -> std::fmt::Result {
+fn write_checksums(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "| tool | cycles | touching | checksum |\n|---|--:|--:|---|")?;
     for row in rows.iter().filter(|row| row.kind.bar.is_infinite()) {
         let share = 100.0 * row.worst;
-        writeln!(page, "| {} | {} | {share:.1} % | {} |", row.tool, row.cases, cell(&row.place))?;
+        writeln!(
+            page,
+            "| {} | {} | {share:.1} % | {} |",
+            row.tool,
+            row.cases,
+            code_cell(&row.place)
+        )?;
     }
     writeln!(page)
 }
 
 /// Writes for each tool and item the largest ratio of a figure to its limit.
-fn shares(rows: &[Row], page: &mut String) -> std::fmt::Result {
+fn write_shares(rows: &[Row], page: &mut String) -> std::fmt::Result {
     let mut tools: Vec<&str> = rows.iter().map(|row| row.tool.as_str()).collect();
     tools.retain(|tool| tools_library::find(tool).is_some());
     tools.sort_unstable();

@@ -2,7 +2,7 @@
 
 use super::judge::{Answer, Judge, answers};
 use super::ledger::{Kind, Ledger};
-use super::text::{by_hand, flattened, power_of_two, profile};
+use super::text::{hand_written_text, power_of_two, profile_text, with_plain_names};
 use super::truth::{Claim, Place, Profiled, Subject, Truth};
 use tool_dsl::source::Source;
 use touchoff::Level;
@@ -12,36 +12,36 @@ use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
 
 /// Exponents at which every tool is accepted and has the same bits.
-const RANGE: std::ops::RangeInclusive<i32> = -40..=160;
-const SAME: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: other bits than unscaled");
+const EXACT_EXPONENTS: std::ops::RangeInclusive<i32> = -40..=160;
+const CHANGED_BITS: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: other bits than unscaled");
 /// The derivative of a magnitude is simplified if a radius is 1, so it may be rounded differently.
-const SLOPE: Kind = Kind::of("2^k, -40 ≤ k ≤ 160: gradient", "ε", 4.0);
-const REFUSED: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: refused");
+const GRADIENT_ERROR: Kind = Kind::of("2^k, -40 ≤ k ≤ 160: gradient", "ε", 4.0);
+const REJECTED: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: refused");
 /// Number of scales beyond that range with other bits, and number of those rejected.
-const UNLIKE: Kind = Kind::told("2^k beyond: other bits", "steps");
-const BEYOND: Kind = Kind::told("2^k beyond: refused", "steps");
+const CHANGED_BITS_BEYOND: Kind = Kind::told("2^k beyond: other bits", "steps");
+const REJECTED_BEYOND: Kind = Kind::told("2^k beyond: refused", "steps");
 /// Errors if an arc's radius exceeds S: the distance from its centre is rounded relative to the larger number.
-const LARGE: Kind = Kind::of("depth, a radius above S", "ulp(S)", 2.0);
-const LARGE_OUTSIDE: Kind = Kind::of("distance outside, a radius above S", "ulp(S)", 2.0);
+const LARGE_RADIUS_DEPTH: Kind = Kind::of("depth, a radius above S", "ulp(S)", 2.0);
+const LARGE_RADIUS_CLEARANCE: Kind = Kind::of("distance outside, a radius above S", "ulp(S)", 2.0);
 
 /// True values with all lengths multiplied by a factor.
 struct Scaled<'a> {
-    own: &'a dyn Truth,
-    by: Big,
+    unscaled: &'a dyn Truth,
+    factor: Big,
     scale: f64,
 }
 
 impl<'a> Scaled<'a> {
     /// Scales true values. `size` is the unscaled tool's largest coordinate.
-    fn new(own: &'a dyn Truth, by: f64, size: f64) -> Scaled<'a> {
-        let mut scale = 2f64.powi((size * by).log2().floor() as i32);
-        while scale <= size * by {
+    fn new(unscaled: &'a dyn Truth, factor: f64, size: f64) -> Scaled<'a> {
+        let mut scale = 2f64.powi((size * factor).log2().floor() as i32);
+        while scale <= size * factor {
             scale *= 2.0;
         }
-        Scaled { own, by: Big::decimal(by), scale }
+        Scaled { unscaled, factor: Big::decimal(factor), scale }
     }
 
-    fn back(&self, p: &Place) -> Place {
+    fn to_unscaled(&self, p: &Place) -> Place {
         std::array::from_fn(|k| &p[k] / &self.by)
     }
 }
@@ -52,154 +52,156 @@ impl Truth for Scaled<'_> {
     }
 
     fn depth(&self, p: &Place) -> Big {
-        &self.own.depth(&self.back(p)) * &self.by
+        &self.unscaled.depth(&self.to_unscaled(p)) * &self.factor
     }
 
     fn owner(&self, p: &Place) -> Option<usize> {
-        self.own.owner(&self.back(p))
+        self.unscaled.owner(&self.to_unscaled(p))
     }
 
     fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let claim = self.own.claim(&self.back(p), region)?;
-        let by = self.by.to_f64();
+        let claim = self.unscaled.claim(&self.to_unscaled(p), region)?;
+        let factor = self.factor.to_f64();
         Some(Claim {
-            depth: &claim.depth * &self.by,
-            behind: claim.behind * by,
-            singular: claim.singular * by,
+            depth: &claim.depth * &self.factor,
+            behind: claim.behind * factor,
+            singular: claim.singular * factor,
             ..claim
         })
     }
 }
 
 /// Compiles a tool with its lengths multiplied by the expression `scale`.
-fn written(subject: &Subject, scale: &str) -> Result<Interpreted, ToolError> {
+fn compile_scaled(subject: &Subject, scale: &str) -> Result<Interpreted, ToolError> {
     let name = subject.name();
-    let text = by_hand(name, scale).unwrap_or_else(|| {
+    let text = hand_written_text(name, scale).unwrap_or_else(|| {
         let tool = restated::of(name).expect("what is not written by hand is restated");
-        profile(&flattened(&tool), scale)
+        profile_text(&with_plain_names(&tool), scale)
     });
     Interpreted::parse(&Source::new(name, text))
 }
 
 /// Returns points near the tool's curves, at its corners, on its axis and anywhere.
-fn points(subject: &Subject, count: usize, draw: &mut Rng) -> Vec<[f64; 3]> {
+fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
     let curves: Vec<[f64; 3]> = subject.oracle.curve_points().into_iter().flatten().collect();
     let mut points: Vec<[f64; 3]> = subject.oracle.corner_points();
     let [radius, height] = subject.oracle.extent();
     while points.len() < count {
-        let on = curves[draw.bits() as usize % curves.len()];
-        let reach = 10f64.powf(draw.between(-16.0, -1.0));
-        let step = draw.direction().map(|c| reach * c * radius);
-        let angle = draw.between(0.0, std::f64::consts::TAU);
-        points.push(touchoff_tests::oracle::moved(&*subject.oracle, on, step, angle));
-        let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-        points.push([across[0], across[1], draw.between(-0.05, 1.05) * height]);
-        points.push([0.0, 0.0, draw.between(0.0, height)]);
+        let origin = curves[rng.bits() as usize % curves.len()];
+        let distance = 10f64.powf(rng.between(-16.0, -1.0));
+        let step = rng.direction().map(|c| distance * c * radius);
+        let angle = rng.between(0.0, std::f64::consts::TAU);
+        points.push(touchoff_tests::oracle::moved(&*subject.oracle, origin, step, angle));
+        let xy = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+        points.push([xy[0], xy[1], rng.between(-0.05, 1.05) * height]);
+        points.push([0.0, 0.0, rng.between(0.0, height)]);
     }
     points
 }
 
-/// Returns whether two evaluations agree to the last bit: lengths up to the factor `by`, niceness and direction as they
-/// are.
-fn same(a: Option<&Answer>, b: Option<&Answer>, by: f64) -> bool {
+/// Returns whether two evaluations agree to the last bit: lengths up to `factor`, niceness and direction as they are.
+fn same_bits(a: Option<&Answer>, b: Option<&Answer>, factor: f64) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return a.is_none() == b.is_none() };
     let mut scaled = a.numbers;
-    scaled[0] *= by;
-    scaled[1] *= by;
+    scaled[0] *= factor;
+    scaled[1] *= factor;
     a.region == b.region && scaled.map(f64::to_bits)[..6] == b.bits()[..6]
 }
 
 /// Returns the largest difference between the components of two gradients, in units of ε.
-fn turned(a: Option<&Answer>, b: Option<&Answer>) -> f64 {
+fn gradient_difference(a: Option<&Answer>, b: Option<&Answer>) -> f64 {
     let (Some(a), Some(b)) = (a, b) else { return 0.0 };
-    let apart = (6..9).map(|k| (a.numbers[k] - b.numbers[k]).abs());
-    apart.fold(0.0, f64::max) / f64::EPSILON
+    let differences = (6..9).map(|k| (a.numbers[k] - b.numbers[k]).abs());
+    differences.fold(0.0, f64::max) / f64::EPSILON
 }
 
 /// Scales by powers of two, and by factors that are not powers of two.
-pub(super) fn scaled(
+pub(super) fn scaled_scenes(
     subject: &Subject,
     (count, powers): (usize, &[i32]),
-    draw: &mut Rng,
+    rng: &mut Rng,
     ledger: &mut Ledger,
 ) {
-    let points = points(subject, count, draw);
-    let base = written(subject, "1").expect("the tool that is restated");
+    let points = points(subject, count, rng);
+    let base = compile_scaled(subject, "1").expect("the tool that is restated");
     let unscaled = answers(&base, Level::new(), &points);
-    let mut beyond = [Vec::new(), Vec::new()];
+    let mut outside_range = [Vec::new(), Vec::new()];
     for &k in powers {
-        let within = RANGE.contains(&k);
-        let tool = match written(subject, &power_of_two(k)) {
+        let in_range = EXACT_EXPONENTS.contains(&k);
+        let tool = match compile_scaled(subject, &power_of_two(k)) {
             Ok(tool) => tool,
             Err(error) => {
-                if within {
-                    ledger.count(REFUSED, true, || format!("k = {k}: {error}"));
+                if in_range {
+                    ledger.count(REJECTED, true, || format!("k = {k}: {error}"));
                 } else {
-                    beyond[1].push(k);
+                    outside_range[1].push(k);
                 }
                 continue;
             }
         };
-        if within {
-            ledger.count(REFUSED, false, String::new);
+        if in_range {
+            ledger.count(REJECTED, false, String::new);
         }
-        let by = 2f64.powi(k);
-        let there: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * by)).collect();
-        let scaled = answers(&tool, Level::new(), &there);
-        let mut all = true;
+        let factor = 2f64.powi(k);
+        let scaled_points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * factor)).collect();
+        let scaled = answers(&tool, Level::new(), &scaled_points);
+        let mut all_equal = true;
         for ((p, a), b) in points.iter().zip(&unscaled).zip(&scaled) {
             // Skip points so close to 0 that scaling loses bits.
-            if p.iter().any(|c| (c * by) / by != *c) {
+            if p.iter().any(|c| (c * factor) / factor != *c) {
                 continue;
             }
-            let like = same(a.as_ref(), b.as_ref(), by);
-            all &= like;
-            if within {
-                ledger.count(SAME, !like, || format!("{p:?} at k = {k}: {a:?}, {b:?}"));
-                let slope = turned(a.as_ref(), b.as_ref());
-                ledger.see(SLOPE, slope, || format!("{p:?} at k = {k}"));
+            let equal = same_bits(a.as_ref(), b.as_ref(), factor);
+            all_equal &= equal;
+            if in_range {
+                ledger.count(CHANGED_BITS, !equal, || format!("{p:?} at k = {k}: {a:?}, {b:?}"));
+                let difference = gradient_difference(a.as_ref(), b.as_ref());
+                ledger.see(GRADIENT_ERROR, difference, || format!("{p:?} at k = {k}"));
             }
         }
-        if !all && !within {
-            beyond[0].push(k);
+        if !all_equal && !in_range {
+            outside_range[0].push(k);
         }
     }
-    for (kind, steps) in [UNLIKE, BEYOND].into_iter().zip(&beyond) {
+    for (kind, steps) in [CHANGED_BITS_BEYOND, REJECTED_BEYOND].into_iter().zip(&outside_range) {
         ledger.tell(kind, 1, steps.len() as f64, &format!("k = {steps:?}"));
     }
-    for (text, by) in [("1e-9", 1e-9), ("25.4", 25.4), ("1e6", 1e6)] {
-        let tool = match written(subject, text) {
+    for (text, factor) in [("1e-9", 1e-9), ("25.4", 25.4), ("1e6", 1e6)] {
+        let tool = match compile_scaled(subject, text) {
             Ok(tool) => tool,
             Err(error) => {
-                ledger.count(REFUSED, true, || format!("{text}: {error}"));
+                ledger.count(REJECTED, true, || format!("{text}: {error}"));
                 continue;
             }
         };
-        let own = restated::of(subject.name()).map(|own| Profiled::new(&tool, &flattened(&own)));
-        let own: &dyn Truth = own.as_ref().map_or(&*subject.truth, |own| own);
-        let truth = Scaled::new(own, by, size(subject));
-        let there: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * by)).collect();
+        let profiled = restated::of(subject.name())
+            .map(|restatement| Profiled::new(&tool, &with_plain_names(&restatement)));
+        let truth_of_tool: &dyn Truth =
+            profiled.as_ref().map_or(&*subject.truth, |profiled| profiled);
+        let truth = Scaled::new(truth_of_tool, factor, max_coordinate(subject));
+        let scaled_points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * factor)).collect();
         let judge = Judge::new(&tool, &truth);
-        if largest_radius(subject) * by > truth.scale() {
-            Judge { depth: LARGE, clearance: LARGE_OUTSIDE, ..judge }.points(&there, ledger);
+        if largest_radius(subject) * factor > truth.scale() {
+            Judge { depth: LARGE_RADIUS_DEPTH, clearance: LARGE_RADIUS_CLEARANCE, ..judge }
+                .points(&scaled_points, ledger);
         } else {
-            judge.points(&there, ledger);
+            judge.points(&scaled_points, ledger);
         }
     }
 }
 
 /// Returns the largest coordinate of the tool's corners.
-fn size(subject: &Subject) -> f64 {
+fn max_coordinate(subject: &Subject) -> f64 {
     let corners = subject.oracle.corner_points().into_iter().flatten();
-    corners.fold(0.0, |most: f64, c| most.max(c.abs()))
+    corners.fold(0.0, |max: f64, c| max.max(c.abs()))
 }
 
 /// Returns the largest radius of the tool's arcs.
 fn largest_radius(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.0 };
-    let radius = |way: &restated::Way| {
-        let centre = way.centre.as_ref()?;
-        let [d, z] = [0, 1].map(|k| (&way.to[k] - &centre[k]).to_f64());
+    let radius = |segment: &restated::Way| {
+        let centre = segment.centre.as_ref()?;
+        let [d, z] = [0, 1].map(|k| (&segment.to[k] - &centre[k]).to_f64());
         Some(d.hypot(z))
     };
     tool.ways.iter().filter_map(radius).fold(0.0, f64::max)

@@ -8,27 +8,28 @@ use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Rng;
 
 /// Error of a contact's depth relative to the true depth of the given point.
-pub(super) const DEPTHS: Kind = Kind::of("depth of contacts", "Probe::rounding_error_bound", 1.0);
+pub(super) const DEPTH_ERROR: Kind =
+    Kind::of("depth of contacts", "Probe::rounding_error_bound", 1.0);
 /// Points beyond doubt inside without a contact, or beyond doubt outside with one.
-pub(super) const MEMBERS: Kind = Kind::never("wrong contact");
+pub(super) const WRONG_CONTACT: Kind = Kind::never("wrong contact");
 /// Error of force and torque relative to the sums over the contacts in 256 bits.
-pub(super) const SUMS: Kind = Kind::of("force and torque", "rounding of the sums", 1.0);
+pub(super) const SUM_ERROR: Kind = Kind::of("force and torque", "rounding of the sums", 1.0);
 /// Contradictions between the answers of different queries.
-pub(super) const ALIKE: Kind = Kind::never("questions disagree");
+pub(super) const INCONSISTENT_QUERIES: Kind = Kind::never("questions disagree");
 /// Numbers that are not finite.
-pub(super) const FINITE: Kind = Kind::never("senseless number");
+pub(super) const NOT_FINITE: Kind = Kind::never("senseless number");
 
 /// Difference of a depth between two equivalent scenes, which comes from the rounding of both clouds and of the
 /// coordinates.
-const APART: Kind = Kind::of("depth in both scenes", "both errors and rounding", 1.0);
-const LOST: Kind = Kind::never("contact in one scene only");
+const DEPTH_DIFFERENCE: Kind = Kind::of("depth in both scenes", "both errors and rounding", 1.0);
+const UNMATCHED_CONTACT: Kind = Kind::never("contact in one scene only");
 
 /// Checks that the contacts of two equivalent scenes agree to `bound`. A contact's triangle is the index of its point.
-pub(super) fn apart(
+pub(super) fn compare_depths(
     [a, b]: [&[Contact]; 2],
     count: usize,
     bound: f64,
-    place: impl Fn() -> String,
+    location: impl Fn() -> String,
     ledger: &mut Ledger,
 ) {
     let depths = |contacts: &[Contact]| {
@@ -39,10 +40,12 @@ pub(super) fn apart(
         depths
     };
     for (k, pair) in depths(a).into_iter().zip(depths(b)).enumerate() {
-        let place = || format!("point {k}, {}", place());
+        let location = || format!("point {k}, {}", location());
         match pair {
-            (Some(a), Some(b)) => ledger.see(APART, (a - b).abs() / bound, place),
-            (Some(one), None) | (None, Some(one)) => ledger.count(LOST, one > bound, place),
+            (Some(a), Some(b)) => ledger.see(DEPTH_DIFFERENCE, (a - b).abs() / bound, location),
+            (Some(depth), None) | (None, Some(depth)) => {
+                ledger.count(UNMATCHED_CONTACT, depth > bound, location)
+            }
             (None, None) => {}
         }
     }
@@ -50,14 +53,14 @@ pub(super) fn apart(
 
 /// Points, normals and weights in the world frame.
 #[derive(Clone)]
-pub(super) struct Given {
+pub(super) struct PointSet {
     pub(super) points: Vec<Point3<f64>>,
     pub(super) normals: Vec<Vector3<f64>>,
     pub(super) weights: Vec<f64>,
     pub(super) unit: Unit,
 }
 
-impl Given {
+impl PointSet {
     /// Builds the part. The triangle of each point is its index.
     pub(super) fn part(&self) -> Part {
         let ids = (0..self.points.len() as u32).collect();
@@ -68,60 +71,60 @@ impl Given {
 
     /// Returns random points near a tool's surface and splitting curves, in the tool's frame and unit. Every second
     /// point may be farther away than the others. Coordinates are multiples of `grid`; normals have any direction.
-    pub(super) fn about(subject: &Subject, count: usize, grid: f64, draw: &mut Rng) -> Given {
+    pub(super) fn near_tool(subject: &Subject, count: usize, grid: f64, rng: &mut Rng) -> PointSet {
         let curves = subject.oracle.curve_points();
         let reach = 0.2 * subject.oracle.extent()[0];
-        let mut given = Given {
+        let mut point_set = PointSet {
             points: Vec::new(),
             normals: Vec::new(),
             weights: Vec::new(),
             unit: subject.tool.info().unit,
         };
         for k in 0..count {
-            let curve = &curves[draw.bits() as usize % curves.len()];
-            let on = curve[draw.bits() as usize % curve.len()];
-            let step = draw.direction().map(|c| c * reach * if k % 2 == 0 { 0.05 } else { 1.0 });
-            let angle = draw.between(0.0, std::f64::consts::TAU);
-            let p = touchoff_tests::oracle::moved(&*subject.oracle, on, step, angle);
-            given.points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
-            given.normals.push(Vector3::from(draw.direction()));
-            given.weights.push(draw.between(0.1, 2.0));
+            let curve = &curves[rng.bits() as usize % curves.len()];
+            let origin = curve[rng.bits() as usize % curve.len()];
+            let step = rng.direction().map(|c| c * reach * if k % 2 == 0 { 0.05 } else { 1.0 });
+            let angle = rng.between(0.0, std::f64::consts::TAU);
+            let p = touchoff_tests::oracle::moved(&*subject.oracle, origin, step, angle);
+            point_set.points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
+            point_set.normals.push(Vector3::from(rng.direction()));
+            point_set.weights.push(rng.between(0.1, 2.0));
         }
-        given
+        point_set
     }
 
     /// Transforms the points by a pose and rounds them to the grid again.
-    pub(super) fn at(&self, pose: &Pose, grid: f64) -> Given {
-        let carried = |p: &Point3<f64>| {
-            let there = pose.tip() + pose.rotation() * p.coords;
-            there.map(|c| (c / grid).round() * grid)
+    pub(super) fn transformed(&self, pose: &Pose, grid: f64) -> PointSet {
+        let transform = |p: &Point3<f64>| {
+            let p = pose.tip() + pose.rotation() * p.coords;
+            p.map(|c| (c / grid).round() * grid)
         };
-        Given { points: self.points.iter().map(carried).collect(), ..self.clone() }
+        PointSet { points: self.points.iter().map(transform).collect(), ..self.clone() }
     }
 
     /// Translates the points.
-    pub(super) fn moved(&self, by: Vector3<f64>) -> Given {
-        Given { points: self.points.iter().map(|p| p + by).collect(), ..self.clone() }
+    pub(super) fn translated(&self, offset: Vector3<f64>) -> PointSet {
+        PointSet { points: self.points.iter().map(|p| p + offset).collect(), ..self.clone() }
     }
 }
 
 /// Formats a pose to the last bit.
-pub(super) fn shown(pose: &Pose) -> String {
+pub(super) fn format_pose(pose: &Pose) -> String {
     let (tip, r) = (pose.tip(), pose.rotation());
     let list = |v: &[f64]| format!("{v:?}");
     format!("tip {}, axes {}", list(tip.coords.as_slice()), list(r.as_slice()))
 }
 
-fn exactly(v: &Vector3<f64>) -> Place {
+fn to_big(v: &Vector3<f64>) -> Place {
     [v.x, v.y, v.z].map(Big::exactly)
 }
 
-fn sum(a: &Place, b: &Place) -> Place {
+fn add(a: &Place, b: &Place) -> Place {
     std::array::from_fn(|k| &a[k] + &b[k])
 }
 
-fn scaled(a: &Place, by: &Big) -> Place {
-    std::array::from_fn(|k| &a[k] * by)
+fn scale(a: &Place, factor: &Big) -> Place {
+    std::array::from_fn(|k| &a[k] * factor)
 }
 
 fn cross(a: &Place, b: &Place) -> Place {
@@ -132,47 +135,49 @@ fn cross(a: &Place, b: &Place) -> Place {
 }
 
 /// Returns the distance between a vector of doubles and one of 256 bits.
-fn off(a: &Vector3<f64>, b: &Place) -> f64 {
-    let squares = exactly(a).iter().zip(b).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
-    squares.sqrt()
+fn distance(a: &Vector3<f64>, b: &Place) -> f64 {
+    let sum_of_squares =
+        to_big(a).iter().zip(b).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
+    sum_of_squares.sqrt()
 }
 
 /// Transforms a point to the tool's frame and unit.
 pub(super) fn in_tool(p: &Point3<f64>, pose: &Pose, [tool, part]: [Unit; 2]) -> Place {
-    let from: Place = std::array::from_fn(|k| &Big::exactly(p[k]) - &Big::exactly(pose.tip()[k]));
-    let mm = |unit: Unit| Big::decimal(unit.millimetres());
-    let per = &mm(part) / &mm(tool);
+    let offset: Place = std::array::from_fn(|k| &Big::exactly(p[k]) - &Big::exactly(pose.tip()[k]));
+    let millimetres = |unit: Unit| Big::decimal(unit.millimetres());
+    let factor = &millimetres(part) / &millimetres(tool);
     std::array::from_fn(|k| {
-        let terms = (0..3).map(|j| &Big::exactly(pose.rotation()[(j, k)]) * &from[j]);
-        &terms.fold(Big::zero(), |sum, term| &sum + &term) * &per
+        let terms = (0..3).map(|j| &Big::exactly(pose.rotation()[(j, k)]) * &offset[j]);
+        &terms.fold(Big::zero(), |sum, term| &sum + &term) * &factor
     })
 }
 
 /// A tool and a part, with the true values for validation.
-pub(super) struct Asked<'a> {
+pub(super) struct ProbeCheck<'a> {
     pub(super) tool: &'a dyn Tool,
     pub(super) truth: &'a dyn Truth,
-    pub(super) given: &'a Given,
+    pub(super) point_set: &'a PointSet,
     pub(super) part: &'a Part,
 }
 
-impl Asked<'_> {
+impl ProbeCheck<'_> {
     /// Queries at a pose, validates the answers, and returns contacts and wrench for further checks.
-    pub(super) fn at(&self, pose: &Pose, ledger: &mut Ledger) -> (Vec<Contact>, Wrench) {
+    pub(super) fn check(&self, pose: &Pose, ledger: &mut Ledger) -> (Vec<Contact>, Wrench) {
         let mut probe = Probe::new(self.part, self.tool);
         let contacts = probe.contacts(pose).to_vec();
         let wrench = probe.wrench(pose);
-        let (found, deepest) = (probe.detect(pose), probe.deepest(pose));
+        let (has_contact, deepest) = (probe.detect(pose), probe.deepest(pose));
         let posture = probe.posture(pose);
-        let most = contacts.iter().map(|c| c.depth).fold(None, |most: Option<f64>, depth| {
-            Some(most.map_or(depth, |most| most.max(depth)))
-        });
-        let alike = found != contacts.is_empty()
+        let max_depth =
+            contacts.iter().map(|c| c.depth).fold(None, |max_depth: Option<f64>, depth| {
+                Some(max_depth.map_or(depth, |max_depth| max_depth.max(depth)))
+            });
+        let is_consistent = has_contact != contacts.is_empty()
             && wrench.colliding == contacts.len()
             && posture.colliding == contacts.len()
-            && deepest.map(|d| d.depth) == most
-            && wrench.deepest.map(|d| d.depth) == most;
-        ledger.count(ALIKE, !alike, || shown(pose));
+            && deepest.map(|d| d.depth) == max_depth
+            && wrench.deepest.map(|d| d.depth) == max_depth;
+        ledger.count(INCONSISTENT_QUERIES, !is_consistent, || format_pose(pose));
         let error =
             probe.rounding_error_bound().expect("how steep depth is was proved of every tool");
         self.points(pose, &contacts, error, ledger);
@@ -180,29 +185,29 @@ impl Asked<'_> {
         (contacts, wrench)
     }
 
-    fn points(&self, pose: &Pose, contacts: &[Contact], error: f64, ledger: &mut Ledger) {
-        let units = [self.tool.info().unit, self.given.unit];
+    fn points(&self, pose: &Pose, contacts: &[Contact], error_bound: f64, ledger: &mut Ledger) {
+        let units = [self.tool.info().unit, self.point_set.unit];
         let length = &Big::decimal(units[0].millimetres()) / &Big::decimal(units[1].millimetres());
-        let mut evaluation: Vec<Option<&Contact>> = vec![None; self.given.points.len()];
+        let mut evaluation: Vec<Option<&Contact>> = vec![None; self.point_set.points.len()];
         for contact in contacts {
             evaluation[contact.triangle.index()] = Some(contact);
         }
-        for (p, contact) in self.given.points.iter().zip(evaluation) {
-            let place = in_tool(p, pose, units);
-            let exact = &self.truth.depth(&place) * &length;
+        for (p, contact) in self.point_set.points.iter().zip(evaluation) {
+            let tool_point = in_tool(p, pose, units);
+            let exact = &self.truth.depth(&tool_point) * &length;
             let depth = exact.to_f64();
-            let shown = || format!("{:?} of {}", [p.x, p.y, p.z], shown(pose));
-            let wrong = contact.is_some() != (depth >= 0.0) && depth.abs() > error;
-            ledger.count(MEMBERS, wrong, shown);
+            let describe = || format!("{:?} of {}", [p.x, p.y, p.z], format_pose(pose));
+            let is_wrong = contact.is_some() != (depth >= 0.0) && depth.abs() > error_bound;
+            ledger.count(WRONG_CONTACT, is_wrong, describe);
             let Some(contact) = contact else { continue };
             let finite = contact.depth.is_finite()
                 && contact.direction.iter().chain(&contact.gradient).all(|c| c.is_finite());
-            ledger.count(FINITE, !finite, shown);
+            ledger.count(NOT_FINITE, !finite, describe);
             if finite {
-                let off = (&Big::exactly(contact.depth) - &exact).abs().to_f64();
+                let error = (&Big::exactly(contact.depth) - &exact).abs().to_f64();
                 // A point outside by less than the error bound may be a contact; its true depth is 0.
-                let off = if depth < 0.0 { contact.depth } else { off };
-                ledger.see(DEPTHS, off / error, shown);
+                let error = if depth < 0.0 { contact.depth } else { error };
+                ledger.see(DEPTH_ERROR, error / error_bound, describe);
             }
         }
     }
@@ -211,35 +216,40 @@ impl Asked<'_> {
         let finite = wrench.force.iter().chain(&wrench.torque).all(|c| c.is_finite())
             && wrench.integral.is_finite()
             && wrench.energy.is_finite();
-        ledger.count(FINITE, !finite, || shown(pose));
+        ledger.count(NOT_FINITE, !finite, || format_pose(pose));
         if !finite {
             return;
         }
         let zero = || [Big::zero(), Big::zero(), Big::zero()];
         let (mut force, mut torque) = (zero(), zero());
-        let (mut integral, mut size, mut lever) = (Big::zero(), 0.0, 0.0);
+        let (mut integral, mut force_bound, mut torque_bound) = (Big::zero(), 0.0, 0.0);
         let tip = pose.tip();
         for contact in contacts {
-            let push = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-            let [n, u] = [exactly(&contact.normal), exactly(&contact.direction)];
-            let f = scaled(&sum(&n, &scaled(&u, &Big::exactly(-1.0))), &push);
+            let magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
+            let [n, u] = [to_big(&contact.normal), to_big(&contact.direction)];
+            let f = scale(&add(&n, &scale(&u, &Big::exactly(-1.0))), &magnitude);
             let arm: Place =
                 std::array::from_fn(|k| &Big::exactly(contact.point[k]) - &Big::exactly(tip[k]));
-            torque = sum(&torque, &cross(&arm, &f));
-            force = sum(&force, &f);
-            integral = &integral + &push;
-            let most = 2.0 * push.to_f64();
-            size += most;
+            torque = add(&torque, &cross(&arm, &f));
+            force = add(&force, &f);
+            integral = &integral + &magnitude;
+            let max_force = 2.0 * magnitude.to_f64();
+            force_bound += max_force;
             // The point of a contact is rounded in world coordinates.
-            let far = contact.point.coords.amax().max(tip.coords.amax());
-            lever += most * ((contact.point - tip).norm() + far);
+            let max_coordinate = contact.point.coords.amax().max(tip.coords.amax());
+            torque_bound += max_force * ((contact.point - tip).norm() + max_coordinate);
         }
         let rounding = f64::EPSILON * (16.0 + contacts.len() as f64 / 4.0);
-        let part =
-            |off: f64, size: f64| if off == 0.0 { 0.0 } else { off / (rounding * size + 1e-320) };
-        ledger.see(SUMS, part(off(&wrench.force, &force), size), || shown(pose));
-        ledger.see(SUMS, part(off(&wrench.torque, &torque), lever), || shown(pose));
-        let off = (&Big::exactly(wrench.integral) - &integral).abs().to_f64();
-        ledger.see(SUMS, part(off, size), || shown(pose));
+        let ratio = |difference: f64, force_bound: f64| {
+            if difference == 0.0 { 0.0 } else { difference / (rounding * force_bound + 1e-320) }
+        };
+        ledger.see(SUM_ERROR, ratio(distance(&wrench.force, &force), force_bound), || {
+            format_pose(pose)
+        });
+        ledger.see(SUM_ERROR, ratio(distance(&wrench.torque, &torque), torque_bound), || {
+            format_pose(pose)
+        });
+        let difference = (&Big::exactly(wrench.integral) - &integral).abs().to_f64();
+        ledger.see(SUM_ERROR, ratio(difference, force_bound), || format_pose(pose));
     }
 }

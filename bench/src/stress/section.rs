@@ -22,19 +22,19 @@ pub(super) struct Meeting {
 
 #[derive(Clone, Copy)]
 enum Feature {
-    Line { from: P2, along: P2, length: f64 },
+    Line { from: P2, direction: P2, length: f64 },
     Arc { centre: P2, radius: f64, ends: [P2; 2], sense: f64 },
-    Vertex { at: P2, tangents: [Option<P2>; 2], turn: f64 },
+    Vertex { point: P2, tangents: [Option<P2>; 2], turn: f64 },
 }
 
 /// A border, as the zero set of a function.
 #[derive(Clone, Copy)]
 enum Border {
     Pair(usize, usize),
-    Fan { at: P2, tangent: P2 },
+    Fan { point: P2, tangent: P2 },
 }
 
-fn sub(a: P2, b: P2) -> P2 {
+fn subtract(a: P2, b: P2) -> P2 {
     [a[0] - b[0], a[1] - b[1]]
 }
 fn dot(a: P2, b: P2) -> f64 {
@@ -52,40 +52,41 @@ impl Feature {
     /// Returns the distance and its gradient.
     fn distance(&self, p: P2) -> (f64, P2) {
         match *self {
-            Feature::Line { from, along, .. } => {
-                let off = cross(along, sub(p, from));
-                (off.abs(), [-along[1] * off.signum(), along[0] * off.signum()])
+            Feature::Line { from, direction, .. } => {
+                let offset = cross(direction, subtract(p, from));
+                (offset.abs(), [-direction[1] * offset.signum(), direction[0] * offset.signum()])
             }
             Feature::Arc { centre, radius, .. } => {
-                let arm = sub(p, centre);
-                let off = arm[0].hypot(arm[1]) - radius;
-                (off.abs(), unit(arm).map(|c| c * off.signum()))
+                let from_centre = subtract(p, centre);
+                let offset = from_centre[0].hypot(from_centre[1]) - radius;
+                (offset.abs(), unit(from_centre).map(|c| c * offset.signum()))
             }
-            Feature::Vertex { at, .. } => {
-                let arm = sub(p, at);
-                (arm[0].hypot(arm[1]), unit(arm))
+            Feature::Vertex { point, .. } => {
+                let from_vertex = subtract(p, point);
+                (from_vertex[0].hypot(from_vertex[1]), unit(from_vertex))
             }
         }
     }
 
-    /// Returns whether the feature may own a point, on this side of the profile, to the tolerance `close`.
-    fn faces(&self, p: P2, close: f64) -> bool {
+    /// Returns whether the feature may own a point, on this side of the profile, to a tolerance.
+    fn faces(&self, p: P2, tolerance: f64) -> bool {
         match *self {
-            Feature::Line { from, along, length } => {
-                (-close..=length + close).contains(&dot(sub(p, from), along))
+            Feature::Line { from, direction, length } => {
+                (-tolerance..=length + tolerance).contains(&dot(subtract(p, from), direction))
             }
             Feature::Arc { centre, ends, sense, radius } => {
-                let (q, [a, b]) = (unit(sub(p, centre)), ends.map(|end| unit(sub(end, centre))));
-                let close = close / radius;
-                sense * cross(a, q) >= -close && sense * cross(q, b) >= -close
+                let (q, [a, b]) =
+                    (unit(subtract(p, centre)), ends.map(|end| unit(subtract(end, centre))));
+                let tolerance = tolerance / radius;
+                sense * cross(a, q) >= -tolerance && sense * cross(q, b) >= -tolerance
             }
-            Feature::Vertex { at, tangents, turn } => {
-                let from = sub(p, at);
-                let beside = tangents.iter().zip([1.0, -1.0]).all(|(tangent, sign)| {
-                    tangent.is_none_or(|tangent| sign * dot(from, tangent) >= -close)
+            Feature::Vertex { point, tangents, turn } => {
+                let from_vertex = subtract(p, point);
+                let is_in_fan = tangents.iter().zip([1.0, -1.0]).all(|(tangent, sign)| {
+                    tangent.is_none_or(|tangent| sign * dot(from_vertex, tangent) >= -tolerance)
                 });
                 // A smooth joint owns no points.
-                beside && turn.abs() > 1e-9
+                is_in_fan && turn.abs() > 1e-9
             }
         }
     }
@@ -93,29 +94,29 @@ impl Feature {
 
 fn features(tool: &Restated) -> Vec<Feature> {
     let double = |p: &touchoff_tests::oracle::restated::Point| [p[0].to_f64(), p[1].to_f64()];
-    let mut at = double(&tool.start);
-    let (mut pieces, mut corners) = (Vec::new(), vec![at]);
-    for way in &tool.ways {
-        let to = double(&way.to);
-        pieces.push(match way.centre.as_ref().map(double) {
+    let mut point = double(&tool.start);
+    let (mut segments, mut corners) = (Vec::new(), vec![point]);
+    for step in &tool.ways {
+        let to = double(&step.to);
+        segments.push(match step.centre.as_ref().map(double) {
             None => {
-                let along = sub(to, at);
-                let length = along[0].hypot(along[1]);
-                Feature::Line { from: at, along: unit(along), length }
+                let direction = subtract(to, point);
+                let length = direction[0].hypot(direction[1]);
+                Feature::Line { from: point, direction: unit(direction), length }
             }
             Some(centre) => {
-                let (a, b) = (sub(at, centre), sub(to, centre));
+                let (a, b) = (subtract(point, centre), subtract(to, centre));
                 let (radius, sense) = (a[0].hypot(a[1]), cross(a, b).signum());
-                Feature::Arc { centre, radius, ends: [at, to], sense }
+                Feature::Arc { centre, radius, ends: [point, to], sense }
             }
         });
         corners.push(to);
-        at = to;
+        point = to;
     }
-    let tangent = |piece: Option<&Feature>, at: P2| match *piece? {
-        Feature::Line { along, .. } => Some(along),
+    let tangent = |segment: Option<&Feature>, point: P2| match *segment? {
+        Feature::Line { direction, .. } => Some(direction),
         Feature::Arc { centre, sense, .. } => {
-            let arm = unit(sub(at, centre));
+            let arm = unit(subtract(point, centre));
             Some([-sense * arm[1], sense * arm[0]])
         }
         Feature::Vertex { .. } => None,
@@ -123,50 +124,52 @@ fn features(tool: &Restated) -> Vec<Feature> {
     let vertices: Vec<Feature> = corners
         .iter()
         .enumerate()
-        .map(|(k, at)| {
-            let before = k.checked_sub(1).and_then(|k| tangent(pieces.get(k), *at));
-            let after = tangent(pieces.get(k), *at);
+        .map(|(k, point)| {
+            let before = k.checked_sub(1).and_then(|k| tangent(segments.get(k), *point));
+            let after = tangent(segments.get(k), *point);
             let turn = before.zip(after).map_or(1.0, |(before, after)| cross(before, after));
-            Feature::Vertex { at: *at, tangents: [before, after], turn }
+            Feature::Vertex { point: *point, tangents: [before, after], turn }
         })
         .collect();
-    pieces.extend(vertices);
-    pieces
+    segments.extend(vertices);
+    segments
 }
 
 fn borders(features: &[Feature]) -> Vec<Border> {
-    let mut all = Vec::new();
+    let mut borders = Vec::new();
     for (k, feature) in features.iter().enumerate() {
-        all.extend((0..k).map(|other| Border::Pair(other, k)));
-        if let Feature::Vertex { at, tangents, .. } = feature {
-            all.extend(tangents.iter().flatten().map(|t| Border::Fan { at: *at, tangent: *t }));
+        borders.extend((0..k).map(|other| Border::Pair(other, k)));
+        if let Feature::Vertex { point, tangents, .. } = feature {
+            borders.extend(
+                tangents.iter().flatten().map(|t| Border::Fan { point: *point, tangent: *t }),
+            );
         }
     }
-    all
+    borders
 }
 
-fn miss(features: &[Feature], border: Border, p: P2) -> (f64, P2) {
+fn residual(features: &[Feature], border: Border, p: P2) -> (f64, P2) {
     match border {
         Border::Pair(a, b) => {
             let ((da, ga), (db, gb)) = (features[a].distance(p), features[b].distance(p));
-            (da - db, sub(ga, gb))
+            (da - db, subtract(ga, gb))
         }
-        Border::Fan { at, tangent } => (dot(sub(p, at), tangent), tangent),
+        Border::Fan { point, tangent } => (dot(subtract(p, point), tangent), tangent),
     }
 }
 
 /// Intersects two borders by Newton's method. Returns `None` if it does not converge.
-fn meet(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Option<P2> {
+fn intersect(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Option<P2> {
     for _ in 0..30 {
-        let ((f, u), (g, v)) = (miss(features, a, p), miss(features, b, p));
+        let ((f, u), (g, v)) = (residual(features, a, p), residual(features, b, p));
         let det = cross(u, v);
         if det.abs() < 1e-9 {
             return None;
         }
         let step = [(f * v[1] - g * u[1]) / det, (u[0] * g - v[0] * f) / det];
-        p = sub(p, step);
-        let far = p[0].abs() + p[1].abs();
-        if far.is_nan() || far >= 4.0 * size {
+        p = subtract(p, step);
+        let sum_of_coordinates = p[0].abs() + p[1].abs();
+        if sum_of_coordinates.is_nan() || sum_of_coordinates >= 4.0 * size {
             return None;
         }
         if step[0].abs().max(step[1].abs()) < 1e-15 * size {
@@ -178,12 +181,12 @@ fn meet(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Opti
 
 /// Returns points off the surface with three or more nearest features, inside and outside. Newton's method begins at
 /// `starts` random points per pair of borders: up to twice the tool's radius from the axis, and up to half its radius
-/// beyond its ends. Only every `every`-th pair is used.
-pub(super) fn meetings(
+/// beyond its ends. Only every `stride`-th pair is used.
+pub(super) fn find_meetings(
     tool: &Restated,
     size: f64,
-    (starts, every): (usize, usize),
-    draw: &mut Rng,
+    (starts, stride): (usize, usize),
+    rng: &mut Rng,
 ) -> Vec<Meeting> {
     let features = features(tool);
     let borders = borders(&features);
@@ -193,17 +196,16 @@ pub(super) fn meetings(
     let pairs = borders
         .iter()
         .enumerate()
-        .flat_map(|(k, one)| borders[..k].iter().map(move |other| [*one, *other]));
-    for pair in pairs.skip(draw.bits() as usize % every).step_by(every) {
+        .flat_map(|(k, first)| borders[..k].iter().map(move |second| [*first, *second]));
+    for pair in pairs.skip(rng.bits() as usize % stride).step_by(stride) {
         for _ in 0..starts {
-            let start = [
-                draw.between(0.0, 2.0 * radius),
-                draw.between(-0.5 * radius, height + 0.5 * radius),
-            ];
-            let Some(at) = meet(&features, pair, start, size) else { continue };
-            let Some(count) = equals(&features, at, size) else { continue };
-            let near = |other: &Meeting| sub(other.at, at).iter().all(|c| c.abs() < 1e-9 * size);
-            if !found.iter().any(near) {
+            let start =
+                [rng.between(0.0, 2.0 * radius), rng.between(-0.5 * radius, height + 0.5 * radius)];
+            let Some(at) = intersect(&features, pair, start, size) else { continue };
+            let Some(count) = nearest_count(&features, at, size) else { continue };
+            let is_same =
+                |other: &Meeting| subtract(other.at, at).iter().all(|c| c.abs() < 1e-9 * size);
+            if !found.iter().any(is_same) {
                 found.push(Meeting { at, features: count });
             }
         }
@@ -213,15 +215,16 @@ pub(super) fn meetings(
 
 /// Returns the number of nearest features. Returns `None` if there are fewer than three, or if the point is on the
 /// surface or far away.
-fn equals(features: &[Feature], p: P2, size: f64) -> Option<usize> {
-    let close = 1e-12 * size;
+fn nearest_count(features: &[Feature], p: P2, size: f64) -> Option<usize> {
+    let tolerance = 1e-12 * size;
     if p[0] < 0.0 || p[0] > 2.0 * size || p[1].abs() > 2.0 * size {
         return None;
     }
-    let here = || features.iter().filter(|feature| feature.faces(p, close));
-    let least = here().map(|feature| feature.distance(p).0).fold(f64::INFINITY, f64::min);
-    let count = here().filter(|feature| feature.distance(p).0 <= least + close).count();
-    (count >= 3 && least > 1e-6 * size).then_some(count)
+    let facing = || features.iter().filter(|feature| feature.faces(p, tolerance));
+    let min_distance = facing().map(|feature| feature.distance(p).0).fold(f64::INFINITY, f64::min);
+    let count =
+        facing().filter(|feature| feature.distance(p).0 <= min_distance + tolerance).count();
+    (count >= 3 && min_distance > 1e-6 * size).then_some(count)
 }
 
 #[cfg(test)]
@@ -231,11 +234,12 @@ mod tests {
 
     /// In the thesis's frame, the points (5, 13) and (11, 19) outside fig. 7.3 are equally near to four features.
     #[test]
-    fn the_ones_that_are_known() {
+    fn finds_the_known_points_near_four_features() {
         let tool = restated::of("Fig73Exact").expect("it is restated");
-        let found = meetings(&tool, 32.0, (2, 1), &mut Rng::new(1));
+        let found = find_meetings(&tool, 32.0, (2, 1), &mut Rng::new(1));
         for known in [[5.0, 7.0], [11.0, 1.0]] {
-            let meeting = found.iter().find(|m| sub(m.at, known).iter().all(|c| c.abs() < 1e-12));
+            let meeting =
+                found.iter().find(|m| subtract(m.at, known).iter().all(|c| c.abs() < 1e-12));
             assert_eq!(meeting.map(|m| m.features), Some(4), "{known:?} in {found:?}");
         }
     }

@@ -7,20 +7,20 @@ use touchoff_tests::oracle::restated::{Point, Restated};
 /// Returns a power of two in the tool language, whose exponents are at most 16.
 pub(super) fn power_of_two(k: i32) -> String {
     let mut text = "1".to_owned();
-    let (mut left, sign) = (k.abs(), if k < 0 { "-" } else { "" });
-    while left > 0 {
-        let step = left.min(16);
+    let (mut remaining, sign) = (k.abs(), if k < 0 { "-" } else { "" });
+    while remaining > 0 {
+        let step = remaining.min(16);
         text += &format!(
             " * 2^{}",
             if sign.is_empty() { step.to_string() } else { format!("(-{step})") }
         );
-        left -= step;
+        remaining -= step;
     }
     text
 }
 
 /// Returns a surface's name without the dots that occur only in assemblies.
-pub(super) fn flat(surface: &'static str) -> &'static str {
+pub(super) fn plain_surface_name(surface: &'static str) -> &'static str {
     match surface {
         "cutter.ball" => "cutter_ball",
         "cutter.flute" => "cutter_flute",
@@ -38,46 +38,46 @@ pub(super) fn flat(surface: &'static str) -> &'static str {
 }
 
 /// Returns a restated tool with surface names that a file may use.
-pub(super) fn flattened(tool: &Restated) -> Restated {
+pub(super) fn with_plain_names(tool: &Restated) -> Restated {
     let mut tool = tool.clone();
-    for way in &mut tool.ways {
-        way.surface = flat(way.surface);
+    for segment in &mut tool.ways {
+        segment.surface = plain_surface_name(segment.surface);
     }
-    tool.cutting = tool.cutting.iter().map(|surface| flat(surface)).collect();
+    tool.cutting = tool.cutting.iter().map(|surface| plain_surface_name(surface)).collect();
     tool
 }
 
-/// Returns the source text of a profile, from a restatement with [flattened] names.
-pub(super) fn profile(tool: &Restated, scale: &str) -> String {
+/// Returns the source text of a profile, from a restatement with [plain][with_plain_names] names.
+pub(super) fn profile_text(tool: &Restated, scale: &str) -> String {
     let point = |[d, z]: &Point| format!("({}*s, {}*s)", d.written(), z.written());
     let mut text = format!("tool {} {{ units mm; let s = {scale};\nprofile {{\n", tool.name);
     let _ = writeln!(text, "start {};", point(&tool.start));
-    let mut at = tool.start.clone();
-    for way in &tool.ways {
-        let cutting = if tool.cutting.contains(&way.surface) { " cutting" } else { "" };
-        let to = point(&way.to);
-        let path = match &way.centre {
+    let mut from = tool.start.clone();
+    for segment in &tool.ways {
+        let cutting = if tool.cutting.contains(&segment.surface) { " cutting" } else { "" };
+        let to = point(&segment.to);
+        let command = match &segment.centre {
             None => format!("line to {to}"),
             Some(centre) => {
-                let concave = if bends_in(&at, &way.to, centre) { " concave" } else { "" };
+                let concave = if is_concave(&from, &segment.to, centre) { " concave" } else { "" };
                 format!("arc to {to} center {}{concave}", point(centre))
             }
         };
-        let _ = writeln!(text, "{path} as {}{cutting};", way.surface);
-        at = way.to.clone();
+        let _ = writeln!(text, "{command} as {}{cutting};", segment.surface);
+        from = segment.to.clone();
     }
     text + "} }"
 }
 
 /// Returns whether an arc bends into the material, that is, runs clockwise.
-fn bends_in(from: &Point, to: &Point, centre: &Point) -> bool {
+fn is_concave(from: &Point, to: &Point, centre: &Point) -> bool {
     let arm = |p: &Point| [&p[0] - &centre[0], &p[1] - &centre[1]];
     let (a, b) = (arm(from), arm(to));
     (&(&a[0] * &b[1]) - &(&a[1] * &b[0])) < Big::zero()
 }
 
 /// Returns the source text of the thesis's tool and of the solids, whose regions are written by hand.
-pub(super) fn by_hand(name: &str, scale: &str) -> Option<String> {
+pub(super) fn hand_written_text(name: &str, scale: &str) -> Option<String> {
     let text = match name {
         "Fig73" => FIG73,
         "Block" => BLOCK,

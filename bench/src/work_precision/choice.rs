@@ -32,9 +32,9 @@ impl Wish {
     }
 
     /// Returns the largest allowed error.
-    fn most(self) -> f64 {
+    fn max_error(self) -> f64 {
         match self {
-            Wish::Force(most) | Wish::Depth(most) => most,
+            Wish::Force(max_error) | Wish::Depth(max_error) => max_error,
         }
     }
 }
@@ -55,7 +55,7 @@ pub struct Choice {
 pub fn fastest(
     rows: &[Row],
     scenes: &[&str],
-    wish: Wish,
+    requirement: Wish,
     allowed: impl Fn(&Row) -> bool,
 ) -> Option<Choice> {
     let mut labels: Vec<Label> = Vec::new();
@@ -65,20 +65,20 @@ pub fn fastest(
             labels.push(label);
         }
     }
-    let all = labels.into_iter().filter_map(|label| choice(rows, scenes, wish, label));
-    let slowest = |choice: &Choice| choice.p50.iter().copied().max();
-    all.min_by_key(slowest)
+    let choices = labels.into_iter().filter_map(|label| choice(rows, scenes, requirement, label));
+    let slowest_median = |choice: &Choice| choice.p50.iter().copied().max();
+    choices.min_by_key(slowest_median)
 }
 
 /// Returns a setting's results in all scenes, if it meets the requirement in each.
-fn choice(rows: &[Row], scenes: &[&str], wish: Wish, label: Label) -> Option<Choice> {
+fn choice(rows: &[Row], scenes: &[&str], requirement: Wish, label: Label) -> Option<Choice> {
     let (mut p50, mut error) = (Vec::new(), 0.0f64);
     for scene in scenes {
         let row = rows.iter().find(|row| row.scene == *scene && row.label() == label)?;
-        error = error.max(wish.error(row)?);
+        error = error.max(requirement.error(row)?);
         p50.push(row.p50_ns?);
     }
-    (!p50.is_empty() && error <= wish.most()).then_some(Choice { label, p50, error })
+    (!p50.is_empty() && error <= requirement.max_error()).then_some(Choice { label, p50, error })
 }
 
 #[cfg(test)]
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_fastest_of_those_that_have_the_wish_everywhere_is_taken() {
+    fn takes_the_fastest_setting_that_meets_the_requirement_in_every_scene() {
         let rows = [
             // Fast, but inaccurate in one scene.
             row("a", "quick", 100, 0.005, 0.001),
@@ -100,19 +100,19 @@ mod tests {
             // The best, but not measured in one scene.
             row("a", "elsewhere", 1, 0.0, 0.0),
         ];
-        let found = |wish| fastest(&rows, &["a", "b"], wish, |_| true);
-        let name = |wish| found(wish).map(|choice| choice.label.method);
+        let fastest_for = |requirement| fastest(&rows, &["a", "b"], requirement, |_| true);
+        let name = |requirement| fastest_for(requirement).map(|choice| choice.label.method);
         assert_eq!(name(Wish::Force(0.1)), Some("quick"));
         assert_eq!(name(Wish::Force(0.01)), Some("even"));
         assert_eq!(name(Wish::Depth(0.01)), Some("good"));
         assert_eq!(name(Wish::Depth(0.001)), None);
-        let even = found(Wish::Force(0.01)).expect("there is one");
+        let even = fastest_for(Wish::Force(0.01)).expect("there is one");
         assert_eq!((even.p50.as_slice(), even.error), (&[700, 700][..], 0.009));
         let only = fastest(&rows, &["a"], Wish::Force(0.1), |row| row.method != "elsewhere");
         assert_eq!(only.map(|choice| choice.label.method), Some("quick"));
         assert_eq!(fastest(&rows, &[], Wish::Force(0.1), |_| true), None);
-        let mut blind = rows[2].clone();
-        blind.err_force = None;
-        assert_eq!(fastest(&[blind], &["a"], Wish::Force(1.0), |_| true), None);
+        let mut without_force = rows[2].clone();
+        without_force.err_force = None;
+        assert_eq!(fastest(&[without_force], &["a"], Wish::Force(1.0), |_| true), None);
     }
 }

@@ -1,12 +1,12 @@
 //! Measurements on patches with closed-form contacts.
 
-use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
+use super::lineup::{CELLS, LabelledCloud, Lineup, Truths, labelled_clouds};
 use super::methods::Proved;
 use super::patch::Patch;
 use super::peers;
 use super::plan::Plan;
 use super::row::{Label, Row};
-use super::truth::{Tally, Truth};
+use super::truth::{ErrorStats, Truth};
 use super::{Facts, Failure, Sink};
 use rayon::prelude::*;
 use touchoff::certify::{Certifier, TriangleBvh};
@@ -20,8 +20,8 @@ use touchoff_tests::oracle::draw::Rng;
 pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts, Failure> {
     let mesh = patch.mesh();
     let bvh = TriangleBvh::new(&mesh);
-    let times = patch.times();
-    let mut typical = Tally::default();
+    let times = patch.area_ratio();
+    let mut totals = ErrorStats::default();
     for (from_last, contacts) in plan.contacts.iter().rev().enumerate().rev() {
         let size = Size {
             patch,
@@ -33,14 +33,14 @@ pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts
         };
         let (rows, truths) = size.measure(&bvh)?;
         rows.into_iter().for_each(&mut *sink);
-        typical.join(&truths);
+        totals.merge(&truths);
     }
     Ok(Facts {
         scene: patch.name().to_owned(),
-        about: patch.about(),
+        about: patch.description(),
         path: false,
-        typical: typical.typical(),
-        known: patch.known(),
+        typical: totals.typical(),
+        known: patch.accuracy(),
         unit: mesh.unit(),
     })
 }
@@ -61,59 +61,61 @@ impl Size<'_> {
         self.plan.seed.wrapping_mul(1 << 40) + ((self.count as u64) << 12) + cloud as u64
     }
 
-    fn kinds(&self, cloud: usize) -> Result<Vec<Kind>, CloudError> {
-        let carry = |cloud| self.patch.exact(cloud);
-        let mut all = kinds(self.mesh, self.count, self.seed(cloud), carry)?;
+    fn labelled_clouds(&self, cloud: usize) -> Result<Vec<LabelledCloud>, CloudError> {
+        let project = |cloud| self.patch.exact(cloud);
+        let mut clouds = labelled_clouds(self.mesh, self.count, self.seed(cloud), project)?;
         let centroids = self.patch.centroids(self.count);
-        all.extend(centroids.map(|cloud| Kind::new(["centroids", CELLS], cloud)));
-        Ok(all)
+        clouds.extend(centroids.map(|cloud| LabelledCloud::new(["centroids", CELLS], cloud)));
+        Ok(clouds)
     }
 
-    fn placed(&self, cloud: usize, count: usize) -> (Vec<Pose>, Vec<(usize, Truth)>) {
-        let mut draw = Rng::new(!self.seed(cloud));
-        let placed = (0..count).map(|_| self.patch.place(&mut draw));
-        let (poses, truths): (Vec<Pose>, Vec<Truth>) = placed.unzip();
+    fn placements(&self, cloud: usize, count: usize) -> (Vec<Pose>, Vec<(usize, Truth)>) {
+        let mut rng = Rng::new(!self.seed(cloud));
+        let placements = (0..count).map(|_| self.patch.place(&mut rng));
+        let (poses, truths): (Vec<Pose>, Vec<Truth>) = placements.unzip();
         (poses, truths.into_iter().enumerate().collect())
     }
 
-    fn check(&self, lineup: &mut Lineup<'_>, cloud: usize) -> Vec<Tally> {
+    fn check(&self, lineup: &mut Lineup<'_>, cloud: usize) -> Vec<ErrorStats> {
         let (poses, truths) = self.placed(cloud, self.plan.placements);
         lineup.check(&poses, Truths { true_depths: &truths, thesis: &truths })
     }
 
-    /// Returns the rows of this size, and a tally of the true values.
-    fn measure(&self, bvh: &TriangleBvh) -> Result<(Vec<Row>, Tally), Failure> {
-        let others = |cloud: usize| {
-            let kinds = self.kinds(cloud)?;
+    /// Returns the rows of this size, and the statistics of the true values.
+    fn measure(&self, bvh: &TriangleBvh) -> Result<(Vec<Row>, ErrorStats), Failure> {
+        let check_cloud = |cloud: usize| {
+            let clouds = self.labelled_clouds(cloud)?;
             let mut lineup = Lineup::default();
-            self.add_points(&mut lineup, &kinds);
+            self.add_points(&mut lineup, &clouds);
             Ok(self.check(&mut lineup, cloud))
         };
-        let others: Vec<Vec<Tally>> =
-            (1..self.clouds).into_par_iter().map(others).collect::<Result<_, CloudError>>()?;
-        let kinds = self.kinds(0)?;
+        let others: Vec<Vec<ErrorStats>> =
+            (1..self.clouds).into_par_iter().map(check_cloud).collect::<Result<_, CloudError>>()?;
+        let clouds = self.labelled_clouds(0)?;
         let mut lineup = Lineup::default();
-        self.add_points(&mut lineup, &kinds);
+        self.add_points(&mut lineup, &clouds);
         self.add_triangles(&mut lineup, bvh)?;
-        let mut tallies = self.check(&mut lineup, 0);
+        let mut method_stats = self.check(&mut lineup, 0);
         // Methods on triangles come after those on points. The other clouds have no results for them.
         for other in &others {
-            tallies.iter_mut().zip(other).for_each(|(tally, other)| tally.join(other));
+            method_stats.iter_mut().zip(other).for_each(|(stats, other)| stats.merge(other));
         }
-        let known = self.patch.known();
+        let accuracy = self.patch.accuracy();
         let (poses, truths) = self.placed(self.clouds, self.plan.timed);
         let times = lineup.race(&poses, self.plan.seconds);
-        let deep = truths.iter().map(|(_, truth)| truth.depth).fold(0.0, f64::max);
-        let errors = tallies.iter().map(|tally| Ok(tally.errors(known, known[2] * deep)));
+        let max_depth = truths.iter().map(|(_, truth)| truth.depth).fold(0.0, f64::max);
+        let errors =
+            method_stats.iter().map(|stats| Ok(stats.errors(accuracy, accuracy[2] * max_depth)));
         let rows = lineup.rows(self.patch.name(), &times, errors);
-        Ok((rows, tallies.swap_remove(0)))
+        Ok((rows, method_stats.swap_remove(0)))
     }
 
-    fn add_points<'a>(&self, lineup: &mut Lineup<'a>, kinds: &'a [Kind]) {
-        lineup.add_clouds(kinds, self.patch.cutter());
-        let peers = self.patch.is_of_ball_or_flute() && self.plan.has_peers(self.from_last);
-        if peers && let Some(kind) = kinds.iter().find(|kind| kind.words == ["blue", CELLS]) {
-            peers::add_points(lineup, kind);
+    fn add_points<'a>(&self, lineup: &mut Lineup<'a>, clouds: &'a [LabelledCloud]) {
+        lineup.add_clouds(clouds, self.patch.cutter());
+        let has_peers = self.patch.touches_ball_or_flute() && self.plan.has_peers(self.from_last);
+        if has_peers && let Some(cloud) = clouds.iter().find(|cloud| cloud.names == ["blue", CELLS])
+        {
+            has_peers::add_points(lineup, cloud);
         }
     }
 
@@ -127,12 +129,12 @@ impl Size<'_> {
             return Ok(());
         }
         for tolerance in &self.plan.tolerances {
-            let proved = Certifier::new(bvh, self.patch.cutter().tool())?;
+            let certifier = Certifier::new(bvh, self.patch.cutter().tool())?;
             let label = Label::triangles("certified");
             let label = Label { tolerance: Some(*tolerance), ..label };
-            lineup.add(label, Box::new(Proved::new(proved, *tolerance)));
+            lineup.add(label, Box::new(CertifiedDepth::new(certifier, *tolerance)));
         }
-        if self.patch.is_of_ball_or_flute() {
+        if self.patch.touches_ball_or_flute() {
             peers::add_triangles(lineup, self.mesh);
         }
         Ok(())

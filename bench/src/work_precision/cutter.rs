@@ -17,8 +17,8 @@ impl<'t> Cutter<'t> {
     pub(super) const THESIS: Cutter<'static> = Cutter(&Fig73);
 
     /// Returns a tool of the same solid that has a profile, so that its distance is known.
-    pub(super) fn near(self) -> &'t dyn Tool {
-        if self.is_the_thesis() { &Fig73Exact } else { self.0 }
+    pub(super) fn tool_with_profile(self) -> &'t dyn Tool {
+        if self.has_thesis_magnitudes() { &Fig73Exact } else { self.0 }
     }
 
     /// Returns the tool itself.
@@ -26,12 +26,12 @@ impl<'t> Cutter<'t> {
         self.0
     }
 
-    fn is_the_thesis(self) -> bool {
+    fn has_thesis_magnitudes(self) -> bool {
         self.0.info() == Fig73.info()
     }
 
     /// Returns whether the peers, which only have the formula of fig. 7.3, can represent this solid.
-    pub(super) fn peers_know_it(self) -> bool {
-        self.0.info() == Fig73Exact.info() || self.is_the_thesis()
+    pub(super) fn is_known_to_peers(self) -> bool {
+        self.0.info() == Fig73Exact.info() || self.has_thesis_magnitudes()
     }
 }

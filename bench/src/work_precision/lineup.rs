@@ -1,28 +1,28 @@
 //! A set of methods that are timed on the same poses and compared with the same true values.
 
 use super::cutter::Cutter;
-use super::methods::{Bounded, Points};
+use super::methods::{CloudBound, CloudProbe};
 use super::row::{LAW, Label, Row};
 use super::sampling::{Pattern, equal};
-use super::truth::{Errors, Tally, Truth, check};
+use super::truth::{ErrorStats, Errors, Truth, check};
 use crate::race::clock::{Times, race};
 use crate::race::contender::Contender;
 use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling};
 
 /// A cloud with its labels and its tree.
-pub(super) struct Kind {
+pub(super) struct LabelledCloud {
     /// The names of its sampling pattern and of its weights.
-    pub(super) words: [&'static str; 2],
+    pub(super) names: [&'static str; 2],
     /// The points.
     pub(super) cloud: Cloud,
     /// The same points in a tree.
     pub(super) part: Part,
 }
 
-impl Kind {
+impl LabelledCloud {
     /// Builds the tree of a cloud.
-    pub(super) fn new(words: [&'static str; 2], cloud: Cloud) -> Kind {
-        Kind { words, part: Part::from_cloud(&cloud), cloud }
+    pub(super) fn new(names: [&'static str; 2], cloud: Cloud) -> LabelledCloud {
+        LabelledCloud { names, part: Part::from_cloud(&cloud), cloud }
     }
 
     /// Returns the label for the rows of a method on these points.
@@ -30,8 +30,8 @@ impl Kind {
         Label {
             method,
             points: Some(self.cloud.len()),
-            sampling: Some(self.words[0]),
-            weights: Some(self.words[1]),
+            sampling: Some(self.names[0]),
+            weights: Some(self.names[1]),
             ..Label::default()
         }
     }
@@ -42,37 +42,37 @@ pub(super) const EQUAL: &str = "equal";
 /// Name of weights that are the areas of the points' cells.
 pub(super) const CELLS: &str = "cells";
 
-/// Samples about `count` points on a mesh in both patterns, with both kinds of weights. `carry` maps each cloud to the
-/// true surface.
+/// Samples about `count` points on a mesh in both patterns, with both kinds of weights. `project` maps each cloud to
+/// the true surface.
 ///
 /// # Errors
 /// If no cloud can have this number of points.
-pub(super) fn kinds(
+pub(super) fn labelled_clouds(
     mesh: &Mesh,
     count: usize,
     seed: u64,
-    carry: impl Fn(Cloud) -> Cloud,
-) -> Result<Vec<Kind>, CloudError> {
-    let mut kinds = Vec::new();
+    project: impl Fn(Cloud) -> Cloud,
+) -> Result<Vec<LabelledCloud>, CloudError> {
+    let mut clouds = Vec::new();
     for pattern in Pattern::ALL {
         let cells = match pattern {
             Pattern::Random => Cloud::sample(mesh, Sampling::monte_carlo(count).with_seed(seed))?
                 .with_voronoi_weights(mesh),
             Pattern::Blue => Cloud::sample(mesh, Sampling::new(count).with_seed(seed))?,
         };
-        let alike = equal(&cells, mesh);
-        for (word, cloud) in [(EQUAL, alike), (CELLS, cells)] {
-            kinds.push(Kind::new([pattern.name(), word], carry(cloud)));
+        let equal_weighted = equal(&cells, mesh);
+        for (weight_name, cloud) in [(EQUAL, equal_weighted), (CELLS, cells)] {
+            clouds.push(LabelledCloud::new([pattern.name(), weight_name], project(cloud)));
         }
     }
-    Ok(kinds)
+    Ok(clouds)
 }
 
 /// A competing method.
 struct Entry {
     label: Label,
     /// True if its state depends on the previous pose, so that it must follow the path.
-    walks: bool,
+    follows_path: bool,
     /// True if it is compared with the thesis's magnitudes.
     thesis: bool,
 }
@@ -96,35 +96,39 @@ pub(super) struct Truths<'a> {
 impl<'a> Lineup<'a> {
     /// Adds a method.
     pub(super) fn add(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
-        self.entries.push(Entry { label, walks: false, thesis: false });
+        self.entries.push(Entry { label, follows_path: false, thesis: false });
         self.contenders.push(contender);
     }
 
     /// Adds a method that must follow the path, since its state depends on the previous pose.
-    pub(super) fn add_walking(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
+    pub(super) fn add_following_path(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
         self.add(label, contender);
-        self.entries.last_mut().expect("it was just added").walks = true;
+        self.entries.last_mut().expect("it was just added").follows_path = true;
     }
 
     /// Adds a method that knows only the thesis's magnitudes.
     #[cfg_attr(not(feature = "peers"), expect(dead_code, reason = "only peers know no others"))]
-    pub(super) fn add_of_the_thesis(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
+    pub(super) fn add_with_thesis_magnitudes(
+        &mut self,
+        label: Label,
+        contender: Box<dyn Contender + 'a>,
+    ) {
         self.add(label, contender);
         self.entries.last_mut().expect("it was just added").thesis = true;
     }
 
     /// Adds a tool's wrench on each cloud, and for each sampling pattern the upper bound on the depth of the whole
     /// surface.
-    pub(super) fn add_clouds(&mut self, kinds: &'a [Kind], cutter: Cutter<'a>) {
-        for kind in kinds {
-            let points = Points(Probe::new(&kind.part, cutter.tool()));
-            self.add(kind.label(points.name()), Box::new(points));
+    pub(super) fn add_clouds(&mut self, clouds: &'a [LabelledCloud], cutter: Cutter<'a>) {
+        for cloud in clouds {
+            let probe = CloudProbe(Probe::new(&cloud.part, cutter.tool()));
+            self.add(cloud.label(probe.name()), Box::new(probe));
         }
-        for kind in kinds {
-            if let Some(bounded) = Bounded::new(Probe::new(&kind.part, cutter.tool())) {
-                let mut label = kind.label(bounded.name());
+        for cloud in clouds {
+            if let Some(bound) = CloudBound::new(Probe::new(&cloud.part, cutter.tool())) {
+                let mut label = cloud.label(bound.name());
                 label.weights = None;
-                self.add(label, Box::new(bounded));
+                self.add(label, Box::new(bound));
             }
         }
     }
@@ -135,26 +139,26 @@ impl<'a> Lineup<'a> {
     }
 
     /// Returns for each method whether it is compared with the thesis's magnitudes.
-    pub(super) fn of_the_thesis(&self) -> impl Iterator<Item = bool> {
+    pub(super) fn uses_thesis_magnitudes(&self) -> impl Iterator<Item = bool> {
         self.entries.iter().map(|entry| entry.thesis)
     }
 
     /// Returns the errors of each method, in order.
-    pub(super) fn check(&mut self, poses: &[Pose], truths: Truths<'_>) -> Vec<Tally> {
-        let both = self.entries.iter().zip(&mut self.contenders);
-        both.map(|(entry, contender)| {
-            let truths = if entry.thesis { truths.thesis } else { truths.true_depths };
-            check(&mut **contender, entry.walks, poses, truths)
-        })
-        .collect()
+    pub(super) fn check(&mut self, poses: &[Pose], truths: Truths<'_>) -> Vec<ErrorStats> {
+        let pairs = self.entries.iter().zip(&mut self.contenders);
+        pairs
+            .map(|(entry, contender)| {
+                let truths = if entry.thesis { truths.thesis } else { truths.true_depths };
+                check(&mut **contender, entry.follows_path, poses, truths)
+            })
+            .collect()
     }
 
     /// Returns for each method the share of poses at which it reports contact.
-    pub(super) fn alarms(&mut self, poses: &[Pose]) -> Vec<f64> {
+    pub(super) fn contact_shares(&mut self, poses: &[Pose]) -> Vec<f64> {
         let share = |contender: &mut Box<dyn Contender + 'a>| {
-            let evaluation =
-                poses.iter().filter(|pose| contender.query(pose).colliding > 0).count();
-            evaluation as f64 / poses.len().max(1) as f64
+            let contacts = poses.iter().filter(|pose| contender.query(pose).colliding > 0).count();
+            contacts as f64 / poses.len().max(1) as f64
         };
         self.contenders.iter_mut().map(share).collect()
     }
@@ -171,8 +175,8 @@ impl<'a> Lineup<'a> {
         times: &[Times],
         errors: impl Iterator<Item = Result<Errors, f64>>,
     ) -> Vec<Row> {
-        let each = self.labels().zip(times).zip(errors);
-        each.map(|((label, times), errors)| row(scene, label, times, errors)).collect()
+        let results = self.labels().zip(times).zip(errors);
+        results.map(|((label, times), errors)| row(scene, label, times, errors)).collect()
     }
 }
 
@@ -180,7 +184,7 @@ fn row(scene: &str, label: &Label, times: &Times, errors: Result<Errors, f64>) -
     let timed_colliding = times.colliding();
     let (missed, errors) = match errors {
         Ok(errors) => (errors.missed, Some(errors)),
-        Err(alarms) => (alarms, None),
+        Err(share) => (share, None),
     };
     let relative = errors.as_ref().map_or([None; 3], |errors| errors.relative);
     Row {

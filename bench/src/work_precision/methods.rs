@@ -5,37 +5,39 @@ use touchoff::certify::Certifier;
 use touchoff::{LodProbe, Pose, Probe, Wrench};
 
 /// The wrench of a cloud's points.
-pub(super) struct Points<'a>(pub(super) Probe<'a>);
+pub(super) struct CloudProbe<'a>(pub(super) Probe<'a>);
 
-fn answer(evaluation: &Wrench) -> Answer {
+fn answer_of(evaluation: &Wrench) -> Answer {
     let wrench = Some([evaluation.force, evaluation.torque]);
     Answer { colliding: evaluation.colliding, depth: evaluation.depth(), wrench }
 }
 
-impl Contender for Points<'_> {
+impl Contender for CloudProbe<'_> {
     fn name(&self) -> &'static str {
         "cloud"
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        answer(&self.0.wrench(pose))
+        answer_of(&self.0.wrench(pose))
     }
 }
 
 /// The upper bound on the depth of the whole surface.
-pub(super) struct Bounded<'a> {
+pub(super) struct CloudBound<'a> {
     probe: Probe<'a>,
-    unseen: f64,
+    sampling_error_bound: f64,
 }
 
-impl<'a> Bounded<'a> {
+impl<'a> CloudBound<'a> {
     /// Wraps a probe. Returns `None` if the surface between the points has no known error bound.
-    pub(super) fn new(probe: Probe<'a>) -> Option<Bounded<'a>> {
-        probe.sampling_error_bound().map(|unseen| Bounded { probe, unseen })
+    pub(super) fn new(probe: Probe<'a>) -> Option<CloudBound<'a>> {
+        probe
+            .sampling_error_bound()
+            .map(|sampling_error_bound| CloudBound { probe, sampling_error_bound })
     }
 }
 
-impl Contender for Bounded<'_> {
+impl Contender for CloudBound<'_> {
     fn name(&self) -> &'static str {
         "cloud + bound"
     }
@@ -43,44 +45,44 @@ impl Contender for Bounded<'_> {
     fn query(&mut self, pose: &Pose) -> Answer {
         // If no point is inside, the bound alone is the answer, and there is no contact.
         let depth = self.probe.depth_bound(pose).unwrap_or(f64::INFINITY);
-        Answer { colliding: usize::from(depth > self.unseen), depth, wrench: None }
+        Answer { colliding: usize::from(depth > self.sampling_error_bound), depth, wrench: None }
     }
 }
 
 /// The wrench within a budget of nodes.
-pub(super) struct Budgeted<'a>(pub(super) LodProbe<'a>);
+pub(super) struct BudgetedProbe<'a>(pub(super) LodProbe<'a>);
 
-impl Contender for Budgeted<'_> {
+impl Contender for BudgetedProbe<'_> {
     fn name(&self) -> &'static str {
         "graded"
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        answer(&self.0.wrench(pose).wrench)
+        answer_of(&self.0.wrench(pose).wrench)
     }
 }
 
 /// The certified depth of the triangles to a tolerance. The answer is the upper end of the interval, which is safe.
-pub(super) struct Proved<'a> {
+pub(super) struct CertifiedDepth<'a> {
     certifier: Certifier<'a>,
     tolerance: f64,
 }
 
-impl<'a> Proved<'a> {
+impl<'a> CertifiedDepth<'a> {
     /// Wraps a certifier.
-    pub(super) fn new(certifier: Certifier<'a>, tolerance: f64) -> Proved<'a> {
-        Proved { certifier, tolerance }
+    pub(super) fn new(certifier: Certifier<'a>, tolerance: f64) -> CertifiedDepth<'a> {
+        CertifiedDepth { certifier, tolerance }
     }
 }
 
-impl Contender for Proved<'_> {
+impl Contender for CertifiedDepth<'_> {
     fn name(&self) -> &'static str {
         "certified"
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let found = self.certifier.deepest(pose, self.tolerance);
-        let colliding = usize::from(found.witness.is_some());
-        Answer { colliding, depth: found.depth.high, wrench: None }
+        let penetration = self.certifier.deepest(pose, self.tolerance);
+        let colliding = usize::from(penetration.witness.is_some());
+        Answer { colliding, depth: penetration.depth.high, wrench: None }
     }
 }

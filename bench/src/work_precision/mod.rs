@@ -3,11 +3,10 @@
 //! ```text
 //! patches in closed form ──closed──┐                    ┌──▶ rows
 //!                                  ├──▶ lineup ──race,──┤
-//! paths along parts ──────along────┘            check   └──▶ page, plots, choices
+//! paths along parts ───path_scenes─┘            check   └──▶ page, plots, choices
 //!        └─ reference: proved depths, refined triangles
 //! ```
 
-mod along;
 pub mod choice;
 mod closed;
 mod contact;
@@ -17,6 +16,7 @@ mod methods;
 pub mod orders;
 mod page;
 mod patch;
+mod path_scenes;
 mod peers;
 mod plan;
 mod plots;
@@ -32,9 +32,9 @@ pub use plan::Plan;
 pub use row::{LAW, Label, Quantity, Row};
 
 use crate::race::clock::pin;
-use along::Along;
 use cutter::Cutter;
 use patch::Patch;
+use path_scenes::PathScene;
 use touchoff::certify::NotCertifiable;
 use touchoff::scenes::{ScenePath, apart, tube};
 use touchoff::{CloudError, Mesh, Pose, Tool, Unit};
@@ -115,13 +115,13 @@ pub struct Own<'t> {
 /// # Errors
 /// See [`Failure`].
 pub fn measure(
-    words: &[&str],
+    scene_names: &[&str],
     own: Option<Own<'_>>,
     plan: &Plan,
     sink: Sink<'_>,
 ) -> Result<Measured, Failure> {
     let mut measured = Measured::default();
-    let mut both = |row: Row| {
+    let mut record = |row: Row| {
         sink(row.clone());
         measured.rows.push(row);
     };
@@ -129,49 +129,53 @@ pub fn measure(
     // Start the worker threads before pinning this thread: they would inherit its core.
     rayon::current_num_threads();
     let pinned = pin();
-    for patch in Patch::ALL.into_iter().filter(|patch| words.contains(&patch.name())) {
+    for patch in Patch::ALL.into_iter().filter(|patch| scene_names.contains(&patch.name())) {
         progress(patch.name());
-        scenes.push(closed::measure(patch, plan, &mut both)?);
+        scenes.push(closed::measure(patch, plan, &mut record)?);
     }
-    let tube_scenes = along_the_tube(words, plan);
+    let tube_scenes = scenes_along_tube(scene_names, plan);
     if !tube_scenes.is_empty() {
-        scenes.extend(along::measure(&tube(), tube_scenes, plan, &mut both)?);
+        scenes.extend(path_scenes::measure(&tube(), tube_scenes, plan, &mut record)?);
     }
     if let Some(Own { mesh, name, tool, poses }) = own {
         let triangles = mesh.triangles().len();
-        let about = format!("{} along a part of {triangles} triangles", tool.info().name);
-        let scene = Along { name, about, cutter: Cutter(tool), poses, touches: true };
-        scenes.extend(along::measure(&mesh, vec![scene], plan, &mut both)?);
+        let description = format!("{} along a part of {triangles} triangles", tool.info().name);
+        let scene = PathScene { name, description, cutter: Cutter(tool), poses, touches: true };
+        scenes.extend(path_scenes::measure(&mesh, vec![scene], plan, &mut record)?);
     }
     Ok(Measured { scenes, pinned, ..measured })
 }
 
-fn along_the_tube(words: &[&str], plan: &Plan) -> Vec<Along<'static>> {
+fn scenes_along_tube(scene_names: &[&str], plan: &Plan) -> Vec<PathScene<'static>> {
     let count = plan.path;
-    let scene = |name: &str, about: &str, touches, pose: &dyn Fn(usize) -> Pose| Along {
+    let scene = |name: &str, description: &str, touches, pose: &dyn Fn(usize) -> Pose| PathScene {
         name: name.to_owned(),
-        about: format!("`Fig73Exact` and the tube: {about}"),
+        description: format!("`Fig73Exact` and the tube: {description}"),
         cutter: Cutter::FIG_73_EXACT,
         poses: (0..count).map(pose).collect(),
         touches,
     };
-    let about = |path| match path {
+    let description_of = |path| match path {
         ScenePath::Outside => "the ball on the outer wall, the flute over the top edge",
         ScenePath::Inside => "the flute about the bore",
         ScenePath::Hold => "taper, spindle and housing driven into the rim",
     };
-    let along = |path: ScenePath| scene(path.name(), about(path), true, &|k| path.pose(k, count));
-    let mut all: Vec<_> =
-        ScenePath::ALL.into_iter().filter(|path| words.contains(&path.name())).map(along).collect();
-    if words.contains(&"apart") {
-        let about = "the ball 0.5 mm off the outer wall";
-        all.push(scene("apart", about, false, &|k| apart(GAP, k, count)));
+    let scene_of =
+        |path: ScenePath| scene(path.name(), description_of(path), true, &|k| path.pose(k, count));
+    let mut scenes: Vec<_> = ScenePath::ALL
+        .into_iter()
+        .filter(|path| scene_names.contains(&path.name()))
+        .map(scene_of)
+        .collect();
+    if scene_names.contains(&"apart") {
+        let description = "the ball 0.5 mm off the outer wall";
+        scenes.push(scene("apart", description, false, &|k| apart(GAP, k, count)));
     }
-    all
+    scenes
 }
 
 /// Writes progress to standard error. A failed write is ignored.
-fn progress(words: &str) {
+fn progress(message: &str) {
     use std::io::Write;
-    let _ = writeln!(std::io::stderr(), "{words}");
+    let _ = writeln!(std::io::stderr(), "{message}");
 }

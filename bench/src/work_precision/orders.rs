@@ -26,39 +26,40 @@ pub fn expected(weights: &str, quantity: Quantity) -> f64 {
 
 /// Fits all orders that the rows allow, in the order of the rows.
 pub fn orders(rows: &[Row]) -> Vec<Orders> {
-    let mut all: Vec<Orders> = Vec::new();
-    let clouds = rows.iter().filter(|row| of_a_cloud(row));
+    let mut orders: Vec<Orders> = Vec::new();
+    let clouds = rows.iter().filter(|row| is_cloud_row(row));
     for row in clouds {
         let (Some(sampling), Some(weights)) = (row.sampling, row.weights) else { continue };
-        let of = |other: &Row| {
-            of_a_cloud(other)
+        let belongs = |other: &Row| {
+            is_cloud_row(other)
                 && other.scene == row.scene
                 && (other.sampling, other.weights) == (row.sampling, row.weights)
         };
-        let has =
-            |o: &Orders| o.scene == row.scene && (o.sampling, o.weights) == (sampling, weights);
-        if !all.iter().any(has) {
-            let mine: Vec<&Row> = rows.iter().filter(|other| of(other)).collect();
-            let slopes = Quantity::ALL.map(|quantity| slope(&mine, quantity));
-            all.push(Orders { scene: row.scene.clone(), sampling, weights, slopes });
+        let is_same = |fitted: &Orders| {
+            fitted.scene == row.scene && (fitted.sampling, fitted.weights) == (sampling, weights)
+        };
+        if !orders.iter().any(is_same) {
+            let own_rows: Vec<&Row> = rows.iter().filter(|other| belongs(other)).collect();
+            let slopes = Quantity::ALL.map(|quantity| slope(&own_rows, quantity));
+            orders.push(Orders { scene: row.scene.clone(), sampling, weights, slopes });
         }
     }
-    all
+    orders
 }
 
-fn of_a_cloud(row: &Row) -> bool {
+fn is_cloud_row(row: &Row) -> bool {
     row.method == "cloud"
 }
 
 fn slope(rows: &[&Row], quantity: Quantity) -> Option<f64> {
-    const FEWEST: usize = 3;
+    const MIN_POINTS: usize = 3;
     let point = |row: &&Row| {
-        let above = !row.floored.contains(&quantity.name());
-        let error = quantity.error(row).filter(|error| above && *error > 0.0)?;
+        let is_not_floored = !row.floored.contains(&quantity.name());
+        let error = quantity.error(row).filter(|error| is_not_floored && *error > 0.0)?;
         Some([row.points? as f64, error])
     };
     let points: Vec<[f64; 2]> = rows.iter().filter_map(point).collect();
-    (points.len() >= FEWEST).then(|| order(&points))
+    (points.len() >= MIN_POINTS).then(|| order(&points))
 }
 
 /// Returns the order `p` of `y = c x^p`, by least squares on the logarithms.
@@ -66,9 +67,9 @@ fn order(points: &[[f64; 2]]) -> f64 {
     let logs = points.iter().map(|[x, y]| [x.ln(), y.ln()]).collect::<Vec<_>>();
     let mean = |axis: usize| logs.iter().map(|p| p[axis]).sum::<f64>() / logs.len() as f64;
     let [x, y] = [mean(0), mean(1)];
-    let along: f64 = logs.iter().map(|p| (p[0] - x) * (p[1] - y)).sum();
-    let across: f64 = logs.iter().map(|p| (p[0] - x) * (p[0] - x)).sum();
-    along / across
+    let covariance: f64 = logs.iter().map(|p| (p[0] - x) * (p[1] - y)).sum();
+    let variance: f64 = logs.iter().map(|p| (p[0] - x) * (p[0] - x)).sum();
+    covariance / variance
 }
 
 #[cfg(test)]
@@ -77,13 +78,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_power_is_found_again() {
+    fn recovers_the_exponent_of_a_power() {
         let points = [1.0, 10.0, 400.0].map(|x: f64| [x, 3.0 * x.powf(-1.26)]);
         assert!((order(&points) + 1.26).abs() < 1e-12);
     }
 
     #[test]
-    fn a_ball_in_a_plane_converges_as_is_known() {
+    fn a_ball_in_a_plane_converges_with_the_known_orders() {
         let plan = Plan {
             contacts: vec![30, 100, 300, 1_000],
             tolerances: vec![],
@@ -91,13 +92,13 @@ mod tests {
             ..Plan::quick(1)
         };
         let measured = measure(&["CF1"], None, &plan, &mut drop).expect("a patch");
-        let all = orders(&measured.rows);
-        assert_eq!(all.len(), 4);
-        for orders in &all {
+        let fitted = orders(&measured.rows);
+        assert_eq!(fitted.len(), 4);
+        for orders in &fitted {
             for quantity in [Quantity::Force, Quantity::Torque] {
                 let slope = orders.slopes[quantity as usize].expect("four sizes");
-                let off = (slope - expected(orders.weights, quantity)).abs();
-                assert!(off < 0.2, "{orders:?}");
+                let difference = (slope - expected(orders.weights, quantity)).abs();
+                assert!(difference < 0.2, "{orders:?}");
             }
         }
     }
@@ -108,8 +109,8 @@ mod tests {
             Plan { contacts: vec![10, 500], tolerances: vec![], timed: 25, ..Plan::quick(1) };
         let measured = measure(&["CF9"], None, &plan, &mut drop).expect("a patch");
         let force = |sampling: &str| {
-            let of = measured.rows.iter().filter(|row| row.sampling == Some(sampling));
-            let errors = of.filter_map(|row| row.err_force).collect::<Vec<f64>>();
+            let sampled = measured.rows.iter().filter(|row| row.sampling == Some(sampling));
+            let errors = sampled.filter_map(|row| row.err_force).collect::<Vec<f64>>();
             assert!(errors.len() >= 2, "{sampling}");
             errors
         };

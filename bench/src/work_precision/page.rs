@@ -2,9 +2,9 @@
 
 use super::choice::{Choice, Wish, fastest};
 use super::orders::{expected, orders};
-use super::plots::{ahead, plot};
+use super::plots::{improving_front, plot};
 use super::row::{Label, Quantity, Row};
-use super::table::{cells, error, micros, setting};
+use super::table::{cells, format_error, format_micros, format_setting};
 use super::{Facts, Measured, Plan};
 use crate::page::{Page, Section};
 use std::fmt::{Error, Write};
@@ -12,11 +12,11 @@ use std::fmt::{Error, Write};
 /// The prefix of all file names.
 const NAME: &str = "work-precision";
 
-fn file(scene: &str, quantity: Quantity) -> String {
+fn file_name(scene: &str, quantity: Quantity) -> String {
     format!("{NAME}-{scene}-{}.svg", quantity.name())
 }
 
-fn of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
+fn rows_of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
     measured.rows.iter().filter(|row| row.scene == scene).collect()
 }
 
@@ -26,12 +26,12 @@ fn of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
 /// Never in practice: writing to a string cannot fail.
 pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
     let mut body = String::new();
-    head(&mut body, measured, plan)?;
+    write_head(&mut body, measured, plan)?;
     for facts in &measured.scenes {
-        scene(&mut body, facts, &of(measured, &facts.scene))?;
+        write_scene(&mut body, facts, &rows_of(measured, &facts.scene))?;
     }
-    converging(&mut body, measured)?;
-    choices(&mut body, measured)?;
+    write_orders(&mut body, measured)?;
+    write_choices(&mut body, measured)?;
     Ok(Page {
         name: NAME,
         title: "Run time against error",
@@ -42,24 +42,24 @@ pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
 }
 
 /// The quantities with diagrams. Torque behaves like force.
-const DRAWN: [Quantity; 2] = [Quantity::Force, Quantity::Depth];
+const PLOTTED: [Quantity; 2] = [Quantity::Force, Quantity::Depth];
 
 /// Returns the diagrams of those paths that have points.
 fn figures(measured: &Measured) -> Vec<(String, String)> {
     let mut figures = Vec::new();
     for facts in measured.scenes.iter().filter(|facts| facts.path) {
-        let rows = of(measured, &facts.scene);
-        for quantity in DRAWN {
+        let rows = rows_of(measured, &facts.scene);
+        for quantity in PLOTTED {
             let plot = plot(&rows, &facts.scene, quantity);
             if !plot.is_empty() {
-                figures.push((file(&facts.scene, quantity), plot.svg()));
+                figures.push((file_name(&facts.scene, quantity), plot.svg()));
             }
         }
     }
     figures
 }
 
-fn head(page: &mut String, measured: &Measured, plan: &Plan) -> Result<(), Error> {
+fn write_head(page: &mut String, measured: &Measured, plan: &Plan) -> Result<(), Error> {
     let pinned = if measured.pinned { "kept on one core" } else { "not kept on one core" };
     let sample = if plan.quick { "This is the sample, `--quick`.\n\n" } else { "" };
     writeln!(
@@ -94,10 +94,10 @@ blue, with cells.
     )
 }
 
-fn scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
+fn write_scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
     writeln!(page, "## {}\n\n{}.\n", facts.scene, facts.about)?;
     if rows.iter().all(|row| row.err_depth.is_none()) {
-        return apart(page, rows);
+        return write_times(page, rows);
     }
     let [force, torque, depth] = facts.typical;
     let known = facts.known.map(|share| format!("{share:.0e}"));
@@ -107,24 +107,24 @@ fn scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
         "Typical: force {force:.3e} {unit}³, torque {torque:.3e} {unit}⁴, depth {depth:.3e} {unit}; known to {}, {} and {} of that.\n",
         known[0], known[1], known[2]
     )?;
-    for quantity in DRAWN.into_iter().filter(|_| facts.path) {
+    for quantity in PLOTTED.into_iter().filter(|_| facts.path) {
         writeln!(
             page,
             "![{0}: {1}]({2})",
             facts.scene,
             quantity.name(),
-            file(&facts.scene, quantity)
+            file_name(&facts.scene, quantity)
         )?;
     }
     for quantity in [Quantity::Force, Quantity::Depth] {
         writeln!(page, "\nWhat nothing is faster and nearer than, by the {}:\n", quantity.name())?;
-        table(page, &beaten_by_none(rows, quantity))?;
+        write_table(page, &pareto_rows(rows, quantity))?;
     }
     writeln!(page)
 }
 
 /// Writes the section of a scene without contact: times only.
-fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
+fn write_times(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     writeln!(page, "Nothing touches; this is what it takes to say so.\n")?;
     writeln!(
         page,
@@ -135,10 +135,10 @@ fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
             page,
             "| {} | {} | {} | {} | {} | {:.2} % |",
             row.method,
-            setting(row),
+            format_setting(row),
             row.sampling.unwrap_or("-"),
-            micros(row.p50_ns),
-            micros(row.p99_ns),
+            format_micros(row.p50_ns),
+            format_micros(row.p99_ns),
             100.0 * row.missed
         )?;
     }
@@ -146,14 +146,15 @@ fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
 }
 
 /// Returns the rows on the Pareto front of time and error, the fastest first.
-pub(super) fn beaten_by_none<'a>(rows: &[&'a Row], quantity: Quantity) -> Vec<&'a Row> {
-    let place = |row: &Row| Some([row.p50_ns? as f64, quantity.error(row)?]);
-    let all: Vec<[f64; 2]> = rows.iter().filter_map(|row| place(row)).collect();
-    let on = |corner: &[f64; 2]| rows.iter().copied().find(|row| place(row) == Some(*corner));
-    ahead(&all).iter().filter_map(on).collect()
+pub(super) fn pareto_rows<'a>(rows: &[&'a Row], quantity: Quantity) -> Vec<&'a Row> {
+    let point_of = |row: &Row| Some([row.p50_ns? as f64, quantity.error(row)?]);
+    let points: Vec<[f64; 2]> = rows.iter().filter_map(|row| point_of(row)).collect();
+    let row_at =
+        |corner: &[f64; 2]| rows.iter().copied().find(|row| point_of(row) == Some(*corner));
+    improving_front(&points).iter().filter_map(row_at).collect()
 }
 
-fn table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
+fn write_table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     writeln!(
         page,
         "| method | setting | sampling | weights | p50 µs | p99 µs | force | torque | depth | worst | missed |
@@ -165,7 +166,7 @@ fn table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     Ok(())
 }
 
-fn converging(page: &mut String, measured: &Measured) -> Result<(), Error> {
+fn write_orders(page: &mut String, measured: &Measured) -> Result<(), Error> {
     writeln!(
         page,
         "## Orders of convergence
@@ -193,7 +194,7 @@ in a place. Along a line (CF2, CF5) the depth's is -2. CF8 and CF9 have no such 
     writeln!(page)
 }
 
-fn choices(page: &mut String, measured: &Measured) -> Result<(), Error> {
+fn write_choices(page: &mut String, measured: &Measured) -> Result<(), Error> {
     let paths = measured.scenes.iter().filter(|facts| facts.path && facts.typical[2] > 0.0);
     let scenes: Vec<&str> = paths.map(|facts| facts.scene.as_str()).collect();
     if scenes.is_empty() {
@@ -211,45 +212,45 @@ unit. The fastest is the one whose slowest median is the shortest. *Safe* are th
         scenes.join(", "),
         scenes.join(", ")
     )?;
-    for wish in Wish::ALL {
-        let found = fastest(&measured.rows, &scenes, wish, |_| true);
-        let (tolerance, what) = match wish {
+    for requirement in Wish::ALL {
+        let choice = fastest(&measured.rows, &scenes, requirement, |_| true);
+        let (tolerance, quantity) = match requirement {
             Wish::Force(share) => (format!("{} %", 100.0 * share), "force"),
             Wish::Depth(depth) => (format!("{depth}"), "depth"),
         };
-        chosen(page, &tolerance, what, found)?;
-        if matches!(wish, Wish::Depth(_)) {
-            let safe = |row: &Row| matches!(row.method, "certified" | "cloud + bound");
-            let found = fastest(&measured.rows, &scenes, wish, safe);
-            chosen(page, &tolerance, "depth, safe", found)?;
+        write_choice(page, &tolerance, quantity, choice)?;
+        if matches!(requirement, Wish::Depth(_)) {
+            let is_safe = |row: &Row| matches!(row.method, "certified" | "cloud + bound");
+            let choice = fastest(&measured.rows, &scenes, requirement, is_safe);
+            write_choice(page, &tolerance, "depth, safe", choice)?;
         }
     }
     Ok(())
 }
 
-fn chosen(
+fn write_choice(
     page: &mut String,
     tolerance: &str,
-    what: &str,
-    found: Option<Choice>,
+    quantity: &str,
+    choice: Option<Choice>,
 ) -> Result<(), Error> {
-    let Some(Choice { label, p50, error: worst }) = found else {
-        return writeln!(page, "| {tolerance} | {what} | none that was measured | | | | | |");
+    let Some(Choice { label, p50, error: worst }) = choice else {
+        return writeln!(page, "| {tolerance} | {quantity} | none that was measured | | | | | |");
     };
-    let times: Vec<String> = p50.into_iter().map(|ns| micros(Some(ns))).collect();
-    let Label { method, points, sampling, weights, tolerance: to, budget } = label;
-    let setting = match (points, budget, to) {
+    let times: Vec<String> = p50.into_iter().map(|ns| format_micros(Some(ns))).collect();
+    let Label { method, points, sampling, weights, tolerance: setting_tolerance, budget } = label;
+    let setting = match (points, budget, setting_tolerance) {
         (_, Some(budget), _) => format!("≤ {budget}"),
-        (_, _, Some(to)) => format!("{to:.0e}"),
+        (_, _, Some(setting_tolerance)) => format!("{setting_tolerance:.0e}"),
         (Some(points), ..) => points.to_string(),
         _ => "-".to_owned(),
     };
     writeln!(
         page,
-        "| {tolerance} | {what} | {method} | {setting} | {} | {} | {} | {} |",
+        "| {tolerance} | {quantity} | {method} | {setting} | {} | {} | {} | {} |",
         sampling.unwrap_or("-"),
         weights.unwrap_or("-"),
         times.join(", "),
-        error(Some(worst))
+        format_error(Some(worst))
     )
 }

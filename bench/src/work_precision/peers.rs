@@ -1,25 +1,25 @@
 //! Other methods, if the feature `peers` is enabled.
 
-use super::lineup::{Kind, Lineup};
+use super::lineup::{LabelledCloud, Lineup};
 use touchoff::Mesh;
 
 #[cfg(feature = "peers")]
 mod built {
-    use super::{Kind, Lineup, Mesh};
+    use super::{LabelledCloud, Lineup, Mesh};
     use crate::peers::{brute, fidget, parry_bvh, parry_contact, thesis};
     use crate::race::contender::Contender;
     use crate::work_precision::row::Label;
 
-    pub(super) fn points(lineup: &mut Lineup<'_>, kind: &Kind) {
-        let all: [Box<dyn Contender>; 5] = [
-            Box::new(brute::Scalar::new(&kind.cloud)),
-            Box::new(brute::Lanes::new(&kind.cloud)),
-            Box::new(thesis::Thesis::new(&kind.cloud)),
-            Box::new(parry_bvh::ParryBvh::new(&kind.cloud)),
-            Box::new(fidget::Fidget::new(&kind.cloud)),
+    pub(super) fn points(lineup: &mut Lineup<'_>, cloud: &LabelledCloud) {
+        let contenders: [Box<dyn Contender>; 5] = [
+            Box::new(brute::Scalar::new(&cloud.cloud)),
+            Box::new(brute::Lanes::new(&cloud.cloud)),
+            Box::new(thesis::Thesis::new(&cloud.cloud)),
+            Box::new(parry_bvh::ParryBvh::new(&cloud.cloud)),
+            Box::new(fidget::Fidget::new(&cloud.cloud)),
         ];
-        for contender in all {
-            lineup.add_of_the_thesis(kind.label(contender.name()), contender);
+        for contender in contenders {
+            lineup.add_with_thesis_magnitudes(cloud.label(contender.name()), contender);
         }
     }
 
@@ -30,11 +30,11 @@ mod built {
 }
 
 /// Adds the methods that use points.
-pub(super) fn add_points(lineup: &mut Lineup<'_>, kind: &Kind) {
+pub(super) fn add_points(lineup: &mut Lineup<'_>, cloud: &LabelledCloud) {
     #[cfg(feature = "peers")]
-    built::points(lineup, kind);
+    built::points(lineup, cloud);
     #[cfg(not(feature = "peers"))]
-    let _ = (lineup, kind);
+    let _ = (lineup, cloud);
 }
 
 /// Adds the methods that use the part's triangles. They know the solid, not the thesis's magnitudes.

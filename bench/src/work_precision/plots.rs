@@ -6,7 +6,7 @@ use crate::plot::{Axis, Plot, Series};
 /// A group of rows that share a name and a colour.
 struct Family {
     name: String,
-    look: usize,
+    colour: usize,
     /// True if the points are joined by a line. Those of peers are not, so that this project's lines remain visible.
     joined: bool,
     bold: bool,
@@ -22,23 +22,23 @@ fn family(row: &Row, quantity: Quantity) -> Option<Family> {
     quantity.error(row)?;
     let (sampling, weights) = (row.sampling.unwrap_or("-"), row.weights.unwrap_or("-"));
     let depth = quantity == Quantity::Depth;
-    let ours = |name: String, look| Some(Family { name, look, joined: true, bold: false });
+    let ours = |name: String, colour| Some(Family { name, colour, joined: true, bold: false });
     match (row.method, sampling, weights) {
         ("cloud", "centroids", _) => ours("centroids".to_owned(), 7),
         // Depth does not depend on the weights.
         ("cloud", _, "equal") if depth => None,
         ("cloud", "blue", "cells") => {
             let kind = if depth { "blue" } else { "blue, cells" };
-            Some(Family { name: kind.to_owned(), look: 3, joined: true, bold: true })
+            Some(Family { name: kind.to_owned(), colour: 3, joined: true, bold: true })
         }
         ("cloud", "random", "cells") if depth => ours("random".to_owned(), 1),
         ("cloud", ..) => {
-            let look = match (sampling, weights) {
+            let colour = match (sampling, weights) {
                 ("random", "equal") => 0,
                 ("random", _) => 1,
                 _ => 2,
             };
-            ours(format!("{sampling}, {weights}"), look)
+            ours(format!("{sampling}, {weights}"), colour)
         }
         ("cloud + bound", ..) => {
             ours(format!("{sampling} + bound"), if sampling == "random" { 0 } else { 2 })
@@ -46,23 +46,23 @@ fn family(row: &Row, quantity: Quantity) -> Option<Family> {
         ("graded", ..) => ours("graded".to_owned(), 4),
         ("certified", ..) => ours("certified".to_owned(), 6),
         (peer, ..) => {
-            let place = PEERS.iter().position(|known| *known == peer)?;
-            let look = FIRST_PEER + place;
-            Some(Family { name: peer.to_owned(), look, joined: false, bold: false })
+            let index = PEERS.iter().position(|name| *name == peer)?;
+            let colour = FIRST_PEER + index;
+            Some(Family { name: peer.to_owned(), colour, joined: false, bold: false })
         }
     }
 }
 
 /// Returns the points on the Pareto front, in the order of the front. A point is left out if its error is less than one
 /// per cent below that of a faster point: such rows are the same sums in another order.
-pub(super) fn ahead(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    const NEARER: f64 = 0.99;
+pub(super) fn improving_front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const MAX_ERROR_RATIO: f64 = 0.99;
     let mut corners = front(points);
     let mut best = f64::INFINITY;
     corners.retain(|[_, error]| {
-        let better = *error < NEARER * best;
-        best = if better { *error } else { best };
-        better
+        let improves = *error < MAX_ERROR_RATIO * best;
+        best = if improves { *error } else { best };
+        improves
     });
     corners
 }
@@ -75,9 +75,9 @@ fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut best = f64::INFINITY;
     sorted.retain(|[_, y]| {
-        let better = *y < best;
+        let improves = *y < best;
         best = best.min(*y);
-        better
+        improves
     });
     sorted
 }
@@ -90,27 +90,28 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
         Axis::log(format!("rms error of the {}, relative", quantity.name())),
     );
     let mut families: Vec<(Family, Vec<[f64; 2]>)> = Vec::new();
-    let mut late = Vec::new();
+    let mut percentile_lines = Vec::new();
     for row in rows {
         let (Some(family), Some(micros)) = (family(row, quantity), row.micros()) else { continue };
         let Some(error) = quantity.error(row) else { continue };
         if let Some(p99) = row.p99_ns.filter(|_| family.joined) {
-            late.push((family.look, vec![[micros, error], [p99 as f64 / 1e3, error]]));
+            percentile_lines
+                .push((family.colour, vec![[micros, error], [p99 as f64 / 1e3, error]]));
         }
-        match families.iter_mut().find(|(known, _)| known.name == family.name) {
+        match families.iter_mut().find(|(existing, _)| existing.name == family.name) {
             Some((_, points)) => points.push([micros, error]),
             None => families.push((family, vec![[micros, error]])),
         }
     }
-    for (look, ends) in late {
-        plot = plot.with(Series::dashes("", ends).look(look));
+    for (colour, ends) in percentile_lines {
+        plot = plot.with(Series::dashes("", ends).look(colour));
     }
     for (family, points) in families {
         let series = match family.joined {
             true => Series::line(family.name, points),
             false => Series::points(family.name, points),
         };
-        let series = series.look(family.look);
+        let series = series.look(family.colour);
         plot = plot.with(if family.bold { series.bold() } else { series });
     }
     plot
@@ -121,16 +122,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_is_what_nothing_beats() {
+    fn keeps_the_points_that_no_other_point_undercuts() {
         let points = [[2.0, 2.0], [1.0, 5.0], [3.0, 2.0], [4.0, 1.0], [1.0, 6.0], [2.0, 2.0]];
         assert_eq!(front(&points), [[1.0, 5.0], [2.0, 2.0], [4.0, 1.0]]);
         assert_eq!(front(&[[f64::NAN, 0.0], [1.0, f64::INFINITY]]), [[0.0; 2]; 0]);
     }
 
     #[test]
-    fn the_same_sums_in_another_order_are_not_ahead() {
+    fn leaves_out_points_that_hardly_improve() {
         let points = [[1.0, 0.5], [2.0, 0.499], [3.0, 0.498], [4.0, 0.25], [0.5, 0.9], [5.0, 0.3]];
-        assert_eq!(ahead(&points), [[0.5, 0.9], [1.0, 0.5], [4.0, 0.25]]);
-        assert_eq!(ahead(&[]), [[0.0; 2]; 0]);
+        assert_eq!(improving_front(&points), [[0.5, 0.9], [1.0, 0.5], [4.0, 0.25]]);
+        assert_eq!(improving_front(&[]), [[0.0; 2]; 0]);
     }
 }

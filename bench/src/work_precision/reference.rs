@@ -3,8 +3,8 @@
 use super::Failure;
 use super::cutter::Cutter;
 use super::plan::Plan;
-use super::refine::{Enough, Refined};
-use super::truth::{Tally, Truth};
+use super::refine::{Quadrature, StopCriteria};
+use super::truth::{ErrorStats, Truth};
 use crate::race::contender::Answer;
 use rayon::prelude::*;
 use touchoff::certify::{Certifier, TriangleBvh};
@@ -13,7 +13,7 @@ use touchoff::{Interval, Mesh, Pose, Tool};
 /// Tolerance of the certified depths, in the part's unit.
 const TOLERANCE: f64 = 1e-9;
 /// Number of poses that one task processes with one certifier.
-const TOGETHER: usize = 64;
+const POSES_PER_TASK: usize = 64;
 
 /// The true values at some poses, and their accuracy.
 #[derive(Clone, Debug)]
@@ -38,8 +38,8 @@ pub(super) fn in_contact(
     poses: &[Pose],
 ) -> Result<Vec<Pose>, Failure> {
     let depths = depths(bvh, tool, poses)?;
-    let both = poses.iter().zip(depths);
-    Ok(both
+    let intervals = poses.iter().zip(depths);
+    Ok(intervals
         .filter(|(_, Interval { low, .. })| *low > 2.0 * TOLERANCE)
         .map(|(pose, _)| *pose)
         .collect())
@@ -47,14 +47,14 @@ pub(super) fn in_contact(
 
 /// Returns the interval of the depth at each pose.
 fn depths(bvh: &TriangleBvh, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<Interval>, Failure> {
-    let some = |poses: &[Pose]| {
+    let certify = |poses: &[Pose]| {
         let mut certifier = Certifier::new(bvh, tool)?;
-        let each = poses.iter().map(|pose| certifier.deepest(pose, TOLERANCE).depth);
-        Ok(each.collect::<Vec<_>>())
+        let intervals = poses.iter().map(|pose| certifier.deepest(pose, TOLERANCE).depth);
+        Ok(intervals.collect::<Vec<_>>())
     };
-    let all: Vec<Vec<Interval>> =
-        poses.par_chunks(TOGETHER).map(some).collect::<Result<_, Failure>>()?;
-    Ok(all.concat())
+    let chunks: Vec<Vec<Interval>> =
+        poses.par_chunks(POSES_PER_TASK).map(certify).collect::<Result<_, Failure>>()?;
+    Ok(chunks.concat())
 }
 
 impl Reference {
@@ -70,7 +70,12 @@ impl Reference {
         plan: &Plan,
     ) -> Result<Reference, Failure> {
         let depths = |poses: &[Pose]| depths(bvh, cutter.tool(), poses);
-        Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
+        Reference::compute(
+            &Quadrature::new(mesh, cutter.tool(), cutter.tool_with_profile()),
+            poses,
+            plan,
+            depths,
+        )
     }
 
     /// Computes true values with the thesis's magnitudes. Their deepest points differ from those of the true depth.
@@ -78,7 +83,7 @@ impl Reference {
     /// # Errors
     /// Never: the magnitudes are bounded without the certifier.
     #[cfg(feature = "peers")]
-    pub(super) fn of_the_thesis(
+    pub(super) fn with_thesis_magnitudes(
         mesh: &Mesh,
         poses: &[Pose],
         plan: &Plan,
@@ -90,33 +95,39 @@ impl Reference {
             Interval::new(low, low + TOLERANCE)
         };
         let depths = |poses: &[Pose]| Ok(poses.par_iter().map(depth).collect());
-        Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
+        Reference::compute(
+            &Quadrature::new(mesh, cutter.tool(), cutter.tool_with_profile()),
+            poses,
+            plan,
+            depths,
+        )
     }
 
-    fn of(
-        refined: &Refined<'_>,
+    fn compute(
+        quadrature: &Quadrature<'_>,
         poses: &[Pose],
         plan: &Plan,
         depths: impl Fn(&[Pose]) -> Result<Vec<Interval>, Failure>,
     ) -> Result<Reference, Failure> {
         let count = plan.checks.min(poses.len());
-        let places: Vec<usize> = (0..count).map(|k| k * poses.len() / count).collect();
-        let some: Vec<Pose> = places.iter().map(|place| poses[*place]).collect();
-        let (share, most) = plan.known;
-        let sums = refined.all(&some, Enough { share, most });
-        let depths = depths(&some)?;
-        let (mut typical, mut off) = (Tally::default(), Tally::default());
+        let indices: Vec<usize> = (0..count).map(|k| k * poses.len() / count).collect();
+        let checked_poses: Vec<Pose> = indices.iter().map(|index| poses[*index]).collect();
+        let (relative_error, max_pieces) = plan.known;
+        let sums = quadrature
+            .sums_at_all_poses(&checked_poses, StopCriteria { relative_error, max_pieces });
+        let depths = depths(&checked_poses)?;
+        let (mut typical, mut uncertainty) = (ErrorStats::default(), ErrorStats::default());
         let mut truths = Vec::new();
-        for ((place, sums), Interval { low, high }) in places.into_iter().zip(sums).zip(depths) {
+        for ((index, sums), Interval { low, high }) in indices.into_iter().zip(sums).zip(depths) {
             let truth =
                 Truth { force: sums.force, torque: sums.torque, depth: f64::midpoint(low, high) };
             typical.add(&Answer::default(), &truth);
             let [force, torque] = sums.change;
-            off.add_sizes([force, torque, (high - low) / 2.0]);
-            truths.push((place, truth));
+            uncertainty.add_sizes([force, torque, (high - low) / 2.0]);
+            truths.push((index, truth));
         }
-        let (typical, change) = (typical.typical(), off.typical());
+        let (typical, change) = (typical.typical(), uncertainty.typical());
         let known = [0, 1, 2].map(|k: usize| change[k] / typical[k]);
-        Ok(Reference { truths, typical, known, depth: off.largest_depth() })
+        Ok(Reference { truths, typical, known, depth: uncertainty.largest_depth() })
     }
 }

@@ -170,11 +170,11 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn rows_are_objects_whose_first_keys_are_the_promised_ones() {
+    fn json_starts_with_the_promised_keys() {
         let text = row("outside", "cloud", 300, 0.1, 0.01).json();
         let read: Value = serde_json::from_str(&text).expect("an object");
         let object = read.as_object().expect("an object");
-        let promised = [
+        let first_keys = [
             "scene",
             "method",
             "points",
@@ -187,7 +187,7 @@ pub(super) mod tests {
             "err_depth",
             "missed",
         ];
-        let more = [
+        let other_keys = [
             "law",
             "tolerance",
             "budget",
@@ -198,13 +198,13 @@ pub(super) mod tests {
             "colliding",
             "ns_avg",
         ];
-        assert_eq!(object.len(), promised.len() + more.len());
-        for key in promised.iter().chain(&more) {
+        assert_eq!(object.len(), first_keys.len() + other_keys.len());
+        for key in first_keys.iter().chain(&other_keys) {
             assert!(object.contains_key(*key), "{key} is missing in {text}");
         }
         // The keys appear in the text in this order.
-        let places = promised.map(|key| text.find(&format!("\"{key}\":")).expect("the key"));
-        assert!(places.is_sorted(), "{text}");
+        let positions = first_keys.map(|key| text.find(&format!("\"{key}\":")).expect("the key"));
+        assert!(positions.is_sorted(), "{text}");
         assert!(object["p99_ns"].is_null() && object["err_force"] == 0.1);
     }
 }

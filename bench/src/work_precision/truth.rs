@@ -25,18 +25,18 @@ impl Truth {
 
 /// Accumulated errors.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct ErrorStats {
     /// Sums of squares of the errors of force, torque and depth, and of the true values.
     errors: [f64; 3],
     truths: [f64; 3],
     wrench: bool,
     worst_depth: f64,
-    unfelt: usize,
+    without_contact: usize,
     count: usize,
     colliding: usize,
 }
 
-/// The summary of a tally.
+/// The summary of error statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Errors {
     /// Errors of force, torque and depth, relative to their typical values.
@@ -53,16 +53,16 @@ pub(super) struct Errors {
     pub(super) colliding: f64,
 }
 
-impl Tally {
+impl ErrorStats {
     /// Adds an answer at a pose in true contact.
-    pub(super) fn add(&mut self, found: &Answer, truth: &Truth) {
+    pub(super) fn add(&mut self, answer: &Answer, truth: &Truth) {
         self.count += 1;
-        self.colliding += found.colliding;
-        self.unfelt += usize::from(found.colliding == 0);
-        let depth = (found.depth - truth.depth).abs();
+        self.colliding += answer.colliding;
+        self.without_contact += usize::from(answer.colliding == 0);
+        let depth = (answer.depth - truth.depth).abs();
         self.worst_depth = self.worst_depth.max(depth);
         self.errors[2] += depth * depth;
-        if let Some([force, torque]) = found.wrench {
+        if let Some([force, torque]) = answer.wrench {
             self.wrench = true;
             self.errors[0] += (force - truth.force).norm_squared();
             self.errors[1] += (torque - truth.torque).norm_squared();
@@ -84,15 +84,15 @@ impl Tally {
         self.worst_depth
     }
 
-    /// Adds the values of another tally.
-    pub(super) fn join(&mut self, other: &Tally) {
+    /// Adds the values of other statistics.
+    pub(super) fn merge(&mut self, other: &ErrorStats) {
         for k in 0..3 {
             self.errors[k] += other.errors[k];
             self.truths[k] += other.truths[k];
         }
         self.wrench |= other.wrench;
         self.worst_depth = self.worst_depth.max(other.worst_depth);
-        self.unfelt += other.unfelt;
+        self.without_contact += other.without_contact;
         self.count += other.count;
         self.colliding += other.colliding;
     }
@@ -102,22 +102,22 @@ impl Tally {
         self.truths.map(|sum| (sum / self.count.max(1) as f64).sqrt())
     }
 
-    /// Returns the summary. `known` has the relative accuracy of the true force, torque and depth; `depth` is the
-    /// largest possible error of a true depth.
-    pub(super) fn errors(&self, known: [f64; 3], depth: f64) -> Errors {
+    /// Returns the summary. `accuracy` has the relative accuracy of the true force, torque and depth;
+    /// `max_depth_error` is the largest possible error of a true depth.
+    pub(super) fn errors(&self, accuracy: [f64; 3], max_depth_error: f64) -> Errors {
         let mut floored = Vec::new();
         let relative = [0, 1, 2].map(|k| {
-            let has = self.count > 0 && (self.wrench || k == 2);
-            let found = (self.errors[k] / self.truths[k]).sqrt();
-            let below = has && found < known[k];
-            floored.extend(below.then_some(Quantity::ALL[k].name()));
-            has.then_some(found.max(known[k]))
+            let is_measured = self.count > 0 && (self.wrench || k == 2);
+            let relative_error = (self.errors[k] / self.truths[k]).sqrt();
+            let is_floored = is_measured && relative_error < accuracy[k];
+            floored.extend(is_floored.then_some(Quantity::ALL[k].name()));
+            is_measured.then_some(relative_error.max(accuracy[k]))
         });
         let count = self.count.max(1) as f64;
         Errors {
             relative,
-            worst_depth: self.worst_depth.max(depth),
-            missed: self.unfelt as f64 / count,
+            worst_depth: self.worst_depth.max(max_depth_error),
+            missed: self.without_contact as f64 / count,
             floored,
             checked: self.count,
             colliding: self.colliding as f64 / count,
@@ -125,26 +125,26 @@ impl Tally {
     }
 }
 
-/// Queries a method at the poses with known true values. A method that `walks` depends on the previous pose, so it is
-/// also queried at all poses in between.
+/// Queries a method at the poses with known true values. A method with `follows_path` depends on the previous pose,
+/// so it is also queried at all poses in between.
 pub(super) fn check(
     contender: &mut dyn Contender,
-    walks: bool,
+    follows_path: bool,
     poses: &[Pose],
     truths: &[(usize, Truth)],
-) -> Tally {
-    let mut tally = Tally::default();
+) -> ErrorStats {
+    let mut stats = ErrorStats::default();
     let mut next = 0;
-    for (at, truth) in truths {
-        if walks {
-            for pose in &poses[next..*at] {
+    for (index, truth) in truths {
+        if follows_path {
+            for pose in &poses[next..*index] {
                 contender.query(pose);
             }
-            next = at + 1;
+            next = index + 1;
         }
-        tally.add(&contender.query(&poses[*at]), truth);
+        stats.add(&contender.query(&poses[*index]), truth);
     }
-    tally
+    stats
 }
 
 #[cfg(test)]
@@ -157,25 +157,25 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_by_what_is_typical_and_never_below_what_is_known() {
+    fn errors_are_relative_to_typical_values_and_not_below_the_accuracy() {
         let truth = |depth: f64| Truth { force: Vector3::x() * depth, torque: Vector3::y(), depth };
-        let mut tally = Tally::default();
-        tally.add(&answer(3.0, 3.0), &truth(3.0));
-        tally.add(&answer(0.0, 0.0), &truth(4.0));
-        let found = tally.errors([1e-6; 3], 1e-9);
-        assert_eq!(found.relative[2], Some(0.8));
-        assert_eq!(found.relative[0], Some(0.8));
-        assert_eq!(found.relative[1], Some(1.0));
-        assert_eq!((found.worst_depth, found.missed, found.checked), (4.0, 0.5, 2));
-        assert!(found.floored.is_empty());
+        let mut stats = ErrorStats::default();
+        stats.add(&answer(3.0, 3.0), &truth(3.0));
+        stats.add(&answer(0.0, 0.0), &truth(4.0));
+        let errors = stats.errors([1e-6; 3], 1e-9);
+        assert_eq!(errors.relative[2], Some(0.8));
+        assert_eq!(errors.relative[0], Some(0.8));
+        assert_eq!(errors.relative[1], Some(1.0));
+        assert_eq!((errors.worst_depth, errors.missed, errors.checked), (4.0, 0.5, 2));
+        assert!(errors.floored.is_empty());
 
-        let mut exact = Tally::default();
+        let mut exact = ErrorStats::default();
         exact.add(&answer(3.0, 3.0), &truth(3.0));
-        let found = exact.errors([1e-6; 3], 1e-9);
-        assert_eq!((found.relative[0], found.worst_depth), (Some(1e-6), 1e-9));
-        assert_eq!(found.floored, ["force", "depth"]);
+        let errors = exact.errors([1e-6; 3], 1e-9);
+        assert_eq!((errors.relative[0], errors.worst_depth), (Some(1e-6), 1e-9));
+        assert_eq!(errors.floored, ["force", "depth"]);
 
-        let mut deep = Tally::default();
+        let mut deep = ErrorStats::default();
         deep.add(&Answer { wrench: None, ..answer(3.0, 0.0) }, &truth(3.0));
         assert_eq!(deep.errors([1e-6; 3], 0.0).relative[..2], [None, None]);
     }

@@ -15,7 +15,7 @@ use touchoff_bench::postures::{Wanted, measure};
 
 fn sample(tools: Vec<&str>, draws: usize) {
     let mesh = relief(20).expect("a block");
-    let wanted = Wanted {
+    let task = Wanted {
         mesh: &mesh,
         tools,
         hemisphere: 60,
@@ -24,55 +24,55 @@ fn sample(tools: Vec<&str>, draws: usize) {
         draws,
         seed: 4,
     };
-    let found = measure(&wanted).expect("a sweep");
-    let odd = |list: &[touchoff_bench::postures::Odd]| format!("{list:#?}");
-    for drawn in [&found.accessible, &found.refused] {
+    let results = measure(&task).expect("a sweep");
+    let format_list = |list: &[touchoff_bench::postures::Odd]| format!("{list:#?}");
+    for drawn in [&results.accessible, &results.refused] {
         assert_eq!(drawn.judged, draws);
-        assert!(drawn.wrong.is_empty(), "{}", odd(&drawn.wrong));
-        assert!(20 * drawn.open.len() <= draws, "{}", odd(&drawn.open));
+        assert!(drawn.wrong.is_empty(), "{}", format_list(&drawn.wrong));
+        assert!(20 * drawn.open.len() <= draws, "{}", format_list(&drawn.open));
     }
-    let tally = &found.tally;
-    assert_eq!(tally.postures(), tally.triangles * 120);
+    let stats = &results.tally;
+    assert_eq!(stats.postures(), stats.triangles * 120);
     assert!(
-        tally.cached_obstruction > 0
-            && tally.obstructed > 0
-            && tally.acceptable > 0
-            && tally.not_facing > 0
+        stats.cached_obstruction > 0
+            && stats.obstructed > 0
+            && stats.acceptable > 0
+            && stats.not_facing > 0
     );
-    let sum: u64 = found.reach.iter().map(|reach| reach.postures).sum();
-    assert_eq!(sum, tally.acceptable);
+    let sum: u64 = results.reach.iter().map(|reach| reach.postures).sum();
+    assert_eq!(sum, stats.acceptable);
 }
 
 #[test]
-fn what_a_sweep_finds_accessible_is_free_and_what_not_is_blocked() {
+fn accessible_postures_are_free_and_others_are_blocked() {
     sample(vec!["D2Ball", "BallEr16", "TaperedBall"], 300);
 }
 
 #[test]
-fn so_it_is_with_corners_two_contacts_and_tools_in_inches() {
+fn corners_two_contacts_and_inch_tools_agree_with_brute_force() {
     sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "Woodruff", "HalfInchBallCat40"], 300);
 }
 
 /// The validation must be able to reject a posture.
 #[test]
-fn brute_force_finds_what_is_in_the_way() {
+fn brute_force_rejects_blocked_postures() {
     let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
     let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
     let part = Part::new(&block);
     let stand = Stand::new("D2Ball", 1.0, 0.01).expect("a restated tool");
-    let judge = |at: [f64; 3], more: f64| {
-        let posture = Posture { tip: at.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
-        part.judge(&stand, &posture, 0.01, more)
+    let verdict_at = |tip: [f64; 3], allowance: f64| {
+        let posture = Posture { tip: tip.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
+        part.judge(&stand, &posture, 0.01, allowance)
     };
-    assert_eq!(judge([0.0, 0.0, 0.0], 0.0), Verdict::Free);
-    assert_eq!(judge([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
-    assert!(matches!(judge([0.0, 0.0, -0.0101], 0.0), Verdict::Blocked(_)));
+    assert_eq!(verdict_at([0.0, 0.0, 0.0], 0.0), Verdict::Free);
+    assert_eq!(verdict_at([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([0.0, 0.0, -0.0101], 0.0), Verdict::Blocked(_)));
     // The flute of 5 mm may cut slightly into the wall beside it; the shank above must not.
-    assert_eq!(judge([20.999, 0.0, -4.9], 0.0), Verdict::Free);
-    assert!(matches!(judge([20.999, 0.0, -5.1], 0.0), Verdict::Blocked(_)));
-    assert_eq!(judge([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
-    assert!(matches!(judge([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
+    assert_eq!(verdict_at([20.999, 0.0, -4.9], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([20.999, 0.0, -5.1], 0.0), Verdict::Blocked(_)));
+    assert_eq!(verdict_at([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
     // A part far larger than the tool contains it.
     let high = nalgebra::Point3::new(20.0, 20.0, 50.0);
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
@@ -88,7 +88,7 @@ fn brute_force_finds_what_is_in_the_way() {
 /// From the centre of a plate's top a ball may lean until its flute would touch. That is the whole upper hemisphere,
 /// except where the holder or a shank wider than the ball collides.
 #[test]
-fn a_plate_is_reached_from_all_above_it() {
+fn a_plate_is_reached_from_the_upper_hemisphere() {
     let plate = shapes::plane(0.5, 1, Unit::Millimetre).expect("a plate");
     let bvh = TriangleBvh::new(&plate);
     let directions = Directions::spread(400);
@@ -96,15 +96,15 @@ fn a_plate_is_reached_from_all_above_it() {
     let tool = tools_library::find("D2Ball").expect("a tool");
     let sweep = PostureSweep::new(&plate, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
-    let mut solid = Vec::new();
+    let mut solid_angles = Vec::new();
     let _: ControlFlow<()> = sweep.run(&[0], |batch| {
-        solid.extend(
+        solid_angles.extend(
             batch.rows.iter().map(|(_, row)| directions.solid_angle(&row.access[0].directions)),
         );
         ControlFlow::Continue(())
     });
-    assert_eq!(solid.len(), 2);
-    for angle in solid {
+    assert_eq!(solid_angles.len(), 2);
+    for angle in solid_angles {
         assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
     }
 }
@@ -112,18 +112,18 @@ fn a_plate_is_reached_from_all_above_it() {
 /// A plate in the middle of a hollow block. The tool fits in as it is, so no larger stick-out is needed, however far
 /// the holder is assumed to extend above.
 #[test]
-fn no_stick_out_is_more_than_that_of_the_tool() {
+fn required_stick_out_is_at_most_that_of_the_tool() {
     let block = |low: [f64; 3], high: [f64; 3]| {
         shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
     };
     let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
     let [outer, hollow] = [80.0, 60.0].map(|half| block([-half; 3], [half; 3]));
     let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
-    let moved = |corners: &[u32; 3], after: u32| corners.map(|corner| corner + after);
-    let outside = outer.triangles().iter().map(|corners| moved(corners, 8));
+    let offset_corners = |corners: &[u32; 3], offset: u32| corners.map(|corner| corner + offset);
+    let outside = outer.triangles().iter().map(|corners| offset_corners(corners, 8));
     // The triangles of the void face inward.
     let inside = hollow.triangles().iter().map(|corners| {
-        let [a, b, c] = moved(corners, 16);
+        let [a, b, c] = offset_corners(corners, 16);
         [b, a, c]
     });
     let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();

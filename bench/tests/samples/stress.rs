@@ -8,7 +8,7 @@ use touchoff_bench::stress::truth::subjects;
 use touchoff_bench::stress::{Amount, measure};
 
 #[test]
-fn no_bar_is_missed() {
+fn no_limit_is_exceeded() {
     let rows = measure(Amount::sample(7), |_| true, |_| true);
     let missed: Vec<String> =
         rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect();
@@ -39,10 +39,10 @@ fn a_seed_gives_the_same_rows() {
 
 /// A tool compared with the true values of another must fail.
 #[test]
-fn a_wrong_tool_misses() {
+fn the_truth_of_another_tool_exceeds_limits() {
     let subjects = subjects();
-    let of = |name: &str| subjects.iter().find(|s| s.name() == name).expect("in the library");
-    let (ball, other) = (of("D2Ball"), of("Fig73Exact"));
+    let subject = |name: &str| subjects.iter().find(|s| s.name() == name).expect("in the library");
+    let (ball, other) = (subject("D2Ball"), subject("Fig73Exact"));
     let mut ledger = Ledger::new(Item(1), "D2Ball");
     let points: Vec<[f64; 3]> =
         (0..200).map(|k| [0.4 * f64::from(k % 5), 0.0, 0.1 * f64::from(k)]).collect();

@@ -30,10 +30,10 @@ pub(super) fn section(count: usize, seed: u64, folder: &Path) -> Result<Section,
             eprintln!("{name} is skipped: there is no {}", path.display());
         }
     }
-    let each = count / (parts.len() * TOOLS.len()).max(1);
-    let rows = rows(&parts, each, seed);
+    let count = count / (parts.len() * TOOLS.len()).max(1);
+    let rows = rows(&parts, count, seed);
     let about = format!(
-        "For each tool and part {each} poses: most put the tool's surface between 1e-9 and 6 mm into a triangle, a sixth lie along the
+        "For each tool and part {count} poses: most put the tool's surface between 1e-9 and 6 mm into a triangle, a sixth lie along the
 coordinate axes and flush with the part's box, a tenth are anywhere about the part. Tolerances are 0, 1e-9, 1e-6 and 1e-3 in turn.
 All lengths are in the part's unit. *Over* is by how much a sample of brute force, or one beside the witness, is above the upper bound,
 *under* by how much the witness is shallower than the lower one; 0 where it never is. *Brute behind* is by how much brute force without
@@ -49,14 +49,14 @@ the witness, which does not zoom, falls short of the lower bound, *reached* at h
 }
 
 /// Returns one row per part and tool.
-fn rows(parts: &[(&str, Mesh)], each: usize, seed: u64) -> Vec<Row> {
+fn rows(parts: &[(&str, Mesh)], count: usize, seed: u64) -> Vec<Row> {
     let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
     parallel::rows(parts.len() * TOOLS.len(), |k| {
         let ((part, mesh), name) = (&parts[k / TOOLS.len()], TOOLS[k % TOOLS.len()]);
         let tool = tools_library::find(name).expect("a tool of the library");
         let oracle = Nearest::of(name);
         let pair = Pair { part, mesh, bvh: &bvh[k / TOOLS.len()], tool, oracle: &oracle };
-        let row = pair.measure(each, seed + k as u64);
+        let row = pair.measure(count, seed + k as u64);
         eprintln!("{} in {}: {} violations", row.tool, part, row.violations.len());
         row
     })

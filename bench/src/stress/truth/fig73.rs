@@ -12,45 +12,45 @@ const NAMES: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"
 pub(super) struct Magnitudes {
     solid: Reference,
     /// The thesis's index of each region in the tool info.
-    places: Vec<Option<usize>>,
+    indices: Vec<Option<usize>>,
 }
 
 impl Magnitudes {
     pub(super) fn new(tool: &dyn Tool, solid: &Restated) -> Magnitudes {
         let regions = tool.info().regions.iter();
-        let place = |name: &str| NAMES.iter().position(|known| *known == name);
+        let index_of = |name: &str| NAMES.iter().position(|known| *known == name);
         Magnitudes {
             solid: Reference::new(solid),
-            places: regions.map(|region| place(&region.name)).collect(),
+            indices: regions.map(|region| index_of(&region.name)).collect(),
         }
     }
 }
 
 /// A point in the thesis's frame, whose z runs from the back of the housing to the tip.
-struct Seen {
+struct ThesisPoint {
     d: Big,
     z: Big,
     radial: [Big; 2],
 }
 
-impl Seen {
-    fn new([x, y, z]: &Place) -> Seen {
+impl ThesisPoint {
+    fn new([x, y, z]: &Place) -> ThesisPoint {
         let d = (&(x * x) + &(y * y)).sqrt();
         let radial =
             if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [x / &d, y / &d] };
-        Seen { z: &Big::exactly(20.0) - z, d, radial }
+        ThesisPoint { z: &Big::exactly(20.0) - z, d, radial }
     }
 
     /// Returns `a + b d + c z`.
     fn sum(&self, a: f64, b: f64, c: f64) -> Big {
-        let of = |factor: f64, value: &Big| &Big::exactly(factor) * value;
-        &(&Big::exactly(a) + &of(b, &self.d)) + &of(c, &self.z)
+        let term = |factor: f64, value: &Big| &Big::exactly(factor) * value;
+        &(&Big::exactly(a) + &term(b, &self.d)) + &term(c, &self.z)
     }
 
     /// Returns the distance from the ball's centre, and the vector from there.
     fn arm(&self) -> (Big, [Big; 2]) {
-        let up = self.sum(-19.0, 0.0, 1.0);
-        ((&(&self.d * &self.d) + &(&up * &up)).sqrt(), [self.d.clone(), up])
+        let dz = self.sum(-19.0, 0.0, 1.0);
+        ((&(&self.d * &self.d) + &(&dz * &dz)).sqrt(), [self.d.clone(), dz])
     }
 
     fn magnitude(&self, region: usize) -> Big {
@@ -70,27 +70,29 @@ impl Seen {
     /// Returns the largest violation of a region's conditions, or 0 inside the region.
     fn outside(&self, region: usize) -> Big {
         let s = |a, b, c| self.sum(a, b, c);
-        let either = |a: Big, b: Big| if a < b { a } else { b };
-        let misses: Vec<Big> = match region {
+        let min = |a: Big, b: Big| if a < b { a } else { b };
+        let violations: Vec<Big> = match region {
             0 => vec![-&s(0.0, 0.0, 1.0), s(-5.0, 1.0, 1.0)],
             1 => vec![
                 s(-5.0, 1.0, 0.0),
                 s(5.0, -1.0, -1.0),
-                either(s(-9.0, 0.0, 1.0), s(-6.0, -1.0, 1.0)),
+                min(s(-9.0, 0.0, 1.0), s(-6.0, -1.0, 1.0)),
             ],
             2 => vec![s(3.0, -1.0, 0.0), s(6.0, 1.0, -1.0), s(-11.0, 0.0, 1.0)],
             3 => vec![s(-3.0, 1.0, 0.0), s(9.0, 0.0, -1.0), s(-11.0, 0.0, 1.0)],
             4 => vec![
                 s(-3.0, 1.0, 0.0),
                 s(11.0, 0.0, -1.0),
-                either(s(-13.0, 0.0, 1.0), s(-14.0, 1.0, 1.0)),
+                min(s(-13.0, 0.0, 1.0), s(-14.0, 1.0, 1.0)),
             ],
             5 => vec![s(1.0, -1.0, 0.0), s(13.0, 0.0, -1.0), s(-16.0, 1.0, 1.0)],
             6 => vec![s(-1.0, 1.0, 0.0), s(14.0, -1.0, -1.0), s(-16.0, 1.0, 1.0)],
             7 => vec![s(-1.0, 1.0, 0.0), s(16.0, -1.0, -1.0), s(-19.0, 0.0, 1.0)],
             _ => vec![s(19.0, 0.0, -1.0), -&self.magnitude(8)],
         };
-        misses.into_iter().fold(Big::zero(), |most, miss| if miss > most { miss } else { most })
+        violations
+            .into_iter()
+            .fold(Big::zero(), |max, violation| if violation > max { violation } else { max })
     }
 
     /// Returns the direction toward the surface by the thesis, in the tool's frame.
@@ -105,7 +107,7 @@ impl Seen {
             6 => [&Big::exactly(2.0) / &root(5.0), &one() / &root(5.0)],
             _ => match self.arm() {
                 (length, _) if length == Big::zero() => [Big::zero(), -&one()],
-                (length, [across, up]) => [&across / &length, &up / &length],
+                (length, [dd, dz]) => [&dd / &length, &dz / &length],
             },
         };
         [&e_d * &self.radial[0], &e_d * &self.radial[1], -&e_z]
@@ -118,30 +120,30 @@ impl Truth for Magnitudes {
     }
 
     fn depth(&self, p: &Place) -> Big {
-        let seen = Seen::new(p);
-        match (0..9).find(|region| seen.outside(*region) == Big::zero()) {
-            Some(region) => seen.magnitude(region),
+        let point = ThesisPoint::new(p);
+        match (0..9).find(|region| point.outside(*region) == Big::zero()) {
+            Some(region) => point.magnitude(region),
             None => -&self.solid.depth(&At::of(p.clone())).abs(),
         }
     }
 
     fn owner(&self, p: &Place) -> Option<usize> {
-        let seen = Seen::new(p);
-        let owner = (0..9).find(|region| seen.outside(*region) == Big::zero())?;
-        self.places.iter().position(|place| *place == Some(owner))
+        let point = ThesisPoint::new(p);
+        let owner = (0..9).find(|region| point.outside(*region) == Big::zero())?;
+        self.indices.iter().position(|index| *index == Some(owner))
     }
 
     fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let region = (*self.places.get(region)?)?;
-        let seen = Seen::new(p);
-        let d = seen.d.to_f64();
+        let region = (*self.indices.get(region)?)?;
+        let point = ThesisPoint::new(p);
+        let d = point.d.to_f64();
         Some(Claim {
-            depth: seen.magnitude(region),
-            behind: seen.outside(region).to_f64(),
-            direction: seen.direction(region),
+            depth: point.magnitude(region),
+            behind: point.outside(region).to_f64(),
+            direction: point.direction(region),
             singular: match region {
                 0 | 2 => f64::INFINITY,
-                8 => d.min(seen.arm().0.to_f64()),
+                8 => d.min(point.arm().0.to_f64()),
                 _ => d,
             },
         })

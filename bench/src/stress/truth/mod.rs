@@ -81,7 +81,7 @@ pub fn place(p: [f64; 3]) -> Place {
 /// If the library lacks a tool that is restated.
 pub fn subjects() -> Vec<Subject> {
     let find = |name: &str| tools_library::find(name).expect("a tool of the library");
-    let mut all: Vec<Subject> = accuracy::tools()
+    let mut subjects: Vec<Subject> = accuracy::tools()
         .into_iter()
         .map(|(tool, restated)| Subject {
             tool,
@@ -90,23 +90,23 @@ pub fn subjects() -> Vec<Subject> {
         })
         .collect();
     let exact = restated::of("Fig73Exact").expect("it is restated");
-    all.push(Subject {
+    subjects.push(Subject {
         tool: find("Fig73"),
         truth: Box::new(fig73::Magnitudes::new(find("Fig73"), &exact)),
         oracle: Box::new(Fig73::default()),
     });
-    all.push(Subject {
+    subjects.push(Subject {
         tool: find("Block"),
         truth: Box::new(solids::Faces::block(find("Block"))),
         oracle: Box::new(Block),
     });
-    all.push(Subject {
+    subjects.push(Subject {
         tool: find("LBracket"),
         truth: Box::new(solids::Faces::bracket(find("LBracket"))),
         oracle: Box::new(LBracket),
     });
-    all.sort_by_key(Subject::name);
-    all
+    subjects.sort_by_key(Subject::name);
+    subjects
 }
 
 #[cfg(test)]
@@ -116,16 +116,16 @@ mod tests {
 
     /// The true values agree with the oracles in doubles, which are implemented independently.
     #[test]
-    fn doubles_say_the_same() {
+    fn agrees_with_the_oracles_in_doubles() {
         let subjects = subjects();
         assert_eq!(subjects.len(), tools_library::TOOLS.len());
         for subject in &subjects {
             let (oracle, scale) = (&subject.oracle, subject.scale());
             let [radius, height] = oracle.extent();
-            let mut draw = Rng::new(3);
+            let mut rng = Rng::new(3);
             for _ in 0..400 {
-                let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-                let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];
+                let [x, y] = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+                let p = [x, y, rng.between(-0.1 * height, 1.1 * height)];
                 let name = subject.name();
                 let depth = subject.truth.depth(&place(p)).to_f64();
                 let sense = oracle.sense(p);
@@ -139,8 +139,8 @@ mod tests {
                 assert!((claim.depth.to_f64() - expected).abs() < 1e-13 * scale, "{name} {p:?}");
                 let singular = oracle.singular(p).min(claim.singular);
                 for (u, v) in claim.direction.iter().zip(sense.direction) {
-                    let blur = 1e-13 * (1.0 + scale / singular);
-                    assert!((u.to_f64() - v).abs() < blur, "{name} {p:?}");
+                    let tolerance = 1e-13 * (1.0 + scale / singular);
+                    assert!((u.to_f64() - v).abs() < tolerance, "{name} {p:?}");
                 }
             }
         }

@@ -37,20 +37,20 @@ impl Truth for Profiled {
     }
 
     fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let at = At::of(p.clone());
-        let far = |owner: &usize| self.reference.distance_to(&at, *owner);
+        let point = At::of(p.clone());
+        let distance_to = |owner: &usize| self.reference.distance_to(&point, *owner);
         let mut nearest = None;
         for owner in self.owners.get(region)? {
-            let distance = far(owner);
-            if nearest.as_ref().is_none_or(|(least, _)| distance < *least) {
+            let distance = distance_to(owner);
+            if nearest.as_ref().is_none_or(|(min_distance, _)| distance < *min_distance) {
                 nearest = Some((distance, *owner));
             }
         }
         let (depth, owner) = nearest?;
         Some(Claim {
-            behind: (&depth - &self.reference.depth(&at).abs()).to_f64().max(0.0),
-            direction: self.reference.direction(&at, owner),
-            singular: self.reference.singular(&at, owner),
+            behind: (&depth - &self.reference.depth(&point).abs()).to_f64().max(0.0),
+            direction: self.reference.direction(&point, owner),
+            singular: self.reference.singular(&point, owner),
             depth,
         })
     }

@@ -8,7 +8,7 @@ use touchoff_tests::oracle::big::Big;
 pub(super) struct Faces {
     shape: Shape,
     /// The index in [`Shape::regions`] of each region in the tool info.
-    places: Vec<Option<usize>>,
+    indices: Vec<Option<usize>>,
 }
 
 #[derive(Clone, Copy)]
@@ -89,12 +89,12 @@ fn length(a: &Big, b: &Big) -> Big {
 }
 
 /// Returns the vector from the hole's axis.
-fn off_axis(p: &Place) -> [Big; 2] {
+fn from_bore_axis(p: &Place) -> [Big; 2] {
     [&p[0] - &Big::exactly(10.0), p[1].clone()]
 }
 
 /// Returns the vector from the inner edge.
-fn off_edge(p: &Place) -> [Big; 2] {
+fn from_edge(p: &Place) -> [Big; 2] {
     [&p[0] - &Big::exactly(WALL), &p[2] - &Big::exactly(LEDGE)]
 }
 
@@ -105,11 +105,11 @@ impl Face {
             Face::Plane { axis, at, sign } => &Big::exactly(sign) * &(&p[axis] - &Big::exactly(at)),
             Face::Sides { half } => &Big::exactly(half) - &p[1].abs(),
             Face::Bore => {
-                let [x, y] = off_axis(p);
+                let [x, y] = from_bore_axis(p);
                 &length(&x, &y) - &Big::decimal(3.3)
             }
             Face::Edge => {
-                let [x, z] = off_edge(p);
+                let [x, z] = from_edge(p);
                 length(&x, &z)
             }
         }
@@ -122,19 +122,19 @@ impl Face {
                 std::array::from_fn(|k| if k == axis { Big::exactly(-sign) } else { zero() })
             }
             Face::Sides { .. } => {
-                let side = if p[1].is_negative() { -1.0 } else { 1.0 };
-                [zero(), Big::exactly(side), zero()]
+                let sign = if p[1].is_negative() { -1.0 } else { 1.0 };
+                [zero(), Big::exactly(sign), zero()]
             }
             Face::Bore => {
-                let [x, y] = off_axis(p);
-                let size = length(&x, &y);
-                [-&(&x / &size), -&(&y / &size), zero()]
+                let [x, y] = from_bore_axis(p);
+                let norm = length(&x, &y);
+                [-&(&x / &norm), -&(&y / &norm), zero()]
             }
             Face::Edge => {
-                let [x, z] = off_edge(p);
+                let [x, z] = from_edge(p);
                 match length(&x, &z) {
-                    size if size == zero() => [zero(), zero(), Big::exactly(1.0)],
-                    size => [-&(&x / &size), zero(), -&(&z / &size)],
+                    norm if norm == zero() => [zero(), zero(), Big::exactly(1.0)],
+                    norm => [-&(&x / &norm), zero(), -&(&z / &norm)],
                 }
             }
         }
@@ -147,7 +147,8 @@ impl Face {
             Face::Plane { .. } => f64::INFINITY,
             Face::Sides { .. } => f64::INFINITY,
             Face::Bore | Face::Edge => {
-                let [a, b] = if matches!(self, Face::Bore) { off_axis(p) } else { off_edge(p) };
+                let [a, b] =
+                    if matches!(self, Face::Bore) { from_bore_axis(p) } else { from_edge(p) };
                 length(&a, &b).to_f64()
             }
         }
@@ -155,16 +156,16 @@ impl Face {
 }
 
 /// Returns the distance by which a point is outside a zone.
-fn out_of(zone: Zone, p: &Place) -> Big {
-    let [beyond_wall, above_ledge] = off_edge(p);
-    let most = |a: Big, b: Big| if a > b { a } else { b };
+fn distance_from_zone(zone: Zone, p: &Place) -> Big {
+    let [beyond_wall, above_ledge] = from_edge(p);
+    let max = |a: Big, b: Big| if a > b { a } else { b };
     let signed = match zone {
         Zone::Anywhere => Big::zero(),
         Zone::Lying => -&beyond_wall,
-        Zone::Heel => most(beyond_wall, above_ledge),
-        Zone::Standing => most(beyond_wall, -&above_ledge),
+        Zone::Heel => max(beyond_wall, above_ledge),
+        Zone::Standing => max(beyond_wall, -&above_ledge),
     };
-    most(signed, Big::zero())
+    max(signed, Big::zero())
 }
 
 impl Faces {
@@ -177,33 +178,34 @@ impl Faces {
     }
 
     fn new(tool: &dyn Tool, shape: Shape) -> Faces {
-        let place = |name: &str| shape.regions().iter().position(|region| region.0 == name);
-        let places = tool.info().regions.iter().map(|region| place(&region.name)).collect();
-        Faces { shape, places }
+        let index_of = |name: &str| shape.regions().iter().position(|region| region.0 == name);
+        let indices = tool.info().regions.iter().map(|region| index_of(&region.name)).collect();
+        Faces { shape, indices }
     }
 
     /// Returns the nearest face in the point's zone, and the depth of the point, negative outside. Zones meet in
     /// planes; there the zone counts in which the point is deeper.
     fn nearest(&self, p: &Place) -> (usize, Big) {
         let zones = [Zone::Anywhere, Zone::Lying, Zone::Heel, Zone::Standing];
-        let here = zones.into_iter().filter(|zone| out_of(*zone, p) == Big::zero());
+        let containing =
+            zones.into_iter().filter(|zone| distance_from_zone(*zone, p) == Big::zero());
         let mut best: Option<(usize, Big)> = None;
-        for least in here.filter_map(|zone| self.nearest_in(zone, p)) {
-            if best.as_ref().is_none_or(|(_, most)| least.1 > *most) {
-                best = Some(least);
+        for candidate in containing.filter_map(|zone| self.nearest_in(zone, p)) {
+            if best.as_ref().is_none_or(|(_, max_depth)| candidate.1 > *max_depth) {
+                best = Some(candidate);
             }
         }
         best.expect("every place is in a zone that has faces")
     }
 
-    fn nearest_in(&self, here: Zone, p: &Place) -> Option<(usize, Big)> {
+    fn nearest_in(&self, selected_zone: Zone, p: &Place) -> Option<(usize, Big)> {
         let mut best: Option<(usize, Big)> = None;
         for (region, (_, zone, face)) in self.shape.regions().iter().enumerate() {
-            if *zone != here {
+            if *zone != selected_zone {
                 continue;
             }
             let inward = face.inward(p);
-            if best.as_ref().is_none_or(|(_, least)| inward < *least) {
+            if best.as_ref().is_none_or(|(_, min_depth)| inward < *min_depth) {
                 best = Some((region, inward));
             }
         }
@@ -211,13 +213,13 @@ impl Faces {
     }
 
     /// Returns the distance from a point outside to the boxes of the solid, or to the hole if that is nearest.
-    fn away(&self, p: &Place) -> Big {
+    fn distance_outside(&self, p: &Place) -> Big {
         let to_box = |low: [f64; 3], high: [f64; 3]| {
             let squares = (0..3).map(|k| {
-                let under = &Big::exactly(low[k]) - &p[k];
-                let over = &p[k] - &Big::exactly(high[k]);
-                let out = if under > over { under } else { over };
-                if out.is_negative() { Big::zero() } else { &out * &out }
+                let below = &Big::exactly(low[k]) - &p[k];
+                let above = &p[k] - &Big::exactly(high[k]);
+                let outside = if below > above { below } else { above };
+                if outside.is_negative() { Big::zero() } else { &outside * &outside }
             });
             squares.fold(Big::zero(), |sum, square| &sum + &square).sqrt()
         };
@@ -226,7 +228,7 @@ impl Faces {
             Shape::Bracket => {
                 let lying = to_box([-10.0, -10.0, 0.0], [20.0, 10.0, LEDGE]);
                 let standing = to_box([-10.0, -10.0, 0.0], [WALL, 10.0, 24.0]);
-                let [x, y] = off_axis(p);
+                let [x, y] = from_bore_axis(p);
                 let bore = &Big::decimal(3.3) - &length(&x, &y);
                 let lying = if bore.is_negative() {
                     lying
@@ -247,23 +249,23 @@ impl Truth for Faces {
 
     fn depth(&self, p: &Place) -> Big {
         let (_, inward) = self.nearest(p);
-        if inward.is_negative() { -&self.away(p) } else { inward }
+        if inward.is_negative() { -&self.distance_outside(p) } else { inward }
     }
 
     fn owner(&self, p: &Place) -> Option<usize> {
         let (region, inward) = self.nearest(p);
-        let place = || self.places.iter().position(|place| *place == Some(region));
-        if inward.is_negative() { None } else { place() }
+        let index = || self.indices.iter().position(|index| *index == Some(region));
+        if inward.is_negative() { None } else { index() }
     }
 
     fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let region = (*self.places.get(region)?)?;
+        let region = (*self.indices.get(region)?)?;
         let (_, zone, face) = self.shape.regions()[region];
         let depth = face.inward(p);
         // Beyond the border to a neighbouring zone, the point misses the region by at least its distance from the zone.
         let behind = (&depth - &self.nearest(p).1).abs();
-        let out = out_of(zone, p);
-        let behind = if out > behind { out } else { behind };
+        let zone_distance = distance_from_zone(zone, p);
+        let behind = if zone_distance > behind { zone_distance } else { behind };
         Some(Claim {
             behind: behind.to_f64(),
             direction: face.direction(p),

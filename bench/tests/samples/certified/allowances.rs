@@ -28,9 +28,9 @@ const TOOLS: [&str; 10] = [
 
 /// Number of poses and of motions per part and tool.
 const POSES: usize = 7;
-const WAYS: usize = 5;
+const MOTIONS: usize = 5;
 /// Number of times sampled per motion.
-const TIMES: u32 = 12;
+const TIME_SAMPLES: u32 = 12;
 
 fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
@@ -41,7 +41,7 @@ fn names(tool: &dyn Tool) -> Vec<String> {
 }
 
 /// Returns a certifier with allowances by name; those of all other surfaces are 0.
-fn allowing<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)]) -> Certifier<'a> {
+fn certifier_with<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)]) -> Certifier<'a> {
     let certifier = Certifier::new(bvh, tool(name)).expect("a profile");
     allowed.iter().fold(certifier, |certifier, (surface, allowed)| {
         certifier.with_allowance(surface, *allowed).expect("a surface")
@@ -49,8 +49,11 @@ fn allowing<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)]) -> Ce
 }
 
 /// Runs a check for all parts and tools.
-fn everywhere(tools: &[&str], mut ask: impl FnMut(&str, &TriangleBvh, &Owned<'_>, &mut Rng)) {
-    let mut draw = Rng::new(5);
+fn for_all_parts_and_tools(
+    tools: &[&str],
+    mut check: impl FnMut(&str, &TriangleBvh, &Owned<'_>, &mut Rng),
+) {
+    let mut rng = Rng::new(5);
     for (_, mesh) in poses::parts().expect("parts") {
         let bvh = TriangleBvh::new(&mesh);
         for name in tools {
@@ -59,20 +62,20 @@ fn everywhere(tools: &[&str], mut ask: impl FnMut(&str, &TriangleBvh, &Owned<'_>
             let brute = Brute::new(&mesh, &oracle, length);
             let names = names(tool(name));
             let owned = Owned { brute: &brute, allowed: vec![0.0; names.len()], names };
-            ask(name, &bvh, &owned, &mut draw);
+            check(name, &bvh, &owned, &mut rng);
         }
     }
 }
 
-fn any_pose(owned: &Owned<'_>, draw: &mut Rng) -> Pose {
-    ways::way(owned.brute, "still", draw).from
+fn random_pose(owned: &Owned<'_>, rng: &mut Rng) -> Pose {
+    ways::way(owned.brute, "still", rng).from
 }
 
 /// Sets random allowances of the order of the depths that occur.
-fn any_allowed(owned: &mut Owned<'_>, draw: &mut Rng) {
+fn set_random_allowances(owned: &mut Owned<'_>, rng: &mut Rng) {
     for allowed in &mut owned.allowed {
-        let size = 10f64.powf(draw.between(-3.0, 0.7));
-        *allowed = match draw.bits() % 5 {
+        let size = 10f64.powf(rng.between(-3.0, 0.7));
+        *allowed = match rng.bits() % 5 {
             0 => 0.0,
             1 => f64::INFINITY,
             2 => -size,
@@ -86,45 +89,45 @@ fn rounding(owned: &Owned<'_>) -> f64 {
 }
 
 #[test]
-fn no_sample_of_a_surface_is_deeper_than_it_was_said_to_be() {
-    let owners = each_surface(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"]);
+fn samples_are_within_the_certified_depth_of_their_surface() {
+    let owners = check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"]);
     assert!(owners > 80, "{owners}");
 }
 
 #[test]
-fn nor_is_one_of_a_corner() {
-    let owners = each_surface(&["BullNose", "Barrel", "CornerRounding"]);
+fn samples_are_within_the_certified_depth_of_corners() {
+    let owners = check_surface_depths(&["BullNose", "Barrel", "CornerRounding"]);
     assert!(owners > 60, "{owners}");
 }
 
 #[test]
-fn nor_is_one_of_a_profile_that_overhangs() {
-    let owners = each_surface(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat());
+fn samples_are_within_the_certified_depth_of_overhanging_profiles() {
+    let owners = check_surface_depths(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat());
     assert!(owners > 100, "{owners}");
 }
 
 /// Checks the certified depth of each surface against samples. Returns the number of surfaces and poses with samples.
-fn each_surface(tools: &[&str]) -> usize {
+fn check_surface_depths(tools: &[&str]) -> usize {
     let mut owners = 0;
-    everywhere(tools, |name, bvh, owned, draw| {
+    for_all_parts_and_tools(tools, |name, bvh, owned, rng| {
         let mut certifier = Certifier::new(bvh, tool(name)).expect("a profile");
         let rounding = rounding(owned);
         for k in 0..POSES {
-            let (pose, tolerance) = (any_pose(owned, draw), [0.0, 1e-6, 1e-3][k % 3]);
-            let samples = owned.samples(&pose, draw);
-            let mut most = [0.0f64; 2];
+            let (pose, tolerance) = (random_pose(owned, rng), [0.0, 1e-6, 1e-3][k % 3]);
+            let samples = owned.samples(&pose, rng);
+            let mut max_depths = [0.0f64; 2];
             for surface in 0..owned.names.len() {
-                let found =
+                let penetration =
                     certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
-                let text = format!("{name} {surface} at {pose:?}, {tolerance:e}: {found:?}");
-                let Interval { low, high } = found.depth;
+                let text = format!("{name} {surface} at {pose:?}, {tolerance:e}: {penetration:?}");
+                let Interval { low, high } = penetration.depth;
                 assert!(0.0 <= low && low <= high, "{text}");
-                let best = owned.most(&pose, &samples, |p| owned.depth(surface, p), draw);
+                let best = owned.most(&pose, &samples, |p| owned.depth(surface, p), rng);
                 if let Some(best) = best {
                     assert!(best.value <= high + rounding, "{text}, {best:?}");
                     owners += 1;
                 }
-                if let Some(witness) = found.witness {
+                if let Some(witness) = penetration.witness {
                     let p = owned.brute.inside(&pose, witness.point);
                     let depth = owned.brute.depth(p) * owned.brute.length;
                     assert!(depth >= low - rounding, "{text}: {depth}");
@@ -133,144 +136,161 @@ fn each_surface(tools: &[&str]) -> usize {
                 } else {
                     assert_eq!(low, 0.0, "{text}");
                 }
-                most = [most[0].max(low), most[1].max(high)];
+                max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
             }
-            let whole = certifier.deepest(&pose, tolerance).depth;
-            let agree = most[0] <= whole.high + rounding && whole.low <= most[1] + rounding;
-            assert!(agree, "{name} at {pose:?}: {most:?} of each, {whole:?} of all");
+            let tool_depth = certifier.deepest(&pose, tolerance).depth;
+            let consistent = max_depths[0] <= tool_depth.high + rounding
+                && tool_depth.low <= max_depths[1] + rounding;
+            assert!(
+                consistent,
+                "{name} at {pose:?}: {max_depths:?} of each, {tool_depth:?} of all"
+            );
         }
     });
     owners
 }
 
 /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
-fn holds(owned: &Owned<'_>, pose: &Pose, witness: &Witness, text: &str) {
+fn assert_witness_violates_allowance(
+    owned: &Owned<'_>,
+    pose: &Pose,
+    witness: &Witness,
+    text: &str,
+) {
     let p = owned.brute.inside(pose, witness.point);
     let (slack, allowed) = (4.0 * rounding(owned), owned.allowed[witness.surface.0]);
-    let (depth, away) =
+    let (depth, distance) =
         (owned.brute.depth(p) * owned.brute.length, owned.away(witness.surface.0, p));
-    let deep = away <= depth + slack && depth >= allowed.max(0.0) - slack;
-    assert!(deep || away <= -allowed + slack, "{text}: {depth} deep, {away} away");
+    let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
+    assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
 }
 
 #[test]
-fn clear_goes_by_allowances() {
-    let mut seen = [0; 2];
-    everywhere(&TOOLS, |name, bvh, owned, draw| {
+fn pose_verdicts_respect_allowances() {
+    let mut counts = [0; 2];
+    for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
         for _ in 0..POSES {
             let mut owned =
                 Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
-            any_allowed(&mut owned, draw);
+            set_random_allowances(&mut owned, rng);
             let allowed: Vec<_> =
                 owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
-            let mut certifier = allowing(bvh, name, &allowed);
-            let pose = any_pose(&owned, draw);
-            let found = certifier.check_pose(&pose);
-            let text = format!("{name} at {pose:?} with {allowed:?}: {found:?}");
-            let over = |draw: &mut Rng| {
-                let samples = owned.samples(&pose, draw);
-                owned.most(&pose, &samples, |p| owned.over(p), draw).map_or(0.0, |best| best.value)
+            let mut certifier = certifier_with(bvh, name, &allowed);
+            let pose = random_pose(&owned, rng);
+            let verdict = certifier.check_pose(&pose);
+            let text = format!("{name} at {pose:?} with {allowed:?}: {verdict:?}");
+            let max_excess = |rng: &mut Rng| {
+                let samples = owned.samples(&pose, rng);
+                owned.most(&pose, &samples, |p| owned.over(p), rng).map_or(0.0, |best| best.value)
             };
-            match found {
+            match verdict {
                 PoseVerdict::Clear | PoseVerdict::Inside(_) | PoseVerdict::SurfaceOnly => {
-                    let over = over(draw);
-                    assert!(over <= 4.0 * rounding(&owned), "{text}: {over}");
-                    seen[0] += 1;
+                    let max_excess = max_excess(rng);
+                    assert!(max_excess <= 4.0 * rounding(&owned), "{text}: {max_excess}");
+                    counts[0] += 1;
                 }
                 PoseVerdict::Touching(witness) => {
-                    holds(&owned, &pose, &witness, &text);
-                    seen[1] += 1;
+                    assert_witness_violates_allowance(&owned, &pose, &witness, &text);
+                    counts[1] += 1;
                 }
                 PoseVerdict::Undecided(high) => {
-                    let over = over(draw);
-                    assert!(over <= high + 4.0 * rounding(&owned), "{text}: {over}");
+                    let max_excess = max_excess(rng);
+                    assert!(max_excess <= high + 4.0 * rounding(&owned), "{text}: {max_excess}");
                 }
             }
         }
     });
-    assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
+    assert!(counts.iter().all(|count| *count > 20), "{counts:?}");
 }
 
 #[test]
-fn sweeps_go_by_allowances() {
-    let mut seen = [0; 3];
-    everywhere(&TOOLS, |name, bvh, owned, draw| {
-        for k in 0..WAYS {
+fn motion_verdicts_respect_allowances() {
+    let mut counts = [0; 3];
+    for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
+        for k in 0..MOTIONS {
             let mut owned =
                 Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
-            any_allowed(&mut owned, draw);
+            set_random_allowances(&mut owned, rng);
             let allowed: Vec<_> =
                 owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
-            let mut certifier = allowing(bvh, name, &allowed).with_budget(1 << 17);
-            let way = ways::way(owned.brute, ways::KINDS[(5 * k) % ways::KINDS.len()], draw);
-            let motion = Motion::new(&way.from, &way.to).expect("one way");
+            let mut certifier = certifier_with(bvh, name, &allowed).with_budget(1 << 17);
+            let path = ways::way(owned.brute, ways::KINDS[(5 * k) % ways::KINDS.len()], rng);
+            let motion = Motion::new(&path.from, &path.to).expect("one way");
             let tolerance = [0.0, 1e-3][k % 2];
-            let found = certifier.check_motion(&motion, tolerance);
-            let text = format!("{name} on {way:?} with {allowed:?}, {tolerance:e}: {found:?}");
-            let until = match found {
+            let verdict = certifier.check_motion(&motion, tolerance);
+            let text = format!("{name} on {path:?} with {allowed:?}, {tolerance:e}: {verdict:?}");
+            let end = match verdict {
                 MotionVerdict::Touching(at, witness) => {
-                    holds(&owned, &motion.pose(at), &witness, &text);
-                    seen[1] += 1;
+                    assert_witness_violates_allowance(&owned, &motion.pose(at), &witness, &text);
+                    counts[1] += 1;
                     continue;
                 }
                 MotionVerdict::Undecided(at) => {
-                    seen[2] += 1;
+                    counts[2] += 1;
                     at
                 }
                 MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
-                    seen[0] += 1;
+                    counts[0] += 1;
                     1.0
                 }
             };
             let rounding = rounding(&owned) + 64.0 * f64::EPSILON * motion.displacement().norm();
-            for time in 0..TIMES {
-                let t = until * f64::from(time) / f64::from(TIMES - 1);
-                let pose = way.pose(t);
-                let samples = owned.samples(&pose, draw);
-                let over = owned.most(&pose, &samples, |p| owned.over(p), draw);
-                let over = over.map_or(0.0, |best| best.value);
+            for time in 0..TIME_SAMPLES {
+                let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
+                let pose = path.pose(t);
+                let samples = owned.samples(&pose, rng);
+                let excess = owned.most(&pose, &samples, |p| owned.over(p), rng);
+                let excess = excess.map_or(0.0, |best| best.value);
                 assert!(
-                    over <= tolerance.max(16.0 * rounding) + 4.0 * rounding,
-                    "{text}: {over} at {t}"
+                    excess <= tolerance.max(16.0 * rounding) + 4.0 * rounding,
+                    "{text}: {excess} at {t}"
                 );
             }
         }
     });
-    eprintln!("{seen:?}");
-    assert!(seen[0] > 10 && seen[1] > 20, "{seen:?}");
+    eprintln!("{counts:?}");
+    assert!(counts[0] > 10 && counts[1] > 20, "{counts:?}");
 }
 
 #[test]
 fn a_flute_may_cut_and_a_shank_may_not() {
     // The flute extends from z = 0 to 26 and has a radius of 6; the shank above is as thick.
-    let beside = pose([0.0; 3], UP);
+    let upright = pose([0.0; 3], UP);
     for (top, clear) in [(25.0, true), (25.5, true), (26.0 + 1e-3, false), (40.0, false)] {
         let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, top]);
         let bvh = TriangleBvh::new(&wall);
-        let mut certifier = allowing(&bvh, "Flat", &[("flute", f64::INFINITY)]);
-        let found = certifier.check_pose(&beside);
-        let still = certifier.check_motion(&Motion::new(&beside, &beside).expect("one way"), 0.0);
+        let mut certifier = certifier_with(&bvh, "Flat", &[("flute", f64::INFINITY)]);
+        let found = certifier.check_pose(&upright);
+        let verdict_at_rest =
+            certifier.check_motion(&Motion::new(&upright, &upright).expect("one way"), 0.0);
         if clear {
-            assert_eq!((found, still), (PoseVerdict::Clear, MotionVerdict::Clear), "{top}");
+            assert_eq!(
+                (found, verdict_at_rest),
+                (PoseVerdict::Clear, MotionVerdict::Clear),
+                "{top}"
+            );
         } else {
             let PoseVerdict::Touching(witness) = found else { panic!("{top}: {found:?}") };
             assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
-            assert!(matches!(still, MotionVerdict::Touching(..)), "{top}: {still:?}");
+            assert!(
+                matches!(verdict_at_rest, MotionVerdict::Touching(..)),
+                "{top}: {verdict_at_rest:?}"
+            );
         }
     }
     let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, 20.0]);
     let bvh = TriangleBvh::new(&wall);
     for (allowed, clear) in [(2.0 + 1e-9, true), (2.0 - 1e-9, false), (0.0, false)] {
-        let mut certifier = allowing(&bvh, "Flat", &[("flute", allowed)]);
-        assert_eq!(certifier.check_pose(&beside) == PoseVerdict::Clear, clear, "{allowed}");
+        let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
+        assert_eq!(certifier.check_pose(&upright) == PoseVerdict::Clear, clear, "{allowed}");
         // Along the wall the depth is constant.
-        let found = certifier.check_motion(&along_the_wall(), 0.02);
+        let found = certifier.check_motion(&motion_along_wall(), 0.02);
         assert_eq!(found == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {found:?}");
     }
 }
 
 /// Returns a motion on which the flute stays 2 mm deep in a wall at x = 4.
-fn along_the_wall() -> Motion {
+fn motion_along_wall() -> Motion {
     Motion::new(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP)).expect("one way")
 }
 
@@ -280,8 +300,8 @@ fn a_flute_cuts_along_a_wall() {
     let bvh = TriangleBvh::new(&wall);
     for allowed in [2.01, 3.0, f64::INFINITY] {
         for tolerance in [0.0, 1e-6, 1e-3] {
-            let mut certifier = allowing(&bvh, "Flat", &[("flute", allowed)]);
-            let found = certifier.check_motion(&along_the_wall(), tolerance);
+            let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
+            let found = certifier.check_motion(&motion_along_wall(), tolerance);
             assert_eq!(found, MotionVerdict::Clear, "{allowed} {tolerance:e}");
         }
     }
@@ -303,14 +323,14 @@ fn a_nut_keeps_its_margin_from_all_sides() {
     for (case, part) in cases {
         for (gap, clear) in [(0.4, false), (0.5 - 1e-9, false), (0.5 + 1e-9, true), (0.6, true)] {
             let bvh = TriangleBvh::new(&part(gap));
-            let mut certifier = allowing(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
-            let here = pose([0.0; 3], UP);
-            let found = certifier.check_pose(&here);
-            let turned = Motion::new(&pose([0.0; 3], UP), &here).expect("one way");
-            let still = certifier.check_motion(&turned, 0.0);
+            let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
+            let end_pose = pose([0.0; 3], UP);
+            let found = certifier.check_pose(&end_pose);
+            let rest = Motion::new(&pose([0.0; 3], UP), &end_pose).expect("one way");
+            let verdict_at_rest = certifier.check_motion(&rest, 0.0);
             if clear {
                 assert_eq!(
-                    (found, still),
+                    (found, verdict_at_rest),
                     (PoseVerdict::Clear, MotionVerdict::Clear),
                     "{case} {gap}"
                 );
@@ -319,14 +339,17 @@ fn a_nut_keeps_its_margin_from_all_sides() {
                     panic!("{case} {gap}: {found:?}")
                 };
                 assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
-                assert!(matches!(still, MotionVerdict::Touching(..)), "{case} {gap}: {still:?}");
+                assert!(
+                    matches!(verdict_at_rest, MotionVerdict::Touching(..)),
+                    "{case} {gap}: {verdict_at_rest:?}"
+                );
             }
             // Approach from far away along the axis.
             let lift = if case == "end" { -30.0 } else { 3.0 };
-            let down = Motion::new(&pose([0.0, 0.0, lift], UP), &here).expect("one way");
-            let down = certifier.check_motion(&down, 0.0);
+            let approach = Motion::new(&pose([0.0, 0.0, lift], UP), &end_pose).expect("one way");
+            let approach = certifier.check_motion(&approach, 0.0);
             if case != "side" {
-                assert_eq!(down == MotionVerdict::Clear, clear, "{case} {gap}: {down:?}");
+                assert_eq!(approach == MotionVerdict::Clear, clear, "{case} {gap}: {approach:?}");
             }
         }
     }
@@ -334,7 +357,7 @@ fn a_nut_keeps_its_margin_from_all_sides() {
     for (gap, clear) in [(0.4, false), (0.6, true)] {
         let at = [13.45 + gap * diagonal, 0.0, 30.55 - gap * diagonal];
         let bvh = TriangleBvh::new(&block([at[0], -1.0, 20.0], [at[0] + 5.0, 1.0, at[2]]));
-        let mut certifier = allowing(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
+        let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
         assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)) == PoseVerdict::Clear, clear, "{gap}");
     }
 }
@@ -343,83 +366,85 @@ fn a_nut_keeps_its_margin_from_all_sides() {
 fn a_level_face_alone_keeps_its_margin() {
     let bvh = TriangleBvh::new(&plate());
     for (tip, clear) in [(0.4, false), (0.6, true), (0.5 + 1e-9, true), (0.5 - 1e-9, false)] {
-        let mut certifier = allowing(&bvh, "Flat", &[("face", -0.5)]);
-        let here = pose([1.0, 2.0, tip], UP);
-        let found = certifier.check_pose(&here);
+        let mut certifier = certifier_with(&bvh, "Flat", &[("face", -0.5)]);
+        let end_pose = pose([1.0, 2.0, tip], UP);
+        let found = certifier.check_pose(&end_pose);
         assert_eq!(found == PoseVerdict::Clear, clear, "{tip}: {found:?}");
         for from in [[-60.0, 2.0, tip], [1.0, 2.0, 30.0]] {
-            let way = Motion::new(&pose(from, UP), &here).expect("one way");
-            let found = certifier.check_motion(&way, 0.0);
+            let path = Motion::new(&pose(from, UP), &end_pose).expect("one way");
+            let found = certifier.check_motion(&path, 0.0);
             assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
         }
         // A part inside the middle of the tool, with depth allowed for the flute.
         let inside = TriangleBvh::new(&block([-1.0, -1.0, tip], [1.0, 1.0, 5.0]));
         let allowed = [("face", -0.5), ("flute", f64::INFINITY), ("shank", f64::INFINITY)];
-        let mut certifier = allowing(&inside, "Flat", &allowed);
+        let mut certifier = certifier_with(&inside, "Flat", &allowed);
         // The face is the nearest surface here, and it must not be in the part at all.
         let found = certifier.check_pose(&pose([0.0; 3], UP));
         assert!(matches!(found, PoseVerdict::Touching(_)), "{tip}: {found:?}");
         let above = TriangleBvh::new(&block([5.8, -0.1, tip], [5.9, 0.1, 5.0]));
-        let mut certifier = allowing(&above, "Flat", &allowed);
+        let mut certifier = certifier_with(&above, "Flat", &allowed);
         let found = certifier.check_pose(&pose([0.0; 3], UP));
         assert_eq!(
             matches!(found, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
             clear,
             "{tip}: {found:?}"
         );
-        let way = Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("one way");
-        let found = certifier.check_motion(&way, 0.0);
+        let path = Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("one way");
+        let found = certifier.check_motion(&path, 0.0);
         assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
     }
 }
 
 #[test]
-fn all_surfaces_may_be_in_a_part_or_have_to_keep_off_it() {
+fn allowances_of_all_surfaces_permit_depth_or_require_a_margin() {
     let bvh = TriangleBvh::new(&plate());
     let deep = pose([0.0, 0.0, -5.0], UP);
-    let all = |allowed: f64| names(tool("Flat")).into_iter().map(move |name| (name, allowed));
+    let same_for_all =
+        |allowed: f64| names(tool("Flat")).into_iter().map(move |name| (name, allowed));
     for (allowed, clear) in [(f64::INFINITY, true), (5.1, true), (4.9, false), (-1.0, false)] {
-        let of: Vec<_> = all(allowed).collect();
-        let of: Vec<_> = of.iter().map(|(name, allowed)| (name.as_str(), *allowed)).collect();
-        let mut certifier = allowing(&bvh, "Flat", &of);
+        let allowances: Vec<_> = same_for_all(allowed).collect();
+        let allowances: Vec<_> =
+            allowances.iter().map(|(name, allowed)| (name.as_str(), *allowed)).collect();
+        let mut certifier = certifier_with(&bvh, "Flat", &allowances);
         let found = certifier.check_pose(&deep);
         assert_eq!(matches!(found, PoseVerdict::Touching(_)), !clear, "{allowed}: {found:?}");
         let high = certifier.check_pose(&pose([0.0, 0.0, 1.0 + 1e-6], UP));
         assert_eq!(high, PoseVerdict::Clear, "{allowed}");
-        let way = Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("one way");
-        let found = certifier.check_motion(&way, 0.0);
+        let path = Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("one way");
+        let found = certifier.check_motion(&path, 0.0);
         assert_eq!(matches!(found, MotionVerdict::Touching(..)), !clear, "{allowed}: {found:?}");
     }
 }
 
 #[test]
-fn allowances_that_mean_nothing_are_refused() {
+fn rejects_unknown_surfaces_and_allowances_without_length() {
     let bvh = TriangleBvh::new(&plate());
-    let refused = |surface: &str, allowed: f64| {
+    let error_of = |surface: &str, allowed: f64| {
         let certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
         certifier.with_allowance(surface, allowed).expect_err("no allowance")
     };
     let known = "`face`, `flute`, `shank`".to_owned();
     let expected =
         AllowanceError::NoSurface { tool: "Flat".into(), surface: "flank".into(), known };
-    assert_eq!(refused("flank", 1.0), expected);
+    assert_eq!(error_of("flank", 1.0), expected);
     let text = "Flat has no surface `flank`; it has `face`, `flute`, `shank`";
     assert_eq!(expected.to_string(), text);
-    let text = refused("flute", f64::NAN).to_string();
+    let text = error_of("flute", f64::NAN).to_string();
     assert_eq!(text, "an allowance of NaN for `flute` is no length");
-    let text = refused("flute", f64::NEG_INFINITY).to_string();
+    let text = error_of("flute", f64::NEG_INFINITY).to_string();
     assert_eq!(text, "an allowance of -inf for `flute` is no length");
 }
 
 /// The corner that the neck shares with the surface below owns points at the flute's heights, but not points of the
 /// flute: a part that touches the flute does not touch the neck.
 #[test]
-fn the_neck_is_not_touched_where_the_flute_is() {
-    for off in -40..=40 {
-        let wall = block([8.25 + f64::from(off) * 1e-13, -20.0, 0.5], [30.0, 20.0, 2.5]);
+fn contact_with_the_flute_does_not_touch_the_neck() {
+    for step in -40..=40 {
+        let wall = block([8.25 + f64::from(step) * 1e-13, -20.0, 0.5], [30.0, 20.0, 2.5]);
         let bvh = TriangleBvh::new(&wall);
-        let mut certifier = allowing(&bvh, "Woodruff", &[("flute", 0.01)]);
+        let mut certifier = certifier_with(&bvh, "Woodruff", &[("flute", 0.01)]);
         let clear = certifier.check_pose(&pose([0.0; 3], UP));
-        assert!(matches!(clear, PoseVerdict::Clear), "{off}: {clear:?}");
+        assert!(matches!(clear, PoseVerdict::Clear), "{step}: {clear:?}");
     }
 }

@@ -10,7 +10,7 @@ use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Returns a cube around the origin that contains any library tool.
-fn solid() -> TriangleBvh {
+fn large_cube() -> TriangleBvh {
     let half = 2000.0;
     let cube = shapes::cuboid(Point3::from([-half; 3]), Point3::from([half; 3]), Unit::Millimetre);
     TriangleBvh::new(&cube.expect("a cuboid"))
@@ -32,50 +32,56 @@ fn restricted<'a>(
 
 /// Each surface of each tool alone, inside a solid, at a pose and on a motion.
 #[test]
-fn every_surface_of_every_tool_is_found_inside() {
-    let bvh = solid();
-    let full = |tip: [f64; 3], turn| Pose::from_quaternion(tip.into(), turn).expect("a quaternion");
-    let at = full([1.3, -2.7, 5.1], [0.36, 0.48, 0.0, 0.8]);
-    let motion = Motion::with_spin(&at, &full([9.0, 4.0, -3.0], [0.6, 0.0, 0.0, 0.8]));
+fn each_restricted_surface_is_found_inside() {
+    let bvh = large_cube();
+    let pose_from = |tip: [f64; 3], quaternion| {
+        Pose::from_quaternion(tip.into(), quaternion).expect("a quaternion")
+    };
+    let start = pose_from([1.3, -2.7, 5.1], [0.36, 0.48, 0.0, 0.8]);
+    let motion = Motion::with_spin(&start, &pose_from([9.0, 4.0, -3.0], [0.6, 0.0, 0.0, 0.8]));
     let motion = motion.expect("less than half a turn");
-    let mut asked = 0;
+    let mut checked = 0;
     for tool in TOOLS {
         for (index, surface) in tool.info().surfaces.iter().enumerate() {
-            let only = |other: usize| (other == index).then_some(0.0);
-            let Some(mut certifier) = restricted(&bvh, *tool, only) else { continue };
+            let limit = |other: usize| (other == index).then_some(0.0);
+            let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
             let (name, surface) = (&tool.info().name, &surface.name);
             assert_eq!(
-                certifier.check_pose(&at),
+                certifier.check_pose(&start),
                 PoseVerdict::Inside(SurfaceId(index)),
                 "{name}/{surface}"
             );
-            asked += 1;
-            let swept = certifier.check_motion(&motion, 1e-6);
-            assert_eq!(swept, MotionVerdict::Inside(SurfaceId(index)), "{name}/{surface}");
+            checked += 1;
+            let verdict = certifier.check_motion(&motion, 1e-6);
+            assert_eq!(verdict, MotionVerdict::Inside(SurfaceId(index)), "{name}/{surface}");
         }
     }
-    assert!(asked > 100, "{asked}");
+    assert!(checked > 100, "{checked}");
 }
 
 #[test]
-fn any_surfaces_of_any_tool_are_found_inside() {
-    let bvh = solid();
-    let mut draw = Rng::new(7);
+fn random_sets_of_restricted_surfaces_are_found_inside() {
+    let bvh = large_cube();
+    let mut rng = Rng::new(7);
     for tool in TOOLS {
         let count = tool.info().surfaces.len();
         for _ in 0..8 {
-            let bits = draw.bits();
-            let only = |other: usize| (bits >> (other % 64) & 1 == 1).then_some(0.0);
-            let Some(mut certifier) = restricted(&bvh, *tool, only) else { continue };
-            let any = (0..count).any(|index| only(index).is_some());
-            let at = Pose::from_axis(Point3::from([3.0; 3]), Vector3::from(draw.direction()));
-            let found = certifier.check_pose(&at.expect("an axis"));
+            let bits = rng.bits();
+            let limit = |other: usize| (bits >> (other % 64) & 1 == 1).then_some(0.0);
+            let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
+            let is_restricted = (0..count).any(|index| limit(index).is_some());
+            let pose = Pose::from_axis(Point3::from([3.0; 3]), Vector3::from(rng.direction()));
+            let found = certifier.check_pose(&pose.expect("an axis"));
             match found {
                 PoseVerdict::Inside(surface) => {
-                    assert!(only(surface.0).is_some(), "{}", tool.info().name);
+                    assert!(limit(surface.0).is_some(), "{}", tool.info().name);
                 }
                 other => {
-                    assert!(!any && other == PoseVerdict::Clear, "{}: {other:?}", tool.info().name);
+                    assert!(
+                        !is_restricted && other == PoseVerdict::Clear,
+                        "{}: {other:?}",
+                        tool.info().name
+                    );
                 }
             }
         }
@@ -85,7 +91,7 @@ fn any_surfaces_of_any_tool_are_found_inside() {
 /// Random limits at random heights. If a restricted sample of the tool's section is in the part beyond its limit, the
 /// tool is not clear.
 #[test]
-fn samples_of_the_section_agree_with_what_is_inside() {
+fn inside_verdicts_agree_with_samples_of_the_section() {
     const SAMPLES: usize = 20_000;
     let half = 2000.0;
     let (low, high) = (Point3::from([-half, -half, -half]), Point3::from([half, half, 0.0]));
@@ -96,32 +102,33 @@ fn samples_of_the_section_agree_with_what_is_inside() {
         let length = tool.info().unit.factor_to(Unit::Millimetre);
         let surfaces: Vec<&str> = tool.info().surfaces.iter().map(|s| &*s.name).collect();
         let [radius, height] = oracle.extent();
-        let mut draw = Rng::new(11);
+        let mut rng = Rng::new(11);
         // Each sample has the point, its depth, and the index of the nearest surface.
         let samples: Vec<([f64; 2], f64, usize)> = (0..SAMPLES)
             .filter_map(|_| {
-                let at = [draw.between(0.0, radius), draw.between(0.0, height)];
-                let sense = oracle.sense([at[0], 0.0, at[1]])?;
-                let away = |surface: &str| oracle.away(surface, [at[0], 0.0, at[1]]);
-                let nearest = (0..surfaces.len())
-                    .min_by(|a, b| away(surfaces[*a]).total_cmp(&away(surfaces[*b])))?;
-                Some((at, sense.depth, nearest))
+                let point = [rng.between(0.0, radius), rng.between(0.0, height)];
+                let sense = oracle.sense([point[0], 0.0, point[1]])?;
+                let distance_to = |surface: &str| oracle.away(surface, [point[0], 0.0, point[1]]);
+                let nearest = (0..surfaces.len()).min_by(|a, b| {
+                    distance_to(surfaces[*a]).total_cmp(&distance_to(surfaces[*b]))
+                })?;
+                Some((point, sense.depth, nearest))
             })
             .collect();
         for _ in 0..60 {
             let limits: Vec<Option<f64>> = surfaces
                 .iter()
-                .map(|_| match draw.bits() % 3 {
+                .map(|_| match rng.bits() % 3 {
                     0 => None,
                     1 => Some(0.0),
-                    _ => Some(radius * length * draw.between(0.0, 0.9)),
+                    _ => Some(radius * length * rng.between(0.0, 0.9)),
                 })
                 .collect();
             let Some(mut certifier) = restricted(&bvh, tool, |index| limits[index]) else {
                 panic!("{name} has a profile");
             };
             // Upright or upside down: the material is below a height of the tool, or above it.
-            let (up, cut) = (draw.bits().is_multiple_of(2), draw.between(-0.1, 1.1) * height);
+            let (up, cut) = (rng.bits().is_multiple_of(2), rng.between(-0.1, 1.1) * height);
             let axis = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
             let tip = [0.1, 0.2, if up { -cut } else { cut } * length];
             let found = certifier.check_pose(&pose(tip, axis));

@@ -8,21 +8,21 @@ use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Motion, Unit};
 
-/// Returns a pose upside down, with the tool's upper end (z = 40) at depth `by` below the plate's face.
-fn upside_down(by: f64) -> touchoff::Pose {
-    pose([0.3, 0.1, 40.0 - by], [0.0, 0.0, -1.0])
+/// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
+fn upside_down(depth: f64) -> touchoff::Pose {
+    pose([0.3, 0.1, 40.0 - depth], [0.0, 0.0, -1.0])
 }
 
 #[test]
 fn an_end_within_the_tolerance_is_not_inside() {
     let bvh = TriangleBvh::new(&plate());
     let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    let still = Motion::new(&upside_down(1e-4), &upside_down(1e-4)).expect("one way");
-    assert_eq!(certifier.check_motion(&still, 1e-3), MotionVerdict::Clear);
+    let at_rest = Motion::new(&upside_down(1e-4), &upside_down(1e-4)).expect("one way");
+    assert_eq!(certifier.check_motion(&at_rest, 1e-3), MotionVerdict::Clear);
 }
 
 #[test]
-fn an_end_that_is_allowed_to_be_there_is_not_inside() {
+fn an_end_within_its_allowance_is_not_inside() {
     let bvh = TriangleBvh::new(&plate());
     let certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
     let mut certifier = certifier.with_allowance("shank", 1.0).expect("a surface");
@@ -30,22 +30,22 @@ fn an_end_that_is_allowed_to_be_there_is_not_inside() {
 }
 
 #[test]
-fn a_tool_that_is_wholly_inside_is_so_whatever_is_allowed() {
+fn a_tool_entirely_inside_is_inside_with_any_allowance() {
     let block =
         shapes::cuboid(Point3::from([-100.0; 3]), Point3::from([100.0; 3]), Unit::Millimetre);
     let bvh = TriangleBvh::new(&block.expect("a cuboid"));
     let pose = pose([0.0; 3], [0.0, 0.0, 1.0]);
-    let still = Motion::new(&pose, &pose).expect("one way");
+    let at_rest = Motion::new(&pose, &pose).expect("one way");
     let mut certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
     for surface in &*tool("Flat").info().surfaces {
         certifier = certifier.with_allowance(&surface.name, 3.0).expect("a surface");
     }
     assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Inside(_)));
-    assert!(matches!(certifier.check_motion(&still, 0.2), MotionVerdict::Inside(_)));
+    assert!(matches!(certifier.check_motion(&at_rest, 0.2), MotionVerdict::Inside(_)));
 }
 
 #[test]
-fn a_margin_of_a_small_surface_is_kept_with_a_tolerance_larger_than_it() {
+fn the_margin_of_a_surface_smaller_than_the_tolerance_is_kept() {
     let text = "tool Made { units mm; profile { start (0, 0); line to (4.98, 0) as face;
         line to (5, 0.02) as chamfer; line to (5, 50), (0, 50) as flute; } niceness cutting: 1; }";
     let text = text.replace("as flute", "as flute cutting");
@@ -59,12 +59,12 @@ fn a_margin_of_a_small_surface_is_kept_with_a_tolerance_larger_than_it() {
     let certifier = allow("face", f64::INFINITY, certifier);
     let certifier = allow("flute", f64::INFINITY, certifier);
     let mut certifier = allow("chamfer", -1.0, certifier);
-    let still = |z: f64| {
+    let at_rest = |z: f64| {
         let pose = pose([0.0, 0.0, z], [0.0, 0.0, 1.0]);
         Motion::new(&pose, &pose).expect("one way")
     };
     for (z, clear) in [(1.1, true), (0.97, true), (0.9, false), (0.3, false)] {
-        let found = certifier.check_motion(&still(z), 0.05);
+        let found = certifier.check_motion(&at_rest(z), 0.05);
         assert_eq!(
             found == MotionVerdict::Clear || found == MotionVerdict::SurfaceOnly,
             clear,

@@ -12,7 +12,7 @@ use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
 
 /// Returns every library tool without a profile, and its oracle.
-fn all() -> Vec<(&'static str, Box<dyn Oracle>)> {
+fn tools_without_profile() -> Vec<(&'static str, Box<dyn Oracle>)> {
     vec![
         ("Fig73", Box::new(Fig73::default())),
         ("Cylinder", Box::new(Cylinder)),
@@ -23,41 +23,48 @@ fn all() -> Vec<(&'static str, Box<dyn Oracle>)> {
 }
 
 /// Returns a random pose near a sphere of this radius, in any orientation.
-fn about(radius: f64, draw: &mut Rng) -> Pose {
-    let mut turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
-    let size = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
-    turn.iter_mut().for_each(|part| *part /= size);
-    let out = Vector3::from(draw.direction()) * radius * draw.between(0.7, 1.3);
-    Pose::from_quaternion(Point3::from(out), turn).expect("a quaternion")
+fn random_pose_near(radius: f64, rng: &mut Rng) -> Pose {
+    let mut quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
+    let norm = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
+    quaternion.iter_mut().for_each(|component| *component /= norm);
+    let tip = Vector3::from(rng.direction()) * radius * rng.between(0.7, 1.3);
+    Pose::from_quaternion(Point3::from(tip), quaternion).expect("a quaternion")
 }
 
-fn seen(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
+fn to_tool(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
     (pose.rotation().transpose() * (point - pose.tip()) / length).into()
 }
 
 /// Returns random points of each triangle.
-fn places(mesh: &Mesh, draw: &mut Rng) -> Vec<Point3<f64>> {
+fn random_points(mesh: &Mesh, rng: &mut Rng) -> Vec<Point3<f64>> {
     let ids = (0..mesh.triangles().len() as u32).flat_map(|id| [id; 8]);
-    let place = |id: u32| {
+    let random_point = |id: u32| {
         let [a, b, c] = mesh.triangle(TriangleId(id));
-        let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
+        let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
         let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
         a + v * (b - a) + w * (c - a)
     };
-    ids.map(place).collect()
+    ids.map(random_point).collect()
 }
 
 /// Returns the greatest depth over random points of each triangle.
-fn sampled(mesh: &Mesh, oracle: &dyn Oracle, pose: &Pose, length: f64, draw: &mut Rng) -> f64 {
-    let sensed = places(mesh, draw).into_iter().filter_map(|p| oracle.sense(seen(pose, length, p)));
-    sensed.map(|sense| sense.depth * length).fold(0.0, f64::max)
+fn max_sampled_depth(
+    mesh: &Mesh,
+    oracle: &dyn Oracle,
+    pose: &Pose,
+    length: f64,
+    rng: &mut Rng,
+) -> f64 {
+    let evaluations =
+        random_points(mesh, rng).into_iter().filter_map(|p| oracle.sense(to_tool(pose, length, p)));
+    evaluations.map(|sense| sense.depth * length).fold(0.0, f64::max)
 }
 
 #[test]
-fn what_a_field_says_is_within_the_interval() {
+fn sampled_depths_of_fields_are_within_the_interval() {
     const TOLERANCE: f64 = 2e-2;
-    let mut draw = Rng::new(5);
-    for (name, oracle) in all() {
+    let mut rng = Rng::new(5);
+    for (name, oracle) in tools_without_profile() {
         let tool = super::tool(name);
         let length = tool.info().unit.factor_to(Unit::Millimetre);
         let size = length * tool.info().radius().max(tool.info().reach().high);
@@ -66,33 +73,43 @@ fn what_a_field_says_is_within_the_interval() {
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
         let (mut touching, mut decided) = (0, 0);
         for _ in 0..12 {
-            let pose = about(0.5 * size, &mut draw);
-            let found = certifier.deepest(&pose, TOLERANCE * size);
-            let Interval { low, high } = found.depth;
-            let brute = sampled(&mesh, &*oracle, &pose, length, &mut draw);
-            assert!(brute <= high + 1e-9, "{name} {pose:?}: {brute} in {:?}", found.depth);
-            if let Some(witness) = found.witness {
+            let pose = random_pose_near(0.5 * size, &mut rng);
+            let penetration = certifier.deepest(&pose, TOLERANCE * size);
+            let Interval { low, high } = penetration.depth;
+            let sampled = max_sampled_depth(&mesh, &*oracle, &pose, length, &mut rng);
+            assert!(
+                sampled <= high + 1e-9,
+                "{name} {pose:?}: {sampled} in {:?}",
+                penetration.depth
+            );
+            if let Some(witness) = penetration.witness {
                 touching += 1;
-                let depth = oracle.sense(seen(&pose, length, witness.point)).expect("inside").depth;
+                let depth =
+                    oracle.sense(to_tool(&pose, length, witness.point)).expect("inside").depth;
                 assert!(low <= depth * length + 1e-9, "{name} {pose:?}: {depth} in {low}..{high}");
             }
             decided += usize::from(high - low <= 1.01 * TOLERANCE * size);
-            let clear = certifier.check_pose(&pose);
-            match clear {
+            let verdict = certifier.check_pose(&pose);
+            match verdict {
                 PoseVerdict::Touching(_) => assert!(high > 0.0, "{name} {pose:?}"),
-                PoseVerdict::Undecided(most) => assert!(brute <= most + 1e-9, "{name} {pose:?}"),
-                _ => assert!(brute == 0.0, "{name} {pose:?}: {clear:?} at {brute}"),
+                PoseVerdict::Undecided(max_depth) => {
+                    assert!(sampled <= max_depth + 1e-9, "{name} {pose:?}")
+                }
+                _ => assert!(sampled == 0.0, "{name} {pose:?}: {verdict:?} at {sampled}"),
             }
-            let Interval { low: near, high: far } =
+            let Interval { low: min_clearance, high: max_clearance } =
                 certifier.clearance(&pose, TOLERANCE * size).distance;
-            assert!(near <= far && (brute == 0.0 || near == 0.0), "{name} {pose:?}: {near}..{far}");
+            assert!(
+                min_clearance <= max_clearance && (sampled == 0.0 || min_clearance == 0.0),
+                "{name} {pose:?}: {min_clearance}..{max_clearance}"
+            );
         }
         assert!(touching > 3 && decided > 8, "{name}: {touching} and {decided} of 12");
     }
 }
 
 #[test]
-fn a_tool_by_its_field_is_swept() {
+fn motions_of_a_field_tool_are_decided() {
     let plate = super::plate();
     let bvh = TriangleBvh::new(&plate);
     let mut certifier = Certifier::new(&bvh, super::tool("Fig73")).expect("proved");
@@ -106,17 +123,17 @@ fn a_tool_by_its_field_is_swept() {
     );
     let dive = certifier.check_motion(&motion([-8.0, 1.0], [8.0, -1.0]), 1e-3);
     assert!(matches!(dive, MotionVerdict::Touching(at, _) if at >= 0.5), "{dive:?}");
-    let refused = certifier.with_allowance("nose", -0.1).err();
-    assert!(matches!(refused, Some(AllowanceError::NoMargin { .. })), "{refused:?}");
+    let error = certifier.with_allowance("nose", -0.1).err();
+    assert!(matches!(error, Some(AllowanceError::NoMargin { .. })), "{error:?}");
 }
 
 /// A surface owns the points of its regions. No sample of a surface is deeper than its certified depth, and a witness
 /// is at least as deep as the lower bound.
 #[test]
-fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
+fn samples_of_a_field_are_within_the_certified_depth_of_their_surface() {
     const TOLERANCE: f64 = 1e-6;
-    let mut draw = Rng::new(11);
-    for (name, oracle) in all() {
+    let mut rng = Rng::new(11);
+    for (name, oracle) in tools_without_profile() {
         let tool = super::tool(name);
         let info = tool.info();
         let length = info.unit.factor_to(Unit::Millimetre);
@@ -126,36 +143,40 @@ fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
         let (mut touching, mut wide) = (0, 0);
         for _ in 0..12 {
-            let pose = about(0.5 * size, &mut draw);
-            let whole = certifier.deepest(&pose, TOLERANCE).depth;
-            let mut most = [0.0f64; 2];
+            let pose = random_pose_near(0.5 * size, &mut rng);
+            let tool_depth = certifier.deepest(&pose, TOLERANCE).depth;
+            let mut max_depths = [0.0f64; 2];
             for surface in 0..info.surfaces.len() {
-                let found =
+                let penetration =
                     certifier.deepest_on(SurfaceId(surface), &pose, TOLERANCE).expect("a surface");
-                let text = format!("{name} {surface} at {pose:?}: {found:?}");
-                let Interval { low, high } = found.depth;
-                most = [most[0].max(low), most[1].max(high)];
+                let text = format!("{name} {surface} at {pose:?}: {penetration:?}");
+                let Interval { low, high } = penetration.depth;
+                max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
                 wide += usize::from(high - low > 1.01 * TOLERANCE);
-                let owned = |p: Point3<f64>| {
-                    let sense = oracle.sense(seen(&pose, length, p))?;
+                let depth_and_owner = |p: Point3<f64>| {
+                    let sense = oracle.sense(to_tool(&pose, length, p))?;
                     Some((sense.depth * length, info.regions[sense.owner].surface))
                 };
-                for point in places(&mesh, &mut draw) {
-                    if let Some((depth, owner)) = owned(point)
+                for point in random_points(&mesh, &mut rng) {
+                    if let Some((depth, owner)) = depth_and_owner(point)
                         && owner == SurfaceId(surface)
                     {
                         assert!(depth <= high + 1e-9, "{text}: {depth} at {point}");
                     }
                 }
-                if let Some(witness) = found.witness {
+                if let Some(witness) = penetration.witness {
                     touching += 1;
                     assert_eq!(witness.surface, SurfaceId(surface), "{text}");
-                    let (depth, _) = owned(witness.point).expect("inside");
+                    let (depth, _) = depth_and_owner(witness.point).expect("inside");
                     assert!(low <= depth + 1e-9, "{text}: {depth}");
                 }
             }
-            let agree = most[0] <= whole.high + 1e-9 && whole.low <= most[1] + 1e-9;
-            assert!(agree, "{name} at {pose:?}: {most:?} of each, {whole:?} of all");
+            let consistent =
+                max_depths[0] <= tool_depth.high + 1e-9 && tool_depth.low <= max_depths[1] + 1e-9;
+            assert!(
+                consistent,
+                "{name} at {pose:?}: {max_depths:?} of each, {tool_depth:?} of all"
+            );
         }
         assert!(touching > 5 && wide == 0, "{name}: {touching} touch, {wide} are wide");
     }
@@ -163,7 +184,7 @@ fn no_sample_of_a_surface_of_a_field_is_deeper_than_it_was_said_to_be() {
 
 /// A cylinder beside a wall: its side may cut, its ends may not.
 #[test]
-fn surfaces_of_a_field_are_allowed_for_one_by_one() {
+fn allowances_apply_to_each_surface_of_a_field() {
     let (low, high) = (Point3::new(1.5, -30.0, 1.0), Point3::new(40.0, 30.0, 5.0));
     let wall = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid"));
     let at = |y: f64, z: f64| super::pose([0.0, y, z], [0.0, 0.0, 1.0]);
@@ -171,15 +192,15 @@ fn surfaces_of_a_field_are_allowed_for_one_by_one() {
     let certifier = || Certifier::new(&wall, super::tool("Cylinder")).expect("proved");
     let mut side = certifier().with_allowance("side", f64::INFINITY).expect("a surface");
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
-    let along = Motion::new(&at(-1.0, 0.0), &at(1.0, 0.0)).expect("upright");
-    assert_eq!(side.check_motion(&along, 1e-6), MotionVerdict::Clear);
-    let found = certifier().motion_depth(SurfaceId(0), &along, 0.4, 1e-6).expect("a surface");
+    let slide = Motion::new(&at(-1.0, 0.0), &at(1.0, 0.0)).expect("upright");
+    assert_eq!(side.check_motion(&slide, 1e-6), MotionVerdict::Clear);
+    let found = certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
     let MotionDepth::Deeper { depth: Interval { low, high }, most, .. } = found else {
         panic!("{found:?}")
     };
     assert!(low <= 0.5 && 0.5 <= high + 1e-9 && most < 0.52, "{found:?}");
     assert_eq!(
-        certifier().motion_depth(SurfaceId(1), &along, 0.0, 1e-6).expect("a surface"),
+        certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6).expect("a surface"),
         MotionDepth::Within
     );
     // Raised by 0.8 mm, the wall's lower edge is nearer to the bottom.
@@ -187,8 +208,8 @@ fn surfaces_of_a_field_are_allowed_for_one_by_one() {
         panic!("it touches")
     };
     assert_eq!(witness.surface, SurfaceId(1));
-    let up = Motion::new(&at(0.0, 0.0), &at(0.0, 0.8)).expect("upright");
-    assert!(matches!(side.check_motion(&up, 1e-6), MotionVerdict::Touching(at, _) if at > 0.6));
+    let rise = Motion::new(&at(0.0, 0.0), &at(0.0, 0.8)).expect("upright");
+    assert!(matches!(side.check_motion(&rise, 1e-6), MotionVerdict::Touching(at, _) if at > 0.6));
 }
 
 #[test]
@@ -200,13 +221,13 @@ fn every_tool_of_the_library_is_certified() {
 }
 
 #[test]
-fn a_tool_whose_depth_jumps_is_refused() {
+fn rejects_a_tool_whose_depth_jumps() {
     let text = "tool Jump { units mm;
         region low as body cutting where d <= 2, 0 <= z, z <= 1 { depth: min(z, 2 - d); }
         region high as body cutting where d <= 2, 1 <= z, z <= 3 { depth: min(3 - z, 2 - d); }
         niceness cutting: 1; }";
     let tool = Interpreted::parse(&Source::new("jump.tool", text)).expect("a tool");
     let bvh = TriangleBvh::new(&super::plate());
-    let refused = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
-    assert!(refused.contains("Jump") && refused.contains("profile"), "{refused}");
+    let error = Certifier::new(&bvh, &tool).expect_err("a refusal").to_string();
+    assert!(error.contains("Jump") && error.contains("profile"), "{error}");
 }

@@ -31,7 +31,7 @@ fn levels() -> Vec<Level> {
 }
 
 #[test]
-fn a_tolerance_that_is_none_is_taken_as_rounding() {
+fn invalid_tolerances_are_treated_as_rounding() {
     for tolerance in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY, 5e-324] {
         let [low, high] = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), tolerance);
         assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-11, "{tolerance}: {low} to {high}");
@@ -41,7 +41,7 @@ fn a_tolerance_that_is_none_is_taken_as_rounding() {
 }
 
 #[test]
-fn slivers_and_what_has_no_area_are_as_deep_as_their_points() {
+fn slivers_and_degenerate_triangles_are_as_deep_as_their_points() {
     // Half a square millimetre far from the tool, so that the mesh has an area.
     let far = [[50.0, 50.0, 0.0], [51.0, 50.0, 0.0], [50.0, 51.0, 0.0]];
     for width in [0.0, 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3] {
@@ -58,16 +58,16 @@ fn slivers_and_what_has_no_area_are_as_deep_as_their_points() {
 }
 
 #[test]
-fn duplicates_and_inversion_change_nothing() {
+fn duplicate_and_inverted_triangles_do_not_change_depth() {
     let once = plate();
     let mut twice = once.triangles().to_vec();
     twice.extend(once.triangles().iter().map(|[a, b, c]| [*c, *b, *a]));
     twice.extend(once.triangles());
     let twice = Mesh::new(once.vertices().to_vec(), twice, Unit::Millimetre).expect("a mesh");
     let oracle = Nearest::of("Fig73Exact");
-    let mut draw = Rng::new(4);
+    let mut rng = Rng::new(4);
     for _ in 0..200 {
-        let pose = poses::pose(&once, &oracle, 1.0, &mut draw);
+        let pose = poses::pose(&once, &oracle, 1.0, &mut rng);
         let [a, b] = [&once, &twice].map(|mesh| depth(mesh, "Fig73Exact", &pose, 1e-9));
         assert!(a[0] <= b[1] && b[0] <= a[1], "{a:?} {b:?} {pose:?}");
         assert!((a[0] - b[0]).abs() <= 2e-9, "{a:?} {b:?} {pose:?}");
@@ -75,38 +75,38 @@ fn duplicates_and_inversion_change_nothing() {
 }
 
 #[test]
-fn a_budget_that_is_spent_leaves_an_interval_that_holds_the_truth() {
+fn an_exhausted_budget_leaves_a_valid_interval() {
     for (name, mesh) in poses::parts().expect("parts") {
         let bvh = TriangleBvh::new(&mesh);
         let oracle = Nearest::of("Fig73Exact");
         let certifier = || Certifier::new(&bvh, tool("Fig73Exact")).expect("a profile");
         let mut exact = certifier();
-        let mut draw = Rng::new(5);
-        let mut wide = 0;
+        let mut rng = Rng::new(5);
+        let mut wide_count = 0;
         for _ in 0..40 {
-            let pose = poses::pose(&mesh, &oracle, 1.0, &mut draw);
+            let pose = poses::pose(&mesh, &oracle, 1.0, &mut rng);
             let truth = exact.deepest(&pose, 0.0).depth;
             let clear = exact.check_pose(&pose);
             for budget in [0, 1, 2, 3, 10, 30, 100, 1000] {
-                let mut poor = certifier().with_budget(budget);
-                let Interval { low, high } = poor.deepest(&pose, 0.0).depth;
+                let mut limited = certifier().with_budget(budget);
+                let Interval { low, high } = limited.deepest(&pose, 0.0).depth;
                 let text = format!("{name}, {budget}: {truth:?} in {low} to {high} at {pose:?}");
                 assert!(low <= truth.high && truth.low <= high, "{text}");
-                wide += usize::from(high - low > 1e-6);
-                let hurried = poor.check_pose(&pose);
-                let same = std::mem::discriminant(&hurried) == std::mem::discriminant(&clear);
+                wide_count += usize::from(high - low > 1e-6);
+                let verdict = limited.check_pose(&pose);
+                let same = std::mem::discriminant(&verdict) == std::mem::discriminant(&clear);
                 assert!(
-                    same || matches!(hurried, PoseVerdict::Undecided(_)),
-                    "{text}: {hurried:?}"
+                    same || matches!(verdict, PoseVerdict::Undecided(_)),
+                    "{text}: {verdict:?}"
                 );
             }
         }
-        assert!(wide > 0, "no budget was too small for {name}");
+        assert!(wide_count > 0, "no budget was too small for {name}");
     }
 }
 
 #[test]
-fn every_level_holds_the_truth() {
+fn every_simd_level_gives_a_valid_interval() {
     let levels = levels();
     for (name, mesh) in poses::parts().expect("parts") {
         let bvh = TriangleBvh::new(&mesh);
@@ -118,16 +118,20 @@ fn every_level_holds_the_truth() {
                     Certifier::new(&bvh, tool(tool_name)).expect("a profile").with_level(*level)
                 })
                 .collect();
-            let mut draw = Rng::new(6);
+            let mut rng = Rng::new(6);
             for _ in 0..20 {
-                let pose = poses::pose(&mesh, &oracle, 1.0, &mut draw);
-                let found: Vec<_> = certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
-                for (one, level) in found.iter().zip(&levels) {
-                    let Interval { low, high } = one.depth;
-                    let text = format!("{tool_name} in {name}, {level:?}, {pose:?}: {found:?}");
+                let pose = poses::pose(&mesh, &oracle, 1.0, &mut rng);
+                let penetrations: Vec<_> =
+                    certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
+                for (penetration, level) in penetrations.iter().zip(&levels) {
+                    let Interval { low, high } = penetration.depth;
+                    let text =
+                        format!("{tool_name} in {name}, {level:?}, {pose:?}: {penetrations:?}");
                     assert!(high - low < 2e-6, "{text}");
                     assert!(
-                        found.iter().all(|o| low <= o.depth.high && o.depth.low <= high),
+                        penetrations
+                            .iter()
+                            .all(|other| low <= other.depth.high && other.depth.low <= high),
                         "{text}"
                     );
                 }
@@ -137,7 +141,7 @@ fn every_level_holds_the_truth() {
 }
 
 #[test]
-fn a_level_face_that_is_hardly_pressed_into_a_part_is_not_clear() {
+fn a_face_pressed_slightly_into_a_part_is_not_clear() {
     let mesh = touchoff::mesh::shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere");
     let bvh = TriangleBvh::new(&mesh);
     let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
@@ -145,13 +149,13 @@ fn a_level_face_that_is_hardly_pressed_into_a_part_is_not_clear() {
     for id in 0..mesh.triangles().len() as u32 {
         let normal = mesh.normal(TriangleId(id)).expect("it has an area");
         let corners = mesh.triangle(TriangleId(id));
-        let middle =
+        let centroid =
             Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
-        let pose = Pose::from_axis(middle - 1e-8 * normal, normal).expect("an axis");
-        let found = certifier.deepest(&pose, 1e-9);
-        let clear = certifier.check_pose(&pose);
-        if found.depth.high < 0.99e-8 || !matches!(clear, PoseVerdict::Touching(_)) {
-            missed.push((pose, found, clear));
+        let pose = Pose::from_axis(centroid - 1e-8 * normal, normal).expect("an axis");
+        let penetration = certifier.deepest(&pose, 1e-9);
+        let verdict = certifier.check_pose(&pose);
+        if penetration.depth.high < 0.99e-8 || !matches!(verdict, PoseVerdict::Touching(_)) {
+            missed.push((pose, penetration, verdict));
         }
     }
     assert!(missed.is_empty(), "{} missed, the first: {:?}", missed.len(), missed[0]);
@@ -163,22 +167,22 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     let above = pose([12.5, -19.173505112635194, -0.5], [0.0, 0.0, -1.0]);
     let [_, high] = depth(&mesh, "BullNose", &above, 1e-6);
     let oracle = Nearest::of("BullNose");
-    let (mut draw, mut samples) = (Rng::new(1), 0);
+    let (mut rng, mut samples) = (Rng::new(1), 0);
     let mut deeper = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
-        let one = soup(&[corners]);
-        let brute = Brute::new(&one, &oracle, 1.0);
-        let found = brute.deepest(&brute.seen(&above), &mut draw, &mut samples);
+        let single = soup(&[corners]);
+        let brute = Brute::new(&single, &oracle, 1.0);
+        let found = brute.deepest(&brute.seen(&above), &mut rng, &mut samples);
         if found > high + 1e-9 {
-            deeper.push((id, corners, found, depth(&one, "BullNose", &above, 1e-6)));
+            deeper.push((id, corners, found, depth(&single, "BullNose", &above, 1e-6)));
         }
     }
     assert!(deeper.is_empty(), "{high}, but {deeper:?}");
 }
 
 #[test]
-fn what_f32_cannot_hold_is_not_lost() {
+fn coordinates_beyond_f32_give_valid_intervals() {
     // Rounding is about ten times the tool's size, so the interval is wide; it must still be valid.
     for size in [1e14, 1e20, 1e30] {
         let mesh = soup(&[
@@ -190,8 +194,8 @@ fn what_f32_cannot_hold_is_not_lost() {
         assert!(low <= 0.5 && 0.5 <= high, "{size:e}: {low:e} to {high:e}");
         let bvh = TriangleBvh::new(&plate());
         let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-        let far = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
-        let Interval { low, high } = far.distance;
+        let clearance = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
+        let Interval { low, high } = clearance.distance;
         assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
     }
 }

@@ -53,7 +53,7 @@ fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
     Mesh::new(vertices, ids, Unit::Millimetre).expect("a mesh")
 }
 
-fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
+fn violations(names: &[&str], count: usize, seed: u64) -> Vec<String> {
     let mut violations = Vec::new();
     for (part, mesh) in poses::parts().expect("parts") {
         let bvh = TriangleBvh::new(&mesh);
@@ -61,8 +61,8 @@ fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
             let oracle = oracle(name);
             let (mesh, bvh) = (&mesh, &bvh);
             let pair = Pair { part, mesh, bvh, tool: tool(name), oracle: &oracle };
-            let row = pair.measure(each, seed + k as u64);
-            assert!(row.touching > each / 3, "{row:?}");
+            let row = pair.measure(count, seed + k as u64);
+            assert!(row.touching > count / 3, "{row:?}");
             violations.extend(row.violations);
         }
     }
@@ -70,21 +70,21 @@ fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
 }
 
 #[test]
-fn brute_force_finds_nothing_outside_the_intervals() {
+fn brute_force_stays_within_the_intervals() {
     let tools = ["Fig73Exact", "BullNose", "TSlot", "BallEr16", "TaperedBall"];
     let violations = violations(&tools, POSES, SEED);
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
 #[test]
-fn nor_where_a_profile_overhangs() {
+fn brute_force_stays_within_the_intervals_of_overhanging_profiles() {
     let tools = [&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat();
     let violations = violations(&tools, POSES, 7);
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
 #[test]
-fn brute_force_finds_nothing_outside_on_a_neck() {
+fn brute_force_stays_within_the_intervals_on_a_neck() {
     let violations = violations(&["Lollipop"], 4 * POSES, 2);
     assert!(violations.is_empty(), "{violations:#?}");
 }

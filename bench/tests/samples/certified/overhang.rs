@@ -102,8 +102,8 @@ pub(crate) const ALL: [&str; 6] = ["HoleSaw", "Dished", "Bell", "Skirt", "Torus"
 
 /// Returns one of these tools.
 pub(crate) fn tool(name: &str) -> Option<&'static dyn Tool> {
-    let all: [&dyn Tool; 6] = [&HoleSaw, &Dished, &Bell, &Skirt, &Torus, &Wheel];
-    all.into_iter().find(|tool| tool.info().name == name)
+    let tools: [&dyn Tool; 6] = [&HoleSaw, &Dished, &Bell, &Skirt, &Torus, &Wheel];
+    tools.into_iter().find(|tool| tool.info().name == name)
 }
 
 /// Returns the oracle of one of these tools, from the dimensions of its drawing.
@@ -164,12 +164,12 @@ fn a_rim_is_as_deep_as_its_circle() {
         let oracle = oracle(name).expect("one of those above");
         let [a, b, c] = corners.map(Point3::from);
         // About 30,000 points, at most 0.01 apart.
-        let places = (0..=250).flat_map(|i| (0..=250 - i).map(move |j| (i, j)));
+        let samples = (0..=250).flat_map(|i| (0..=250 - i).map(move |j| (i, j)));
         let depth = |(i, j): (i32, i32)| {
             let p = a + (b - a) * (f64::from(i) / 250.0) + (c - a) * (f64::from(j) / 250.0);
             oracle.sense(p.into()).map_or(0.0, |sense| sense.depth)
         };
-        let sampled = places.map(depth).fold(0.0, f64::max);
+        let sampled = samples.map(depth).fold(0.0, f64::max);
         let Interval { low, high } =
             Certifier::new(&bvh, tool(name).expect("it")).expect("it").deepest(&pose, 0.0).depth;
         assert!(sampled <= high && low <= sampled + 0.01, "{name}: {sampled} in {low}..{high}");
@@ -191,14 +191,14 @@ touchoff::tool! {
 
 /// Points above the tip of the cone are nearest to that tip, a corner on the axis.
 #[test]
-fn a_piece_at_a_corner_on_the_axis_is_found_inside() {
+fn a_zone_of_a_corner_on_the_axis_is_found_inside() {
     let half = Point3::from([30.0, 30.0, 40.0]);
     let block = shapes::cuboid(-half, half, Unit::Millimetre).expect("a cuboid");
     let bvh = TriangleBvh::new(&block);
     for limit in [0.0, 0.5, 0.8, 0.9] {
         let mut certifier = Certifier::new(&bvh, &Dimple).expect("a profile");
-        let any = f64::INFINITY;
-        for (surface, limit) in [("dimple", limit), ("flute", any), ("top", any)] {
+        let unlimited = f64::INFINITY;
+        for (surface, limit) in [("dimple", limit), ("flute", unlimited), ("top", unlimited)] {
             certifier = certifier.with_allowance(surface, limit).expect("a surface");
         }
         let found = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));

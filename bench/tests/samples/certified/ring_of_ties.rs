@@ -18,7 +18,7 @@ fn upright() -> Pose {
 }
 
 /// The flute has radius 10.5 from z = 0 to 9, between a face and a back. All three are 4.5 away from (6, 4.5).
-const DEEPEST: f64 = 4.5;
+const MAX_DEPTH: f64 = 4.5;
 
 #[test]
 fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
@@ -26,11 +26,11 @@ fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
     let mut certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
     let found = certifier.deepest_on(SurfaceId(1), &upright(), 1e-9).expect("a surface");
     let Interval { low, high } = found.depth;
-    assert!(low <= DEEPEST && DEEPEST <= high, "{found:?}");
+    assert!(low <= MAX_DEPTH && MAX_DEPTH <= high, "{found:?}");
 }
 
 #[test]
-fn an_allowance_of_such_a_flute_is_not_passed_over() {
+fn the_allowance_of_a_flute_deepest_on_a_ring_is_checked() {
     let bvh = TriangleBvh::new(&wall());
     let certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
     let mut certifier = ["face", "back", "neck", "shank"]
@@ -38,8 +38,8 @@ fn an_allowance_of_such_a_flute_is_not_passed_over() {
         .fold(certifier, |c, other| c.with_allowance(other, f64::INFINITY).expect("a surface"));
     let found = certifier.check_pose(&upright());
     assert!(matches!(found, PoseVerdict::Touching(_)), "{found:?}");
-    let still = Motion::new(&upright(), &upright()).expect("one way");
-    let found = certifier.check_motion(&still, 0.0);
+    let at_rest = Motion::new(&upright(), &upright()).expect("one way");
+    let found = certifier.check_motion(&at_rest, 0.0);
     assert!(matches!(found, MotionVerdict::Touching(..)), "{found:?}");
 }
 
@@ -70,7 +70,7 @@ fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
 }
 
 #[test]
-fn a_seam_between_ties_belongs_to_both_its_sides() {
+fn a_border_between_ties_belongs_to_both_surfaces() {
     // The wall meets the circle (2, 2), where the flute's upper end is as near as the face.
     let tool = interpreted(
         "line to (5, 0) as face; line to (5, 2) as flute cutting; line to (5, 50), (0, 50) as shank;",
@@ -80,7 +80,7 @@ fn a_seam_between_ties_belongs_to_both_its_sides() {
 }
 
 #[test]
-fn a_reflex_corner_owns_as_far_as_what_it_ties_with() {
+fn a_reflex_corner_owns_points_as_near_to_another_surface() {
     // Near (3, 2) the corner of the back owns the point, at the same distance as the face.
     let tool = interpreted(
         "line to (20, 0) as face; line to (20, 2) as rim cutting; line to (5, 2) as back; line to (5, 50), (0, 50) as neck;",

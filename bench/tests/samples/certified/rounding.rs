@@ -25,7 +25,7 @@ fn no_upper_bound_is_below_the_truth() {
 
 /// If the bounds lack what is added for rounding, the validation reports violations in each family.
 #[test]
-fn bounds_without_their_widening_are_found_out() {
+fn bounds_without_widening_are_reported_as_violations() {
     for row in rows(1.0, 2_200) {
         assert!(row.exceeded > row.cases / 20, "{row:?}");
     }

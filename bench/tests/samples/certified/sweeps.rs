@@ -18,10 +18,10 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
 }
 
-fn sweep(mesh: &Mesh, name: &str, way: &Motion, tolerance: f64) -> MotionVerdict {
+fn sweep(mesh: &Mesh, name: &str, path: &Motion, tolerance: f64) -> MotionVerdict {
     let bvh = TriangleBvh::new(mesh);
     let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
-    certifier.check_motion(way, tolerance)
+    certifier.check_motion(path, tolerance)
 }
 
 /// Returns an axis that leans from z toward x.
@@ -61,17 +61,17 @@ fn a_ball_slides_along_a_plate_at_any_height() {
 }
 
 #[test]
-fn a_tolerance_is_what_may_be_missed_and_no_more() {
-    let way = |depth: f64| motion(&pose([-9.0, 0.0, 2.0], UP), &pose([3.0, 1.0, -depth], UP));
+fn contact_deeper_than_the_tolerance_is_found() {
+    let path = |depth: f64| motion(&pose([-9.0, 0.0, 2.0], UP), &pose([3.0, 1.0, -depth], UP));
     for tolerance in [1e-6, 1e-3, 0.1] {
-        let found = sweep(&plate(), "BullNose", &way(1.001 * tolerance), tolerance);
+        let found = sweep(&plate(), "BullNose", &path(1.001 * tolerance), tolerance);
         assert!(matches!(found, MotionVerdict::Touching(..)), "{tolerance:e}: {found:?}");
-        assert_eq!(sweep(&plate(), "BullNose", &way(-1e-9), tolerance), MotionVerdict::Clear);
+        assert_eq!(sweep(&plate(), "BullNose", &path(-1e-9), tolerance), MotionVerdict::Clear);
     }
 }
 
 #[test]
-fn a_plunge_touches_when_it_has_come_down() {
+fn a_plunge_touches_at_the_end_of_its_descent() {
     let plunge = |to: f64| motion(&pose([0.3, 0.1, 5.0], UP), &pose([0.3, 0.1, to], UP));
     for name in ["D2Ball", "Flat", "BullNose", "TSlot", "Lollipop"] {
         let found = sweep(&plate(), name, &plunge(-1.0), 0.0);
@@ -129,14 +129,15 @@ fn a_long_cylinder_swings_below_a_ceiling() {
 }
 
 #[test]
-fn what_does_not_move_is_as_clear_as_it_stands() {
+fn a_motion_at_rest_has_the_verdict_of_its_pose() {
     let bvh = TriangleBvh::new(&plate());
     let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
     for height in [0.5, 1e-9, -1e-9, -0.5, -3.0] {
         for lean in [0.0, 20.0, 170.0] {
-            let here = pose([1.0, 2.0, height], leaning(lean));
-            let way = motion(&here, &here);
-            let (still, swept) = (certifier.check_pose(&here), certifier.check_motion(&way, 0.0));
+            let pose_at_rest = pose([1.0, 2.0, height], leaning(lean));
+            let path = motion(&pose_at_rest, &pose_at_rest);
+            let (still, swept) =
+                (certifier.check_pose(&pose_at_rest), certifier.check_motion(&path, 0.0));
             let same = matches!(
                 (still, swept),
                 (PoseVerdict::Clear, MotionVerdict::Clear)
@@ -148,7 +149,7 @@ fn what_does_not_move_is_as_clear_as_it_stands() {
 }
 
 #[test]
-fn opposite_axes_have_no_way_between() {
+fn opposite_axes_are_rejected() {
     let up = pose([0.0; 3], UP);
     let down = pose([1.0, 2.0, 3.0], [0.0, 0.0, -1.0]);
     assert_eq!(Motion::new(&up, &down), Err(MotionError::Opposite));
@@ -161,10 +162,10 @@ fn opposite_axes_have_no_way_between() {
 #[test]
 fn without_a_budget_nothing_is_decided() {
     let bvh = TriangleBvh::new(&plate());
-    let way = motion(&pose([-9.0, 0.0, 1e-6], UP), &pose([9.0, 0.0, 1e-6], UP));
+    let path = motion(&pose([-9.0, 0.0, 1e-6], UP), &pose([9.0, 0.0, 1e-6], UP));
     for budget in [0, 1, 3] {
         let certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
-        let found = certifier.with_budget(budget).check_motion(&way, 0.0);
+        let found = certifier.with_budget(budget).check_motion(&path, 0.0);
         assert!(
             matches!(found, MotionVerdict::Undecided(at) if (0.0..1.0).contains(&at)),
             "{found:?}"
@@ -173,7 +174,7 @@ fn without_a_budget_nothing_is_decided() {
 }
 
 #[test]
-fn a_tool_may_stay_in_material_or_beside_what_has_no_inside() {
+fn a_motion_may_stay_in_material_or_beside_an_open_sheet() {
     let large = block([-200.0; 3], [200.0; 3]);
     let inside = motion(&pose([-90.0, 0.0, -90.0], UP), &pose([90.0, 20.0, 0.0], leaning(100.0)));
     assert!(matches!(sweep(&large, "D2Ball", &inside, 0.0), MotionVerdict::Inside(_)));
@@ -187,7 +188,7 @@ fn a_tool_may_stay_in_material_or_beside_what_has_no_inside() {
 }
 
 #[test]
-fn it_comes_from_far_away_and_goes_as_far() {
+fn long_rapid_motions_are_decided() {
     let far = |height: f64, to: [f64; 3]| {
         motion(&pose([-1e6, 0.0, height], UP), &pose([1e6, 0.0, height], to))
     };
@@ -210,7 +211,7 @@ fn it_comes_from_far_away_and_goes_as_far() {
 
 /// `cargo run --release -p touchoff-bench -- sweeps` checks about 10,000 motions that are proved clear.
 #[test]
-fn no_sample_of_a_proved_motion_is_deeper() {
+fn no_sample_of_a_clear_motion_is_inside() {
     for (part, mesh) in poses::parts().expect("parts") {
         let bvh = TriangleBvh::new(&mesh);
         for (k, name) in ["BullNose", "TSlot", "Lollipop", "Barrel"].into_iter().enumerate() {

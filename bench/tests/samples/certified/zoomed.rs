@@ -10,7 +10,7 @@ const SAMPLES: u64 = 40_000;
 
 #[test]
 fn samples_that_zoom_in_are_within_the_interval() {
-    let (mut asked, mut reached) = (0, 0);
+    let (mut queried, mut reached) = (0, 0);
     let parts = poses::parts().expect("parts");
     // The thousands of slivers in the tube need more samples than a test can afford.
     for (part, mesh) in parts.iter().filter(|(part, _)| *part != "tube") {
@@ -20,11 +20,11 @@ fn samples_that_zoom_in_are_within_the_interval() {
             let zoomed = Zoomed { part, mesh, bvh: &bvh, tool: tool(name), subject: &subject };
             let row = zoomed.measure(4, SAMPLES, 3);
             assert!(row.violations.is_empty() && row.wider == 0, "{row:?}");
-            asked += row.poses;
+            queried += row.poses;
             reached += row.reached;
         }
     }
-    assert!(10 * reached > 9 * asked, "{reached} of {asked}");
+    assert!(10 * reached > 9 * queried, "{reached} of {queried}");
 }
 
 #[test]

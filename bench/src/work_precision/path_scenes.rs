@@ -1,8 +1,8 @@
 //! Measurements on paths along a part.
 
 use super::cutter::Cutter;
-use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
-use super::methods::{Budgeted, Proved};
+use super::lineup::{CELLS, LabelledCloud, Lineup, Truths, labelled_clouds};
+use super::methods::{BudgetedProbe, CertifiedDepth};
 use super::plan::Plan;
 use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
@@ -11,11 +11,11 @@ use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Law, LodProbe, Mesh, Part, Pose, Sampling, Unit};
 
 /// A tool and its path along a part.
-pub(super) struct Along<'t> {
+pub(super) struct PathScene<'t> {
     /// The scene's name.
     pub(super) name: String,
     /// The scene's description.
-    pub(super) about: String,
+    pub(super) description: String,
     /// The tool.
     pub(super) cutter: Cutter<'t>,
     /// The poses of the path.
@@ -25,8 +25,8 @@ pub(super) struct Along<'t> {
 }
 
 /// A scene with its reference values.
-struct Known<'t> {
-    scene: Along<'t>,
+struct ReferencedScene<'t> {
+    scene: PathScene<'t>,
     /// The poses that are certainly in contact, or all poses of a scene without contact.
     poses: Vec<Pose>,
     truth: Option<Reference>,
@@ -35,7 +35,7 @@ struct Known<'t> {
 }
 
 /// Minimum number of timed poses.
-const LEAST: usize = 2_000;
+const MIN_TIMED_POSES: usize = 2_000;
 
 /// Measures several paths along one part with clouds of all sizes.
 ///
@@ -44,47 +44,47 @@ const LEAST: usize = 2_000;
 /// number of points.
 pub(super) fn measure(
     mesh: &Mesh,
-    scenes: Vec<Along<'_>>,
+    scenes: Vec<PathScene<'_>>,
     plan: &Plan,
     sink: Sink<'_>,
 ) -> Result<Vec<Facts>, Failure> {
     let bvh = TriangleBvh::new(mesh);
-    let mut all = Vec::new();
+    let mut referenced_scenes = Vec::new();
     for scene in scenes {
-        all.push(know(scene, mesh, &bvh, plan)?);
+        referenced_scenes.push(with_reference(scene, mesh, &bvh, plan)?);
     }
     for (from_last, count) in plan.points.iter().rev().enumerate().rev() {
         progress(&format!("{count} points"));
-        let kinds = kinds(mesh, *count, plan.seed, |cloud| cloud)?;
+        let clouds = labelled_clouds(mesh, *count, plan.seed, |cloud| cloud)?;
         let detailed = match from_last {
             0 => Some(Part::with_lods(mesh, Sampling::new(*count).with_seed(plan.seed))?),
             _ => None,
         };
-        for known in &all {
+        for referenced in &referenced_scenes {
             let mut lineup = Lineup::default();
-            lineup.add_clouds(&kinds, known.scene.cutter);
+            lineup.add_clouds(&clouds, referenced.scene.cutter);
             if let Some(detailed) = &detailed {
-                add_graded(&mut lineup, known, detailed, plan);
-                add_certified(&mut lineup, known, &bvh, plan)?;
+                add_graded(&mut lineup, referenced, detailed, plan);
+                add_certified(&mut lineup, referenced, &bvh, plan)?;
             }
-            if peers_fit(&known.scene, mesh) {
-                add_peers(&mut lineup, mesh, &kinds, plan.has_peers(from_last), from_last == 0);
+            if peers_fit(&referenced.scene, mesh) {
+                add_peers(&mut lineup, mesh, &clouds, plan.has_peers(from_last), from_last == 0);
             }
-            rows(&mut lineup, known, plan).into_iter().for_each(&mut *sink);
+            rows(&mut lineup, referenced, plan).into_iter().for_each(&mut *sink);
         }
     }
-    Ok(all.into_iter().map(|known| facts(known, mesh)).collect())
+    Ok(referenced_scenes.into_iter().map(|referenced| facts(referenced, mesh)).collect())
 }
 
-fn know<'t>(
-    scene: Along<'t>,
+fn with_reference<'t>(
+    scene: PathScene<'t>,
     mesh: &Mesh,
     bvh: &TriangleBvh,
     plan: &Plan,
-) -> Result<Known<'t>, Failure> {
+) -> Result<ReferencedScene<'t>, Failure> {
     if !scene.touches {
         let poses = scene.poses.clone();
-        return Ok(Known { scene, poses, truth: None, thesis: None });
+        return Ok(ReferencedScene { scene, poses, truth: None, thesis: None });
     }
     progress(&format!("the truth of {}", scene.name));
     let tool = scene.cutter.tool();
@@ -94,34 +94,43 @@ fn know<'t>(
     }
     let truth = Reference::new(mesh, bvh, scene.cutter, &poses, plan)?;
     let thesis = match peers_fit(&scene, mesh) {
-        true => of_the_thesis(mesh, &poses, plan)?,
+        true => thesis_reference(mesh, &poses, plan)?,
         false => None,
     };
-    Ok(Known { scene, poses, truth: Some(truth), thesis })
+    Ok(ReferencedScene { scene, poses, truth: Some(truth), thesis })
 }
 
 /// Returns whether the peers can handle the scene: they know one tool, in millimetres.
-fn peers_fit(scene: &Along<'_>, mesh: &Mesh) -> bool {
-    scene.cutter.peers_know_it() && mesh.unit() == Unit::Millimetre
+fn peers_fit(scene: &PathScene<'_>, mesh: &Mesh) -> bool {
+    scene.cutter.is_known_to_peers() && mesh.unit() == Unit::Millimetre
 }
 
 /// Returns the reference values for the peers.
 #[cfg(feature = "peers")]
-fn of_the_thesis(mesh: &Mesh, poses: &[Pose], plan: &Plan) -> Result<Option<Reference>, Failure> {
-    Reference::of_the_thesis(mesh, poses, plan).map(Some)
+fn thesis_reference(
+    mesh: &Mesh,
+    poses: &[Pose],
+    plan: &Plan,
+) -> Result<Option<Reference>, Failure> {
+    Reference::with_thesis_magnitudes(mesh, poses, plan).map(Some)
 }
 
 /// Returns no reference values: this build has no peers.
 #[cfg(not(feature = "peers"))]
-fn of_the_thesis(_: &Mesh, _: &[Pose], _: &Plan) -> Result<Option<Reference>, Failure> {
+fn thesis_reference(_: &Mesh, _: &[Pose], _: &Plan) -> Result<Option<Reference>, Failure> {
     Ok(None)
 }
 
-fn add_graded<'a>(lineup: &mut Lineup<'a>, known: &Known<'a>, detailed: &'a Part, plan: &Plan) {
+fn add_graded<'a>(
+    lineup: &mut Lineup<'a>,
+    referenced: &ReferencedScene<'a>,
+    detailed: &'a Part,
+    plan: &Plan,
+) {
     for budget in &plan.budgets {
         // A tool may be too large for the smallest budget.
-        let graded = LodProbe::new(detailed, known.scene.cutter.tool(), *budget, Law::Thesis);
-        if let Ok(graded) = graded {
+        let probe = LodProbe::new(detailed, referenced.scene.cutter.tool(), *budget, Law::Thesis);
+        if let Ok(probe) = probe {
             let label = Label {
                 method: "graded",
                 points: Some(detailed.tree().len()),
@@ -130,29 +139,35 @@ fn add_graded<'a>(lineup: &mut Lineup<'a>, known: &Known<'a>, detailed: &'a Part
                 budget: Some(*budget),
                 tolerance: None,
             };
-            lineup.add_walking(label, Box::new(Budgeted(graded)));
+            lineup.add_following_path(label, Box::new(BudgetedProbe(probe)));
         }
     }
 }
 
 fn add_certified<'a>(
     lineup: &mut Lineup<'a>,
-    known: &Known<'a>,
+    referenced: &ReferencedScene<'a>,
     bvh: &'a TriangleBvh,
     plan: &Plan,
 ) -> Result<(), Failure> {
     for tolerance in &plan.tolerances {
-        let certifier = Certifier::new(bvh, known.scene.cutter.tool())?;
+        let certifier = Certifier::new(bvh, referenced.scene.cutter.tool())?;
         let label = Label::triangles("certified");
         let label = Label { tolerance: Some(*tolerance), ..label };
-        lineup.add(label, Box::new(Proved::new(certifier, *tolerance)));
+        lineup.add(label, Box::new(CertifiedDepth::new(certifier, *tolerance)));
     }
     Ok(())
 }
 
-fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool, triangles: bool) {
-    if points && let Some(kind) = kinds.iter().find(|kind| kind.words == ["blue", CELLS]) {
-        peers::add_points(lineup, kind);
+fn add_peers(
+    lineup: &mut Lineup<'_>,
+    mesh: &Mesh,
+    clouds: &[LabelledCloud],
+    points: bool,
+    triangles: bool,
+) {
+    if points && let Some(cloud) = clouds.iter().find(|cloud| cloud.names == ["blue", CELLS]) {
+        peers::add_points(lineup, cloud);
     }
     if triangles {
         peers::add_triangles(lineup, mesh);
@@ -160,36 +175,45 @@ fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool,
 }
 
 /// Measures times, then errors.
-fn rows(lineup: &mut Lineup<'_>, known: &Known<'_>, plan: &Plan) -> Vec<Row> {
-    let name = &known.scene.name;
+fn rows(lineup: &mut Lineup<'_>, referenced: &ReferencedScene<'_>, plan: &Plan) -> Vec<Row> {
+    let name = &referenced.scene.name;
     progress(&format!("  {name}"));
     // A short path is repeated to reach the minimum number of poses, but no more often than necessary.
-    let again = LEAST.min(plan.path / 2).div_ceil(known.poses.len()).max(1);
-    let poses: Vec<Pose> =
-        known.poses.iter().copied().cycle().take(again * known.poses.len()).collect();
+    let repetitions = MIN_TIMED_POSES.min(plan.path / 2).div_ceil(referenced.poses.len()).max(1);
+    let poses: Vec<Pose> = referenced
+        .poses
+        .iter()
+        .copied()
+        .cycle()
+        .take(repetitions * referenced.poses.len())
+        .collect();
     let times = lineup.race(&poses, plan.seconds);
-    let Some(truth) = &known.truth else {
-        let some: Vec<Pose> =
-            known.poses.iter().step_by((known.poses.len() / plan.checks).max(1)).copied().collect();
-        let alarms = lineup.alarms(&some);
-        return lineup.rows(name, &times, alarms.into_iter().map(Err));
+    let Some(truth) = &referenced.truth else {
+        let sampled_poses: Vec<Pose> = referenced
+            .poses
+            .iter()
+            .step_by((referenced.poses.len() / plan.checks).max(1))
+            .copied()
+            .collect();
+        let shares = lineup.contact_shares(&sampled_poses);
+        return lineup.rows(name, &times, shares.into_iter().map(Err));
     };
-    let thesis = known.thesis.as_ref().unwrap_or(truth);
-    let tallies =
-        lineup.check(&known.poses, Truths { true_depths: &truth.truths, thesis: &thesis.truths });
-    let of_thesis = lineup.of_the_thesis().collect::<Vec<bool>>();
-    let errors = tallies.iter().zip(of_thesis).map(|(tally, is)| {
-        let by = if is { thesis } else { truth };
-        Ok(tally.errors(by.known, by.depth))
+    let thesis = referenced.thesis.as_ref().unwrap_or(truth);
+    let stats = lineup
+        .check(&referenced.poses, Truths { true_depths: &truth.truths, thesis: &thesis.truths });
+    let uses_thesis_list = lineup.uses_thesis_magnitudes().collect::<Vec<bool>>();
+    let errors = stats.iter().zip(uses_thesis_list).map(|(method_stats, uses_thesis)| {
+        let reference = if uses_thesis { thesis } else { truth };
+        Ok(method_stats.errors(reference.known, reference.depth))
     });
     lineup.rows(name, &times, errors)
 }
 
-fn facts(known: Known<'_>, mesh: &Mesh) -> Facts {
-    let truth = known.truth;
+fn facts(referenced: ReferencedScene<'_>, mesh: &Mesh) -> Facts {
+    let truth = referenced.truth;
     Facts {
-        scene: known.scene.name,
-        about: known.scene.about,
+        scene: referenced.scene.name,
+        about: referenced.scene.description,
         path: true,
         typical: truth.as_ref().map_or([0.0; 3], |truth| truth.typical),
         known: truth.as_ref().map_or([0.0; 3], |truth| truth.known),
@@ -203,7 +227,7 @@ mod tests {
     use super::CELLS;
 
     #[test]
-    fn along_a_path_what_is_proved_keeps_its_tolerance_and_more_points_are_nearer() {
+    fn proved_depths_keep_their_tolerance_and_more_points_reduce_the_error() {
         let plan = Plan {
             points: vec![2_000, 32_000],
             path: 200,
@@ -213,21 +237,23 @@ mod tests {
             ..Plan::quick(1)
         };
         let measured = measure(&["inside", "apart"], None, &plan, &mut drop).expect("a path");
-        let of = |scene: &str, method: &str| {
-            let all = measured.rows.iter().filter(move |row| row.scene == scene);
-            all.filter(|row| row.method == method).cloned().collect::<Vec<_>>()
+        let rows_of = |scene: &str, method: &str| {
+            let scene_rows = measured.rows.iter().filter(move |row| row.scene == scene);
+            scene_rows.filter(|row| row.method == method).cloned().collect::<Vec<_>>()
         };
-        for row in of("inside", "certified") {
+        for row in rows_of("inside", "certified") {
             assert!(row.worst_depth <= row.tolerance.map(|t| t + 1e-9), "{row:?}");
         }
-        let clouds = of("inside", "cloud");
+        let clouds = rows_of("inside", "cloud");
         let errors: Vec<f64> = clouds
             .iter()
             .filter(|row| (row.sampling, row.weights) == (Some("blue"), Some(CELLS)))
             .filter_map(|row| row.err_force)
             .collect();
         assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{errors:?}");
-        assert!(of("inside", "graded").len() == 1 && of("inside", "cloud + bound").len() == 4);
+        assert!(
+            rows_of("inside", "graded").len() == 1 && rows_of("inside", "cloud + bound").len() == 4
+        );
         // Without contact nothing is evaluated, and there is no error to measure.
         for row in measured.rows.iter().filter(|row| row.scene == "apart") {
             assert!(row.missed == 0.0 && row.err_force.is_none() && row.err_depth.is_none());
