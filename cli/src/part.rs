@@ -183,7 +183,7 @@ fn sample_cloud(
 
 /// Prints the covering radius of the points and the sampling error for a tool.
 pub(crate) fn about(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
-    let Some(CoveringRadius { radius, proved }) = part.tree().covering_radius() else { return };
+    let Some(CoveringRadius { radius, proved, .. }) = part.tree().covering_radius() else { return };
     let status = if proved { "proved" } else { "estimated" };
     let bound = match tool.map(|tool| Probe::new(part, tool).sampling_error_bound()) {
         Some(Some(error)) => {

@@ -29,7 +29,7 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, 
 
 /// Prints the boxes of part and program, the nearest approach of the tool, and the ignored words.
 pub(crate) fn print(report: &VerifyReport, program: &Program, unit: Unit) {
-    let Approach { part, program: tips, distance, line, diameter, proved_clearance: keeps } =
+    let Approach { part, program: tips, distance, line, diameter, proved_clearance: keeps, .. } =
         report.approach;
     message!("part: {} in {unit}", extent(part, unit));
     message!(

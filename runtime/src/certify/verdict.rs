@@ -11,6 +11,7 @@ use nalgebra::Point3;
     "{tool} cannot be certified: it has no profile, and how fast its depth changes is not \
      proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
 )]
+#[non_exhaustive]
 pub struct NotCertifiable {
     /// The name of the tool.
     pub tool: String,
@@ -19,6 +20,7 @@ pub struct NotCertifiable {
 /// The error for a surface that the tool does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{tool} has {count} surfaces: there is none of number {}", .surface.0)]
+#[non_exhaustive]
 pub struct NoSuchSurface {
     /// The name of the tool.
     pub tool: String,
@@ -65,6 +67,7 @@ pub enum AllowanceError {
 
 /// The deepest penetration of a part's triangles into a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Penetration {
     /// The lower and upper bound of the depth, in the part's unit; 0 if nothing is inside.
     pub depth: Interval,
@@ -74,6 +77,7 @@ pub struct Penetration {
 
 /// A point of contact or closest approach between a tool and a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Witness {
     /// The point on the part, in world coordinates.
     pub point: Point3<f64>,
@@ -175,6 +179,7 @@ impl MotionDepth {
 
 /// The distance of a tool from a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Clearance {
     /// The lower and upper bound of the distance, in the part's unit; 0 in contact.
     pub distance: Interval,

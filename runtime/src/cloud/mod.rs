@@ -60,6 +60,7 @@ pub const MAX_BLUE_NOISE_POINTS: usize = 20_000_000;
 /// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the
 /// cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CoveringRadius {
     /// The covering radius or an upper bound on it, in the cloud's unit.
     pub radius: f64,

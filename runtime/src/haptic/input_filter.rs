@@ -22,6 +22,7 @@ impl Default for SpeedLimit {
 
 /// Counts of device faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct DeviceFaults {
     /// Cycles with an invalid pose: NaN, or an axis without direction.
     pub no_pose: u64,

@@ -14,6 +14,7 @@ use nalgebra::Vector6;
 
 /// Energy balance since the session began or restarted, in N·mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct EnergyBalance {
     /// The energy that the hand put in, less what it got back.
     pub put_in: f64,

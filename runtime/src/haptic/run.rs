@@ -64,6 +64,7 @@ pub type LatencyHistogram = Histogram<u64>;
 
 /// The result of a run.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LoopReport {
     /// The number of completed cycles.
     pub cycles: u64,

@@ -61,6 +61,7 @@ impl SessionSettings {
 
 /// The state after a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SessionState {
     /// The index of the cycle, from 0.
     pub cycle: u64,

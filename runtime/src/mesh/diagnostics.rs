@@ -14,6 +14,7 @@ use crate::unit::Unit;
 /// used equally often in both directions. Only then can it be decided whether a tool is wholly inside
 /// the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MeshDiagnostics {
     /// The mesh's unit of length.
     pub unit: Unit,

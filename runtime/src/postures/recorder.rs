@@ -40,6 +40,7 @@ debug!([] Recorder<'_>, "Recorder", |this| { tool: this.tool, stats: this.stats 
 
 /// Counters of a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RecorderStats {
     /// States that were taken.
     pub states: u64,

@@ -9,6 +9,7 @@ use nalgebra::{Point3, Vector3};
 
 /// A point of the part inside the tool. Vectors are in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Contact {
     /// The position, in the part's unit.
     pub point: Point3<f64>,
@@ -69,6 +70,7 @@ pub(super) fn collect(
 
 /// Sum, mean, minimum and maximum of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Summary {
     /// The sum, unweighted.
     pub sum: f64,

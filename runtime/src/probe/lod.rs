@@ -39,6 +39,7 @@ struct LastContact {
 
 /// A wrench computed within a budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LodWrench {
     /// The result of [`Probe::wrench`] at that level, except that force and torque do not jump when the level changes
     /// in contact. At that query they equal those of the query before, and over the next 32 queries they are blended to
@@ -58,6 +59,7 @@ pub struct LodWrench {
     "a budget of {budget} nodes is too small: the coarsest level of this part may take {needed}; give as many, \
      or a part with coarser levels"
 )]
+#[non_exhaustive]
 pub struct BudgetError {
     /// The given budget, in nodes.
     pub budget: usize,

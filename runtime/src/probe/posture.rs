@@ -8,6 +8,7 @@ use nalgebra::Point3;
 
 /// The deepest point of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DeepestPoint {
     /// The penetration depth, in the part's unit.
     pub depth: f64,
@@ -19,6 +20,7 @@ pub struct DeepestPoint {
 
 /// The quantities that a posture is judged by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Posture {
     /// Number of points of the part inside the tool.
     pub colliding: usize,

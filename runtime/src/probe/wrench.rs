@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 /// The wrench on a tool at a pose. Force and torque act on the tool and are given in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Wrench {
     /// The force law.
     pub law: Law,
@@ -36,6 +37,7 @@ pub struct Wrench {
 /// They are bounds, not estimates. `integral` and `energy`, whose terms are all positive, have a relative error of at
 /// most `colliding + 6` units of roundoff (2^-53).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct WrenchRounding {
     /// Upper bound on the length of the force's error.
     pub force: f64,

@@ -13,6 +13,7 @@ use nalgebra::Point3;
 
 /// Location of a program relative to the part. Lengths are in the part's unit, points in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Approach {
     /// Lowest and highest corner of the part's bounding box.
     pub part: [Point3<f64>; 2],

@@ -31,6 +31,7 @@ pub enum VerifyError {
 
 /// The result of checking a program.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct VerifyReport {
     /// Number of motions: one less than cutter locations.
     pub motions: usize,
@@ -56,6 +57,7 @@ impl VerifyReport {
 
 /// A violation in one motion, or at the first cutter location of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Finding {
     /// Index of the cutter location at which the motion ends.
     pub location: usize,

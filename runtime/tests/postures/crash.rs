@@ -10,6 +10,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
+use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::postures::{Accessibility, MapIdentity, MapRow, PostureMap, PostureRecord, Rules};
 use touchoff::{Mesh, Unit};
@@ -40,7 +41,7 @@ fn identity() -> MapIdentity {
 }
 
 /// Returns the rows of batch `k`, each of which identifies the batch.
-fn batch(k: u32, triangles: u32) -> Vec<(u32, MapRow)> {
+fn batch(k: u32, triangles: u32) -> Vec<(TriangleId, MapRow)> {
     let row = |triangle: u32| {
         let record = PostureRecord {
             tool: 0,
@@ -56,7 +57,7 @@ fn batch(k: u32, triangles: u32) -> Vec<(u32, MapRow)> {
     };
     (0..TRIANGLES_PER_BATCH)
         .map(|index| (k * 7 + index * 3) % triangles)
-        .map(|id| (id, row(id)))
+        .map(|id| (TriangleId(id), row(id)))
         .collect()
 }
 
@@ -135,7 +136,7 @@ fn acknowledged_batches_survive_a_crash() {
         let delay = Duration::from_micros(u64::from(random.next_u32() % max_delay));
         let last = run_and_kill(&path, next, (acknowledgements, delay));
         for k in next..last.map_or(next, |last| last + 1) {
-            batch(k, triangles).into_iter().for_each(|(id, row)| expected[id as usize] = Some(row));
+            batch(k, triangles).into_iter().for_each(|(id, row)| expected[id.index()] = Some(row));
             acknowledged_total += 1;
         }
         next = last.map_or(next, |last| last + 1);
@@ -144,14 +145,14 @@ fn acknowledged_batches_survive_a_crash() {
             continue;
         }
         let map = PostureMap::open(&path, &identity()).expect("it opens");
-        let rows: Vec<(u32, MapRow)> =
+        let rows: Vec<(TriangleId, MapRow)> =
             map.rows().expect("rows").map(|row| row.expect("whole")).collect();
         let mut found: Vec<Option<MapRow>> = vec![None; triangles as usize];
-        rows.into_iter().for_each(|(id, row)| found[id as usize] = Some(row));
+        rows.into_iter().for_each(|(id, row)| found[id.index()] = Some(row));
         if found != expected {
             // One more batch may be on disk, whole, that could not be acknowledged.
             let extra_batch = batch(next, triangles);
-            extra_batch.into_iter().for_each(|(id, row)| expected[id as usize] = Some(row));
+            extra_batch.into_iter().for_each(|(id, row)| expected[id.index()] = Some(row));
             assert!(found == expected, "kill {kill}, after batch {next}");
             (next, unacknowledged) = (next + 1, unacknowledged + 1);
         }

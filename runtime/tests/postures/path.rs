@@ -48,7 +48,7 @@ impl Case {
         let all: Vec<usize> = (0..sweep.batches()).collect();
         let _: ControlFlow<()> = sweep.run(&all, |batch| {
             for (id, mut row) in batch.rows {
-                access[id as usize] = std::mem::take(&mut row.access[0].directions);
+                access[id.index()] = std::mem::take(&mut row.access[0].directions);
             }
             ControlFlow::Continue(())
         });

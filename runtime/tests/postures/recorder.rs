@@ -78,7 +78,7 @@ fn run_loop(
     })
 }
 
-fn rows(map: &PostureMap) -> Vec<(u32, MapRow)> {
+fn rows(map: &PostureMap) -> Vec<(TriangleId, MapRow)> {
     map.rows().expect("rows").collect::<Result<_, _>>().expect("whole")
 }
 
@@ -117,7 +117,7 @@ fn a_session_fills_a_map_and_resumes() {
                 probe
                     .contacts(&pose)
                     .iter()
-                    .any(|contact| contact.triangle == TriangleId(*triangle))
+                    .any(|contact| contact.triangle == *triangle)
             );
             assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear);
         }
@@ -129,7 +129,7 @@ fn a_session_fills_a_map_and_resumes() {
         run_loop(workpiece, cycles, (Some(&map), capacity));
     }
     let resumed = rows(&open(folder.path(), "pieces"));
-    let covered = |rows: &[(u32, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    let covered = |rows: &[(TriangleId, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
     let shared = covered(&resumed).iter().filter(|id| covered(&whole).contains(id)).count();
     // The loop's springs start anew with each section, so some cycles differ.
     assert!(shared * 10 > 9 * whole.len(), "{shared} of {}", whole.len());

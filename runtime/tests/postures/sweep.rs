@@ -50,7 +50,7 @@ fn run(
         let _: ControlFlow<()> = sweep.run(batches, |batch: Batch| {
             stats += batch.stats;
             for (id, row) in batch.rows {
-                assert!(rows[id as usize].replace(row).is_none(), "{id} comes twice");
+                assert!(rows[id.index()].replace(row).is_none(), "{id} comes twice");
             }
             ControlFlow::Continue(())
         });
@@ -119,7 +119,7 @@ fn batches_do_not_depend_on_their_order() {
         ControlFlow::Break(7)
     });
     assert_eq!((stopped, first.len()), (ControlFlow::Break(7), 256));
-    assert!(first.iter().all(|(id, row)| rows[*id as usize].as_ref() == Some(row)));
+    assert!(first.iter().all(|(id, row)| rows[id.index()].as_ref() == Some(row)));
 }
 
 #[test]
@@ -338,7 +338,7 @@ fn directions_are_spread_evenly() {
     for hemisphere in [1, 7, 200, 2_000, 5_000] {
         let directions = Directions::spread(hemisphere);
         let count = directions.list().len();
-        assert_eq!(count, 2 * hemisphere.min(Directions::MOST));
+        assert_eq!(count, 2 * hemisphere.min(Directions::MAX_HEMISPHERE));
         let full = vec![u64::MAX; count.div_ceil(64)];
         let mut set = full.clone();
         if !count.is_multiple_of(64) {

@@ -80,7 +80,9 @@ fn parts_add_up_and_move() {
     let [a, b] = [left_part, right_part].map(|part| scene.pair_wrench(tool, part));
     assert!(a.colliding > 10 && b.colliding > 10 && a.force.x > 0.0 && b.force.x < 0.0);
     let both = scene.wrench(tool);
-    let mut sum = Wrench { force: a.force + b.force, torque: a.torque + b.torque, ..a };
+    let mut sum = a;
+    sum.force += b.force;
+    sum.torque += b.torque;
     sum.colliding += b.colliding;
     sum.integral += b.integral;
     sum.energy += b.energy;

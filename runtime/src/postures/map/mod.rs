@@ -72,6 +72,7 @@ pub struct PostureMap {
 
 /// Coverage of a part by a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Coverage {
     /// Number of triangles with a posture on record.
     pub covered: u32,

@@ -86,6 +86,7 @@ pub enum PathError {
 
 /// A path and its statistics.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ToolPath {
     /// Cutter locations, each with a flag that is set if the tool arrives in rapid traverse. The first and the
     /// last are away from the part.

@@ -56,6 +56,7 @@ pub enum SweepError {
 
 /// Rows of neighbouring triangles, with counters.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Batch {
     /// The rows, each with the id of its triangle.
     pub rows: Vec<(TriangleId, MapRow)>,

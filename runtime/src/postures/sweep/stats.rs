@@ -4,6 +4,7 @@ use std::ops::AddAssign;
 
 /// Number of postures by the rule that decided them. A posture is a triangle, a tool and a direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SweepStats {
     /// Pairs of a triangle and a tool that were processed.
     pub triangles: u64,
