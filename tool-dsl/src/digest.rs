@@ -45,8 +45,8 @@ fn meaning(tool: &CheckedTool) -> String {
     let sides = tool.extent.cell().sides.map(|side| (side.low, side.high));
     line(&(domain, model.unit.symbol(), sides));
     tool.envelope().iter().for_each(|slab| line(&(slab.low, slab.high, slab.radius)));
-    let Bounds { min_slope, lipschitz, rounding } = tool.bounds();
-    line(&(min_slope, lipschitz, rounding));
+    let Bounds { lower_slope, lipschitz, rounding } = tool.bounds();
+    line(&(lower_slope, lipschitz, rounding));
     model.outline().for_each(|piece| line(&(piece.ends, piece.circle, piece.surface)));
     model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
     for region in &model.regions {

@@ -65,7 +65,7 @@ pub enum ProgramError {
     },
     /// The program states another unit than the part's.
     #[error(
-        "{file}{}: UNITS says {said}, but the part is in {part}: load the part in {said}, or \
+        "{file}{}: UNITS says {stated}, but the part is in {part}: load the part in {stated}, or \
          post the program in {part}", .line.map(|line| format!(":{line}")).unwrap_or_default()
     )]
     Unit {
@@ -74,7 +74,7 @@ pub enum ProgramError {
         /// The line of `UNITS`, 1-based, in a program that was read.
         line: Option<usize>,
         /// The program's unit.
-        said: Unit,
+        stated: Unit,
         /// The part's unit.
         part: Unit,
     },

@@ -123,10 +123,10 @@ impl Program {
     /// If the units differ.
     pub fn check_unit(&self, part: Unit) -> Result<(), ProgramError> {
         match self.unit {
-            Some(said) if said != part => Err(ProgramError::Unit {
+            Some(stated) if stated != part => Err(ProgramError::Unit {
                 file: self.file.clone(),
                 line: self.unit_line,
-                said,
+                stated,
                 part,
             }),
             _ => Ok(()),

@@ -37,7 +37,7 @@ pub struct ToolInfo {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthBounds {
     /// `c`: depth is at least `c` times the distance to the surface. `None` if no such bound is proved.
-    pub min_slope: Option<f64>,
+    pub lower_slope: Option<f64>,
     /// `L`: depth is at most `L` times the distance to the surface, and a Lipschitz constant of the depth. `None` if no
     /// such bound is proved.
     pub lipschitz: Option<f64>,

@@ -147,8 +147,8 @@ fn info(tool: &CheckedTool) -> ToolInfo {
         },
         outline: model.outline().map(profile_segment).collect(),
         depth: {
-            let Bounds { min_slope, lipschitz, rounding } = tool.bounds();
-            DepthBounds { min_slope, lipschitz, rounding }
+            let Bounds { lower_slope, lipschitz, rounding } = tool.bounds();
+            DepthBounds { lower_slope, lipschitz, rounding }
         },
         digest: digest(tool),
     }

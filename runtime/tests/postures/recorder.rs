@@ -113,12 +113,7 @@ fn a_session_fills_a_map_and_resumes() {
             let pose = record.pose().expect("a pose");
             assert_eq!(record.tool, 1);
             assert_eq!(probe.posture(&pose).niceness, Some(record.niceness));
-            assert!(
-                probe
-                    .contacts(&pose)
-                    .iter()
-                    .any(|contact| contact.triangle == *triangle)
-            );
+            assert!(probe.contacts(&pose).iter().any(|contact| contact.triangle == *triangle));
             assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear);
         }
     }
@@ -129,7 +124,8 @@ fn a_session_fills_a_map_and_resumes() {
         run_loop(workpiece, cycles, (Some(&map), capacity));
     }
     let resumed = rows(&open(folder.path(), "pieces"));
-    let covered = |rows: &[(TriangleId, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    let covered =
+        |rows: &[(TriangleId, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
     let shared = covered(&resumed).iter().filter(|id| covered(&whole).contains(id)).count();
     // The loop's springs start anew with each section, so some cycles differ.
     assert!(shared * 10 > 9 * whole.len(), "{shared} of {}", whole.len());

@@ -82,10 +82,10 @@ fn info_has_the_proved_bounds() {
     use touchoff::Tool;
     let info = tools_library::Fig73.info();
     assert!(info.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
-    assert!(info.depth.min_slope.is_some_and(|slope| (slope - 1.0).abs() < 1e-8));
+    assert!(info.depth.lower_slope.is_some_and(|slope| (slope - 1.0).abs() < 1e-8));
     for tool in tools_library::TOOLS.iter().filter(|tool| tool.info().is_exact()) {
         let depth = tool.info().depth;
-        assert_eq!([depth.min_slope, depth.lipschitz], [Some(1.0); 2], "{}", tool.info().name);
+        assert_eq!([depth.lower_slope, depth.lipschitz], [Some(1.0); 2], "{}", tool.info().name);
     }
 }
 

@@ -179,8 +179,8 @@ fn info(tool: &CheckedTool) -> TokenStream {
     });
     let digest = Literal::u64_suffixed(digest(tool));
     let rounding = literal(tool.bounds().rounding);
-    let [min_slope, lipschitz] =
-        [tool.bounds().min_slope, tool.bounds().lipschitz].map(|bound| match bound {
+    let [lower_slope, lipschitz] =
+        [tool.bounds().lower_slope, tool.bounds().lipschitz].map(|bound| match bound {
             Some(bound) => {
                 let bound = literal(bound);
                 quote! { Some(#bound) }
@@ -208,7 +208,7 @@ fn info(tool: &CheckedTool) -> TokenStream {
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (OUTLINE, DepthBounds { min_slope: #min_slope, lipschitz: #lipschitz, rounding: #rounding }),
+                (OUTLINE, DepthBounds { lower_slope: #lower_slope, lipschitz: #lipschitz, rounding: #rounding }),
                 #digest,
             );
             &INFO

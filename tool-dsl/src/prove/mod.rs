@@ -200,7 +200,7 @@ impl Border {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The least slope of the depth toward the surface.
-    pub min_slope: Option<f64>,
+    pub lower_slope: Option<f64>,
     /// The Lipschitz constant of the depth: see [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
     /// A bound of the difference between a computed depth and one that satisfies these bounds, in the file's
@@ -217,7 +217,7 @@ impl Bounds {
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding = rounding::bound_over_tool(tool);
         let is_written = |region: &Region| region.source == DirectionSource::Written;
-        let exact = Bounds { min_slope: Some(1.0), lipschitz: Some(1.0), rounding };
+        let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding };
         if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
             return (exact, Vec::new());
         }
@@ -229,7 +229,7 @@ impl Bounds {
         }
         let [min_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
         let rounding = rounding + certificate.slack;
-        (Bounds { min_slope, lipschitz, rounding }, diagnostics)
+        (Bounds { lower_slope: min_slope, lipschitz, rounding }, diagnostics)
     }
 }
 
