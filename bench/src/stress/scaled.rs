@@ -42,7 +42,7 @@ impl<'a> Scaled<'a> {
     }
 
     fn to_unscaled(&self, p: &Place) -> Place {
-        std::array::from_fn(|k| &p[k] / &self.by)
+        std::array::from_fn(|k| &p[k] / &self.factor)
     }
 }
 
