@@ -149,11 +149,18 @@ fn with_split_exchanged(tree: &Tree<Option<usize>>, remaining: &mut usize) -> Tr
 /// The depth at a point, and the direction before normalisation.
 type Value = (f64, [f64; 3]);
 
-fn evaluation(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Value> {
-    at.set(At::point(x, y, z));
-    let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
+fn evaluation(
+    tool: &PlannedTool,
+    evaluator: &mut Evaluator<'_>,
+    [x, y, z]: [f64; 3],
+) -> Option<Value> {
+    evaluator.set(At::point(x, y, z));
+    let owner = *tool.plan.owner.at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
-    Some((at.get(region.depth), region.raw_direction.0.map(|component| at.get(component))))
+    Some((
+        evaluator.get(region.depth),
+        region.raw_direction.0.map(|component| evaluator.get(component)),
+    ))
 }
 
 fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {

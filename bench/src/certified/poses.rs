@@ -43,9 +43,9 @@ fn random_direction(rng: &mut Rng) -> Vector3<f64> {
 fn perpendicular(direction: &Vector3<f64>, rng: &mut Rng) -> Vector3<f64> {
     loop {
         let candidate = random_direction(rng);
-        let across = candidate - direction * direction.dot(&candidate);
-        if across.norm() > 0.1 {
-            return across.normalize();
+        let orthogonal = candidate - direction * direction.dot(&candidate);
+        if orthogonal.norm() > 0.1 {
+            return orthogonal.normalize();
         }
     }
 }
@@ -107,8 +107,11 @@ fn touching_pose(
     let inward =
         mesh.normal(TriangleId(id)).map_or_else(|| random_direction(rng), |normal| -normal);
     let (axis, radial) = if is_facing {
-        let across = perpendicular(&inward, rng);
-        (axial_part * inward + radial_part * across, radial_part * inward - axial_part * across)
+        let orthogonal = perpendicular(&inward, rng);
+        (
+            axial_part * inward + radial_part * orthogonal,
+            radial_part * inward - axial_part * orthogonal,
+        )
     } else {
         let axis = random_direction(rng);
         let radial = perpendicular(&axis, rng);

@@ -96,7 +96,7 @@ impl Pair<'_> {
                 rounding: 64.0 * f64::EPSILON * (brute.size + motion.displacement().norm()),
                 tolerance,
                 row: &mut row,
-                at: case,
+                case,
             };
             validation.run(verdict, &mut rng);
         }

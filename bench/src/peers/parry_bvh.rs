@@ -41,10 +41,10 @@ impl ParryBvh {
             .map(|chunk| {
                 let bounds = Bounds::of(chunk.iter().map(|point| Bounds::at(point.at)));
                 let corner = |sign: f64| {
-                    let at = |axis: usize| {
+                    let end = |axis: usize| {
                         (bounds.centre[axis] + sign * (bounds.half[axis] + MARGIN)) as f32
                     };
-                    Vector::new(at(0), at(1), at(2))
+                    Vector::new(end(0), end(1), end(2))
                 };
                 Aabb::new(corner(-1.0), corner(1.0))
             })
@@ -52,10 +52,10 @@ impl ParryBvh {
         let blocks = points
             .chunks(POINTS_PER_BLOCK)
             .map(|chunk| {
-                let coordinate = |axis: usize, at: usize| {
-                    chunk.get(at).map_or(1e6, |point| point.at[axis] as f32)
+                let coordinate = |axis: usize, index: usize| {
+                    chunk.get(index).map_or(1e6, |point| point.at[axis] as f32)
                 };
-                Block([0, 1, 2].map(|axis| std::array::from_fn(|at| coordinate(axis, at))))
+                Block([0, 1, 2].map(|axis| std::array::from_fn(|index| coordinate(axis, index))))
             })
             .collect();
         let bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);

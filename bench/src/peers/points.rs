@@ -79,7 +79,7 @@ impl Bounds {
             }
         }
         let combine = |sign: f64| [0, 1, 2].map(|axis| 0.5 * (high[axis] + sign * low[axis]));
-        Bounds { centre: combine(1.0), combine: combine(-1.0) }
+        Bounds { centre: combine(1.0), half: combine(-1.0) }
     }
 }
 
@@ -135,19 +135,19 @@ impl<N> Tree<N> {
         self.nodes.clear();
         self.nodes.push(0);
         for (depth, level) in self.levels.iter().enumerate() {
-            self.below.clear();
+            self.next_nodes.clear();
             for node in &self.nodes {
                 if !touches(&level[*node as usize]) {
                     continue;
                 }
                 if let Some(next) = self.levels.get(depth + 1) {
                     let first = *node as usize * CHILDREN;
-                    self.below.extend(first as u32..(first + CHILDREN).min(next.len()) as u32);
+                    self.next_nodes.extend(first as u32..(first + CHILDREN).min(next.len()) as u32);
                 } else {
-                    self.below.push(*node);
+                    self.next_nodes.push(*node);
                 }
             }
-            std::mem::swap(&mut self.nodes, &mut self.below);
+            std::mem::swap(&mut self.nodes, &mut self.next_nodes);
         }
         let (count, leaf) = (self.points.len(), self.leaf);
         let range = move |node: &u32| {

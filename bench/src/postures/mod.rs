@@ -119,11 +119,11 @@ pub fn measure(task: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
         .iter()
         .map(|name| find(name).map(|tool| tool as &dyn Tool))
         .collect::<Result<_, _>>()?;
-    let length = |tool: &&dyn Tool| tool.info().unit.factor_to(mesh.unit());
+    let unit_factor = |tool: &&dyn Tool| tool.info().unit.factor_to(mesh.unit());
     let stands: Vec<Stand> = tools
         .iter()
         .zip(&task.tools)
-        .map(|(tool, name)| Stand::new(name, length(tool), task.tolerance))
+        .map(|(tool, name)| Stand::new(name, unit_factor(tool), task.tolerance))
         .collect::<Result<_, _>>()?;
     let (tolerance, niceness) = (task.tolerance, task.niceness);
     let directions = Directions::spread(task.hemisphere);

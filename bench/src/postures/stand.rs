@@ -56,7 +56,7 @@ fn cross(a: P2, b: P2) -> f64 {
 
 fn unit(a: P2) -> P2 {
     let size = a[0].hypot(a[1]);
-    a.map(|part| part / size)
+    a.map(|component| component / size)
 }
 
 impl Segment {
@@ -153,7 +153,7 @@ impl Stand {
             let is_extreme = dot(before, direction) >= -factor * ROUNDING
                 && dot(after, direction) <= factor * ROUNDING;
             if is_convex_corner && is_extreme {
-                let backward = before.map(|part| -part);
+                let backward = before.map(|component| -component);
                 let inner_points = [
                     slightly_inside(segment.from, backward, before),
                     slightly_inside(segment.from, after, after),
@@ -180,7 +180,7 @@ impl Stand {
 
     /// Returns the largest radius and the height, in the part's unit.
     pub fn extent(&self) -> [f64; 2] {
-        self.oracle.extent().map(|part| part * self.length)
+        self.oracle.extent().map(|value| value * self.length)
     }
 
     /// Returns the depth of a point of the tool's frame, which is negative outside, and its distances from the cutting
@@ -192,7 +192,7 @@ impl Stand {
         };
         let (cutting_distance, non_cutting_distance) = (distance_to(true), distance_to(false));
         let depth = -self.oracle.signed_distance(point);
-        [depth, cutting_distance, non_cutting_distance].map(|part| part * self.length)
+        [depth, cutting_distance, non_cutting_distance].map(|value| value * self.length)
     }
 
     fn deepest(&self, tolerance: f64) -> Vec<f64> {

@@ -82,10 +82,10 @@ fn perpendicular(direction: Point, rng: &mut Rng) -> Point {
         let candidate = rng.direction();
         let dot =
             direction[0] * candidate[0] + direction[1] * candidate[1] + direction[2] * candidate[2];
-        let across = advance(candidate, -dot, direction);
-        let norm = across.iter().map(|component| component * component).sum::<f64>().sqrt();
+        let orthogonal = advance(candidate, -dot, direction);
+        let norm = orthogonal.iter().map(|component| component * component).sum::<f64>().sqrt();
         if norm > 0.1 {
-            return across.map(|component| component / norm);
+            return orthogonal.map(|component| component / norm);
         }
     }
 }

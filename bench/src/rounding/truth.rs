@@ -49,8 +49,8 @@ fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
 }
 
 fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
-    let part = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [part(1, 2), part(2, 0), part(0, 1)]
+    let component = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
+    [component(1, 2), component(2, 0), component(0, 1)]
 }
 
 fn subtract(a: Point, b: Point) -> Point {

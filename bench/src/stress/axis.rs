@@ -17,7 +17,7 @@ fn distances() -> [f64; 4] {
 /// `extra_heights`
 /// more heights.
 pub(super) fn axis_points(subject: &Subject, extra_heights: usize, ledger: &mut Ledger) {
-    let judge = Judge::new(subject.tool, &*subject.truth);
+    let validator = Judge::new(subject.tool, &*subject.truth);
     let corners = subject.oracle.corner_points();
     let points = if subject.oracle.revolved() {
         let height = subject.oracle.extent()[1];
@@ -34,7 +34,7 @@ pub(super) fn axis_points(subject: &Subject, extra_heights: usize, ledger: &mut 
         corners.into_iter().flat_map(points_near_planes).collect::<Vec<_>>()
     };
     for points in points.chunks(1024) {
-        judge.points(points, ledger);
+        validator.points(points, ledger);
     }
 }
 

@@ -17,13 +17,13 @@ const EXACT_SHARE: Kind = Kind::told("exactly on it", "share");
 
 /// Validates item 1.
 pub(super) fn on_borders(subject: &Subject, max_points: usize, rng: &mut Rng, ledger: &mut Ledger) {
-    let judge = Judge::new(subject.tool, &*subject.truth);
+    let validator = Judge::new(subject.tool, &*subject.truth);
     let (mut exact_count, mut count) = (0, 0);
     for bracket in brackets(subject, max_points, rng) {
         let side = nearer_end(subject, &bracket);
         count += 1;
         exact_count += usize::from(is_exact(subject, bracket.ends[side], bracket.owners));
-        let answers = judge.points(&bracket.ends, ledger);
+        let answers = validator.points(&bracket.ends, ledger);
         compare_neighbours(
             subject,
             bracket.ends[side],
@@ -33,11 +33,11 @@ pub(super) fn on_borders(subject: &Subject, max_points: usize, rng: &mut Rng, le
         );
         compare_step(subject, &bracket, &answers, ledger);
         let copies = rotated_copies(subject, bracket.ends[side], rng);
-        judge.points(&copies[1..], ledger);
+        validator.points(&copies[1..], ledger);
     }
     for corner in subject.oracle.corner_points() {
         for p in rotated_copies(subject, corner, rng) {
-            let answer = judge.points(&[p], ledger).swap_remove(0);
+            let answer = validator.points(&[p], ledger).swap_remove(0);
             let owners = owners_at(subject, p);
             compare_neighbours(subject, p, answer.as_ref(), &owners, ledger);
         }
@@ -110,7 +110,7 @@ pub(super) fn beside_borders(
     rng: &mut Rng,
     ledger: &mut Ledger,
 ) {
-    let judge = Judge::new(subject.tool, &*subject.truth);
+    let validator = Judge::new(subject.tool, &*subject.truth);
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     let mut centres: Vec<[f64; 3]> = subject.oracle.corner_points();
     centres.extend(brackets(subject, max_points, rng).into_iter().flat_map(|bracket| bracket.ends));
@@ -126,6 +126,6 @@ pub(super) fn beside_borders(
                 }
             }
         }
-        judge.points(&points, ledger);
+        validator.points(&points, ledger);
     }
 }

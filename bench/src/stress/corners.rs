@@ -20,7 +20,7 @@ pub(super) fn equidistant_points(
     rng: &mut Rng,
     ledger: &mut Ledger,
 ) {
-    let judge = Judge::new(subject.tool, &*subject.truth);
+    let validator = Judge::new(subject.tool, &*subject.truth);
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     for ([x, y, z], count) in candidate_points(subject, starts, rng) {
         let kind = if count > 3 { FOUR_FEATURES } else { THREE_FEATURES };
@@ -36,7 +36,7 @@ pub(super) fn equidistant_points(
                 }
             }
         }
-        let answers = judge.points(&points, ledger);
+        let answers = validator.points(&points, ledger);
         if let Some(answer) = &answers[0] {
             let exact_point = place(points[0]);
             for region in 0..subject.tool.info().regions.len() {

@@ -205,7 +205,7 @@ fn restated(case: &Case) -> Restated {
 
 /// Returns points on the surface, at 1e-16 to 1 of the tool's size from it, on the axis and anywhere.
 fn points(oracle: &Nearest, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
-    let surface: Vec<[f64; 2]> = oracle.profile_text().surface().into_iter().flatten().collect();
+    let surface: Vec<[f64; 2]> = oracle.profile().surface().into_iter().flatten().collect();
     let [radius, height] = oracle.extent();
     let mut points = Vec::new();
     for [d, z] in oracle.corners() {

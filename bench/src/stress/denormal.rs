@@ -15,7 +15,7 @@ const TINY_NUMBERS: [f64; 8] = [5e-324, -5e-324, 1e-323, 1e-310, -1e-310, 2.2e-3
 
 /// Validates denormal coordinates, weights and poses.
 pub(super) fn denormal(subject: &Subject, count: usize, rng: &mut Rng, ledger: &mut Ledger) {
-    let judge = Judge::new(subject.tool, &*subject.truth);
+    let validator = Judge::new(subject.tool, &*subject.truth);
     let mut tiny = || TINY_NUMBERS[rng.bits() as usize % TINY_NUMBERS.len()];
     let mut points: Vec<[f64; 3]> = (0..count).map(|_| [tiny(), tiny(), tiny()]).collect();
     // Include points near every corner, and on the lowest face.
@@ -25,7 +25,7 @@ pub(super) fn denormal(subject: &Subject, count: usize, rng: &mut Rng, ledger: &
     for [x, y, z] in corners {
         points.extend([[x, tiny(), z], [tiny(), y, z], [x, y, tiny()], [x, tiny(), tiny()]]);
     }
-    judge.points(&points, ledger);
+    validator.points(&points, ledger);
 
     for weight in [1.0, 1e-300, 1e-310, 5e-324] {
         let mut point_set = PointSet::near_tool(subject, 40, 2f64.powi(-20), rng);

@@ -45,8 +45,8 @@ const DESCRIPTIONS: [&str; ITEMS.len()] = [
 pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     for item in Item::all() {
-        let own: Vec<&Row> = rows.iter().filter(|row| row.item == item).collect();
-        if own.is_empty() {
+        let item_rows: Vec<&Row> = rows.iter().filter(|row| row.item == item).collect();
+        if item_rows.is_empty() {
             continue;
         }
         writeln!(
@@ -56,11 +56,11 @@ pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
             capitalized(item.name()),
             DESCRIPTIONS[item.0 - 1]
         )?;
-        write_worst(&own, &mut page)?;
+        write_worst(&item_rows, &mut page)?;
         match item.0 {
-            9 => write_cases(&own, &mut page)?,
-            10 => write_cases(&own, &mut page)?,
-            12 => write_checksums(&own, &mut page)?,
+            9 => write_cases(&item_rows, &mut page)?,
+            10 => write_cases(&item_rows, &mut page)?,
+            12 => write_checksums(&item_rows, &mut page)?,
             _ => {}
         }
     }
@@ -106,10 +106,12 @@ fn write_worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "| figure | cases | worst | bar | unit | tool | where |")?;
     writeln!(page, "|---|--:|--:|--:|---|---|---|")?;
     for kind in kinds {
-        let own = || rows.iter().filter(|row| row.kind == kind);
-        let cases: usize = own().map(|row| row.cases).sum();
-        let total: f64 = own().map(|row| row.worst).sum();
-        let Some(worst_row) = own().max_by(|a, b| a.worst.total_cmp(&b.worst)) else { continue };
+        let kind_rows = || rows.iter().filter(|row| row.kind == kind);
+        let cases: usize = kind_rows().map(|row| row.cases).sum();
+        let total: f64 = kind_rows().map(|row| row.worst).sum();
+        let Some(worst_row) = kind_rows().max_by(|a, b| a.worst.total_cmp(&b.worst)) else {
+            continue;
+        };
         let (value, bar) = match kind.bar {
             0.0 => (total, "0".to_owned()),
             f64::INFINITY => (worst_row.worst, "told".to_owned()),
@@ -145,10 +147,11 @@ fn write_cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     }
     writeln!(page, "| case | comes to |\n|---|---|")?;
     for name in names {
-        let own = || rows.iter().filter(|row| row.tool == name);
-        let rejection = own().find(|row| row.kind.what == "refused");
-        let missed: Vec<String> = own().filter(|row| row.missed()).map(|row| row.shown()).collect();
-        let depth = own().find(|row| row.kind.what == "depth");
+        let case_rows = || rows.iter().filter(|row| row.tool == name);
+        let rejection = case_rows().find(|row| row.kind.what == "refused");
+        let missed: Vec<String> =
+            case_rows().filter(|row| row.missed()).map(|row| row.shown()).collect();
+        let depth = case_rows().find(|row| row.kind.what == "depth");
         let outcome = match (rejection, depth) {
             _ if !missed.is_empty() => format!("**missed**: {}", code_cell(&missed.join("; "))),
             (Some(rejection), _) => format!("refused: {}", code_cell(&rejection.place)),
@@ -197,9 +200,9 @@ fn write_shares(rows: &[Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "|---|{}", "--:|".repeat(items.len()))?;
     for tool in tools {
         let share = |item: &Item| {
-            let own = rows.iter().filter(|row| row.tool == tool && row.item == *item);
+            let tool_rows = rows.iter().filter(|row| row.tool == tool && row.item == *item);
             let shares: Vec<f64> =
-                own.filter(|row| row.kind.bar.is_finite()).map(Row::share).collect();
+                tool_rows.filter(|row| row.kind.bar.is_finite()).map(Row::share).collect();
             if shares.is_empty() {
                 return String::new();
             }

@@ -55,7 +55,12 @@ pub(super) fn aligned_poses(subject: &Subject, count: usize, rng: &mut Rng, ledg
 }
 
 /// Rotates the scene as a whole.
-fn compare_rotated(subject: &Subject, scene: &PointSet, turns: &[[f64; 4]], ledger: &mut Ledger) {
+fn compare_rotated(
+    subject: &Subject,
+    scene: &PointSet,
+    rotations: &[[f64; 4]],
+    ledger: &mut Ledger,
+) {
     let evaluation = |point_set: &PointSet, pose: &Pose| {
         let part = point_set.part();
         let mut probe = Probe::new(&part, subject.tool);
@@ -72,7 +77,7 @@ fn compare_rotated(subject: &Subject, scene: &PointSet, turns: &[[f64; 4]], ledg
         values
     };
     let expected = evaluation(scene, &Pose::default());
-    for q in turns {
+    for q in rotations {
         let pose = Pose::from_quaternion(Point3::origin(), *q).expect("a unit quaternion");
         let rotated = scene.transformed(&pose, GRID);
         ledger.count(CHANGED_BITS, evaluation(&rotated, &pose) != expected, || format_pose(&pose));

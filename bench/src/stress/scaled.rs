@@ -42,7 +42,7 @@ impl<'a> Scaled<'a> {
     }
 
     fn to_unscaled(&self, p: &Place) -> Place {
-        std::array::from_fn(|k| &p[k] / &self.by)
+        std::array::from_fn(|k| &p[k] / &self.factor)
     }
 }
 
@@ -180,12 +180,12 @@ pub(super) fn scaled_scenes(
             profiled.as_ref().map_or(&*subject.truth, |profiled| profiled);
         let truth = Scaled::new(truth_of_tool, factor, max_coordinate(subject));
         let scaled_points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * factor)).collect();
-        let judge = Judge::new(&tool, &truth);
+        let validator = Judge::new(&tool, &truth);
         if largest_radius(subject) * factor > truth.scale() {
-            Judge { depth: LARGE_RADIUS_DEPTH, clearance: LARGE_RADIUS_CLEARANCE, ..judge }
+            Judge { depth: LARGE_RADIUS_DEPTH, clearance: LARGE_RADIUS_CLEARANCE, ..validator }
                 .points(&scaled_points, ledger);
         } else {
-            judge.points(&scaled_points, ledger);
+            validator.points(&scaled_points, ledger);
         }
     }
 }

@@ -190,8 +190,8 @@ pub(super) fn find_meetings(
 ) -> Vec<Meeting> {
     let features = features(tool);
     let borders = borders(&features);
-    let radius = tool.ways.iter().map(|way| way.to[0].to_f64()).fold(0.0, f64::max);
-    let height = tool.ways.iter().map(|way| way.to[1].to_f64()).fold(0.0, f64::max);
+    let radius = tool.ways.iter().map(|segment| segment.to[0].to_f64()).fold(0.0, f64::max);
+    let height = tool.ways.iter().map(|segment| segment.to[1].to_f64()).fold(0.0, f64::max);
     let mut found: Vec<Meeting> = Vec::new();
     let pairs = borders
         .iter()

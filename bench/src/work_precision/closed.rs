@@ -1,7 +1,7 @@
 //! Measurements on patches with closed-form contacts.
 
 use super::lineup::{CELLS, LabelledCloud, Lineup, Truths, labelled_clouds};
-use super::methods::Proved;
+use super::methods::CertifiedDepth;
 use super::patch::Patch;
 use super::peers;
 use super::plan::Plan;
@@ -77,7 +77,7 @@ impl Size<'_> {
     }
 
     fn check(&self, lineup: &mut Lineup<'_>, cloud: usize) -> Vec<ErrorStats> {
-        let (poses, truths) = self.placed(cloud, self.plan.placements);
+        let (poses, truths) = self.placements(cloud, self.plan.placements);
         lineup.check(&poses, Truths { true_depths: &truths, thesis: &truths })
     }
 
@@ -101,7 +101,7 @@ impl Size<'_> {
             method_stats.iter_mut().zip(other).for_each(|(stats, other)| stats.merge(other));
         }
         let accuracy = self.patch.accuracy();
-        let (poses, truths) = self.placed(self.clouds, self.plan.timed);
+        let (poses, truths) = self.placements(self.clouds, self.plan.timed);
         let times = lineup.race(&poses, self.plan.seconds);
         let max_depth = truths.iter().map(|(_, truth)| truth.depth).fold(0.0, f64::max);
         let errors =
@@ -115,7 +115,7 @@ impl Size<'_> {
         let has_peers = self.patch.touches_ball_or_flute() && self.plan.has_peers(self.from_last);
         if has_peers && let Some(cloud) = clouds.iter().find(|cloud| cloud.names == ["blue", CELLS])
         {
-            has_peers::add_points(lineup, cloud);
+            peers::add_points(lineup, cloud);
         }
     }
 

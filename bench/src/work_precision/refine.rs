@@ -130,7 +130,7 @@ impl<'a> Quadrature<'a> {
             let groups = self.quarter(pose, &active, &mut buffers);
             let total = settled + groups.iter().map(|group| group.value).sum::<Vector6<f64>>();
             history.push((buffers.evaluated, total));
-            let [force, torque] = parts(&total).map(|part| part.norm());
+            let [force, torque] = parts(&total).map(|vector| vector.norm());
             let sizes = [force, torque.max(force * MIN_LEVER_ARM * self.tool.info().radius())];
             let share = |error: &[f64; 2]| (error[0] / sizes[0]).max(error[1] / sizes[1]);
             // Groups are large, so only their indices are sorted.
@@ -163,8 +163,8 @@ impl<'a> Quadrature<'a> {
             .rfind(|(evaluated, _)| *evaluated <= buffers.evaluated / 4)
             .or(previous.first());
         let earlier = quarter_entry.map_or(Vector6::zeros(), |(_, sums)| *sums);
-        let change = parts(&(settled - earlier)).map(|part| part.norm());
-        let [force, torque] = parts(&settled).map(|part| pose.rotation() * part);
+        let change = parts(&(settled - earlier)).map(|vector| vector.norm());
+        let [force, torque] = parts(&settled).map(|vector| pose.rotation() * vector);
         Sums { force, torque, change }
     }
 
@@ -260,7 +260,7 @@ impl QuarteredPiece {
         let third = if whole.inside && pieces.iter().all(|p| p.inside) { 1.0 / 3.0 } else { 0.0 };
         let hidden: f64 = pieces.iter().map(|piece| piece.hidden).sum();
         let arm = centroid(&whole.corners).norm();
-        let [force, torque] = parts(&change).map(|part| part.norm());
+        let [force, torque] = parts(&change).map(|vector| vector.norm());
         let factor = if third > 0.0 { third } else { 1.0 };
         let error = [factor * force + hidden, factor * torque + hidden * arm * length];
         QuarteredPiece { pieces, value: sum + third * change, error }

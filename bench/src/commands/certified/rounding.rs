@@ -32,7 +32,7 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
     Ok(Section {
         title: "Beside 256 bits",
         body: about.to_owned() + &table(&rows)?,
-        missed: rows.iter().filter(|row| row.violations() > 0).map(broken).collect(),
+        missed: rows.iter().filter(|row| row.violations() > 0).map(describe_violations).collect(),
     })
 }
 
@@ -47,7 +47,7 @@ pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns a description of the violations of a family.
-fn broken(row: &Row) -> String {
+fn describe_violations(row: &Row) -> String {
     let Row { family, exceeded, off, shallow, .. } = row;
     format!(
         "{family:?}: {exceeded} upper ends exceeded, {off} witnesses off their triangles, {shallow} shallow"
@@ -57,19 +57,19 @@ fn broken(row: &Row) -> String {
 /// Returns one row per family.
 fn rows(cases: &Cases, count: u64) -> Result<Vec<Row>, std::num::TryFromIntError> {
     let chunks = usize::try_from(count.div_ceil(CHUNK))?;
-    let own = parallel::rows(chunks, |k| {
+    let chunk_rows = parallel::rows(chunks, |k| {
         let from = k as u64 * CHUNK;
-        let mut own = Family::ALL.map(Row::new);
+        let mut chunk_rows = Family::ALL.map(Row::new);
         for number in from..(from + CHUNK).min(count) {
-            cases.ask(number, &mut own);
+            cases.ask(number, &mut chunk_rows);
         }
-        own.iter().flat_map(|row| &row.shown).for_each(|text| eprintln!("{text}"));
-        own
+        chunk_rows.iter().flat_map(|row| &row.shown).for_each(|text| eprintln!("{text}"));
+        chunk_rows
     });
     let mut rows = Family::ALL.map(Row::new).to_vec();
-    for own in own {
-        for (row, own) in rows.iter_mut().zip(own) {
-            row.add(own);
+    for chunk in chunk_rows {
+        for (row, part_of_row) in rows.iter_mut().zip(chunk) {
+            row.add(part_of_row);
         }
     }
     Ok(rows)

@@ -11,7 +11,7 @@ use touchoff_bench::parallel;
 pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, Box<dyn Error>> {
     let parts = poses::parts()?;
     let names: Vec<&str> = PROFILES.iter().chain(&FIELDS).copied().collect();
-    let each = count.div_ceil(parts.len() * names.len());
+    let poses_each = count.div_ceil(parts.len() * names.len());
     let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
     let rows = parallel::rows(parts.len() * names.len(), |k| {
         let ((part, mesh), name) = (&parts[k / names.len()], names[k % names.len()]);
@@ -19,7 +19,7 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
         let subject = Subject::of(name);
         let bvh = &bvh[k / names.len()];
         let row = zoomed::Zoomed { part, mesh, bvh, tool, subject: &subject }.measure(
-            each,
+            poses_each,
             samples,
             seed + k as u64,
         );
@@ -37,7 +37,7 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
     });
 
     let about = format!(
-        "For each tool and part {each} poses with {samples} samples each where a triangle is near. Half of them are middles of triangles and of their halves, the piece that may
+        "For each tool and part {poses_each} poses with {samples} samples each where a triangle is near. Half of them are middles of triangles and of their halves, the piece that may
 have the deepest place first; the others zoom in on the deepest of these. Lengths are parts of the tool's size. *Over* is by how much a sample is above the upper
 bound, *behind* by how much the samples fall short of the lower one, which they do not know, *reached* at how many poses by no more than 1e-9 or, of the tools by
 their field or with overhangs, 1e-6. Tolerances are 1e-9 of the size, and of these 1e-6 mm; *wider* counts intervals wider than that and rounding.

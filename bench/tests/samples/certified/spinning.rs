@@ -63,10 +63,10 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     // With `a` the angle between the wall's normal and a side's, the wall's point equally far from both sides has depth
     // `h / (cos a + sin a)` if the corner extends `h` beyond the wall. It is largest when the corner points slightly
     // past the wall's normal.
-    let turns = (-1000..=1000).map(|step| 1e-5 * f64::from(step));
-    let depths = turns.map(|turn| {
-        let (sine, cosine) = (0.75f64.atan() + turn).sin_cos();
-        (25.0 * turn.cos() - 24.5) / (cosine + sine)
+    let deviations = (-1000..=1000).map(|step| 1e-5 * f64::from(step));
+    let depths = deviations.map(|deviation| {
+        let (sine, cosine) = (0.75f64.atan() + deviation).sin_cos();
+        (25.0 * deviation.cos() - 24.5) / (cosine + sine)
     });
     let depth = depths.fold(0.0, f64::max);
     assert!(

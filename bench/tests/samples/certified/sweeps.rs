@@ -155,8 +155,8 @@ fn opposite_axes_are_rejected() {
     assert_eq!(Motion::new(&up, &down), Err(MotionError::Opposite));
     let nearly = pose([1.0, 2.0, 3.0], leaning(180.0 - 1e-10));
     assert_eq!(Motion::new(&up, &nearly), Err(MotionError::Opposite));
-    let turned = motion(&up, &pose([1.0, 2.0, 3.0], leaning(179.0)));
-    assert!((turned.angle().to_degrees() - 179.0).abs() < 1e-9);
+    let motion_of_179_degrees = motion(&up, &pose([1.0, 2.0, 3.0], leaning(179.0)));
+    assert!((motion_of_179_degrees.angle().to_degrees() - 179.0).abs() < 1e-9);
 }
 
 #[test]
@@ -189,24 +189,24 @@ fn a_motion_may_stay_in_material_or_beside_an_open_sheet() {
 
 #[test]
 fn long_rapid_motions_are_decided() {
-    let far = |height: f64, to: [f64; 3]| {
+    let rapid = |height: f64, to: [f64; 3]| {
         motion(&pose([-1e6, 0.0, height], UP), &pose([1e6, 0.0, height], to))
     };
     for height in [30.0, 0.5, 1e-3] {
-        assert_eq!(sweep(&plate(), "D2Ball", &far(height, UP), 0.0), MotionVerdict::Clear);
+        assert_eq!(sweep(&plate(), "D2Ball", &rapid(height, UP), 0.0), MotionVerdict::Clear);
     }
     for depth in [1e-3, 0.5, 5.0] {
-        let found = sweep(&plate(), "D2Ball", &far(-depth, UP), 0.0);
+        let found = sweep(&plate(), "D2Ball", &rapid(-depth, UP), 0.0);
         let MotionVerdict::Touching(at, _) = found else { panic!("{depth}: {found:?}") };
         assert!((at - 0.5).abs() < 1.1e-5, "{found:?}");
     }
-    let turning = sweep(&plate(), "D2Ball", &far(30.0, leaning(150.0)), 0.0);
+    let turning = sweep(&plate(), "D2Ball", &rapid(30.0, leaning(150.0)), 0.0);
     assert_eq!(turning, MotionVerdict::Clear);
-    let aside = motion(
+    let diagonal = motion(
         &Pose::from_axis(Point3::new(1e6, 0.0, 0.0), Vector3::z()).expect("an axis"),
         &pose([0.0, 1e6, 0.0], leaning(150.0)),
     );
-    assert_eq!(sweep(&plate(), "HalfInchBallCat40", &aside, 0.0), MotionVerdict::Clear);
+    assert_eq!(sweep(&plate(), "HalfInchBallCat40", &diagonal, 0.0), MotionVerdict::Clear);
 }
 
 /// `cargo run --release -p touchoff-bench -- sweeps` checks about 10,000 motions that are proved clear.
