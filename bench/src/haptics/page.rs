@@ -58,7 +58,7 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
         ),
         |plot, (name, energies)| {
             let point = |(cycle, energy): (usize, &EnergyBalance)| {
-                [cycle as f64 / 1000.0, energy.put_in - energy.held]
+                [cycle as f64 / 1000.0, energy.input - energy.stored]
             };
             let points = energies.iter().enumerate().step_by(25).map(point).collect();
             plot.with(Series::line(*name, points))
@@ -89,11 +89,12 @@ pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
     writeln!(page, "![energy](haptics-energy.svg)\n")?;
     writeln!(page, "| | after 5 s, N·mm | generated at most | taken out |\n|---|--:|--:|--:|")?;
     for (name, energies) in &measured.tapping {
-        let Some(EnergyBalance { put_in, held, generated, taken_out }) = energies.last() else {
+        let Some(EnergyBalance { input, stored, generated, dissipated, .. }) = energies.last()
+        else {
             continue;
         };
-        let net = put_in - held;
-        writeln!(page, "| {name} | {net:.4} | {generated:.1e} | {taken_out:.1e} |")?;
+        let net = input - stored;
+        writeln!(page, "| {name} | {net:.4} | {generated:.1e} | {dissipated:.1e} |")?;
     }
     writeln!(page)?;
     writeln!(page, "## A thin sheet\n")?;

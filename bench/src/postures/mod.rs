@@ -136,7 +136,7 @@ pub fn measure(task: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
     let batches: Vec<usize> = (0..sweep.batches()).collect();
     let outcome = sweep.run(&batches, |batch| {
         tally += batch.stats;
-        batch.rows.into_iter().for_each(|(id, row)| rows[id as usize] = row);
+        batch.rows.into_iter().for_each(|(id, row)| rows[id.index()] = row);
         ControlFlow::<()>::Continue(())
     });
     debug_assert!(outcome.is_continue());

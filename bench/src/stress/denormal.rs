@@ -62,7 +62,7 @@ fn check_poses(subject: &Subject, point_set: &PointSet, ledger: &mut Ledger) {
     let largest = point_set.weights.iter().copied().fold(0.0, f64::max);
     let tree = part.tree();
     for k in 0..tree.len() {
-        let (stored, given) = (tree.weight(k), point_set.weights[tree.triangle(k) as usize]);
+        let (stored, given) = (tree.weight(k), point_set.weights[tree.triangle(k).index()]);
         let error = (stored - given).abs();
         // If the largest weight is itself denormal, a fraction of it is rounded to a denormal number.
         let bound = largest * 2f64.powi(-24) + 5e-324;

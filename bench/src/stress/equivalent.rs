@@ -7,6 +7,7 @@ use super::scene::{PointSet, ProbeCheck, compare_depths, format_pose};
 use super::translated::pose;
 use super::truth::Subject;
 use nalgebra::{Matrix3, Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::{Contact, Part, Pose, Probe, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
@@ -153,7 +154,7 @@ fn merge_clouds(
     weighted.weights[0] = 2.0;
     weighted.weights[half] = 2.0;
     let part_of = |range: std::ops::Range<usize>| {
-        let ids = range.clone().map(|k| k as u32).collect();
+        let ids = range.clone().map(|k| TriangleId(k as u32)).collect();
         let cloud = touchoff::Cloud::new(
             weighted.points[range.clone()].to_vec(),
             weighted.normals[range.clone()].to_vec(),

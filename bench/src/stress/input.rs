@@ -5,6 +5,7 @@ use super::scene::{PointSet, ProbeCheck};
 use super::translated::pose;
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::{Cloud, Mesh, Part, Pose, Probe, Sampling, Unit};
 use touchoff_tests::oracle::draw::Rng;
 
@@ -67,7 +68,7 @@ fn cloud(change: impl Fn(&mut Lists)) -> Result<String, String> {
     let mut lists = Lists {
         points: vec![Point3::origin(); 3],
         normals: vec![Vector3::z(); 3],
-        ids: vec![0, 1, 2],
+        ids: [0, 1, 2].map(TriangleId).to_vec(),
         weights: vec![1.0; 3],
     };
     change(&mut lists);
@@ -79,7 +80,7 @@ fn cloud(change: impl Fn(&mut Lists)) -> Result<String, String> {
 struct Lists {
     points: Vec<Point3<f64>>,
     normals: Vec<Vector3<f64>>,
-    ids: Vec<u32>,
+    ids: Vec<TriangleId>,
     weights: Vec<f64>,
 }
 
@@ -203,7 +204,7 @@ pub(super) fn invalid_input(item: Item) -> Vec<Row> {
 fn huge_weights(item: Item) -> Vec<Row> {
     let mut ledger = Ledger::new(item, "cloud: weight 1e300, felt");
     let points = vec![Point3::new(0.0, 0.0, 0.5); 20];
-    let ids = (0..20).collect();
+    let ids = (0..20).map(TriangleId).collect();
     let cloud = Cloud::new(points, vec![Vector3::z(); 20], ids, vec![1e300; 20], MM);
     let part = Part::from_cloud(&cloud.expect("finite weights"));
     let tool = tools_library::find("D2Ball").expect("a tool of the library");

@@ -6,6 +6,7 @@ use super::scene::{PointSet, ProbeCheck, format_pose};
 use super::translated::pose;
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::{Contact, Part, Pose, Probe, Wrench};
 use touchoff_tests::oracle::draw::Rng;
 
@@ -72,7 +73,7 @@ fn permutations(count: usize, max_orders: usize, rng: &mut Rng) -> Vec<Vec<usize
 fn reordered(point_set: &PointSet, order: &[usize]) -> Part {
     let pick = |k: &usize| (point_set.points[*k], point_set.normals[*k]);
     let (points, normals): (Vec<_>, Vec<_>) = order.iter().map(pick).unzip();
-    let ids = order.iter().map(|k| *k as u32).collect();
+    let ids = order.iter().map(|k| TriangleId(*k as u32)).collect();
     let weights = order.iter().map(|k| point_set.weights[*k]).collect();
     let cloud = touchoff::Cloud::new(points, normals, ids, weights, point_set.unit);
     Part::from_cloud(&cloud.expect("the same points"))

@@ -3,6 +3,7 @@
 use super::ledger::{Kind, Ledger};
 use super::truth::{Place, Subject, Truth};
 use nalgebra::{Point3, Vector3};
+use touchoff::TriangleId;
 use touchoff::{Cloud, Contact, Part, Pose, Probe, Tool, Unit, Wrench};
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Rng;
@@ -63,7 +64,7 @@ pub(super) struct PointSet {
 impl PointSet {
     /// Builds the part. The triangle of each point is its index.
     pub(super) fn part(&self) -> Part {
-        let ids = (0..self.points.len() as u32).collect();
+        let ids = (0..self.points.len() as u32).map(TriangleId).collect();
         let (points, normals) = (self.points.clone(), self.normals.clone());
         let cloud = Cloud::new(points, normals, ids, self.weights.clone(), self.unit);
         Part::from_cloud(&cloud.expect("points that make a cloud"))

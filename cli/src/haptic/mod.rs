@@ -291,10 +291,10 @@ fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
         start_delay_ns: Quantiles::of(&report.start_delays),
         peak_force: report.peak_wrench[0],
         peak_torque: report.peak_wrench[1],
-        energy_in: energy.put_in,
-        energy_stored: energy.held,
+        energy_in: energy.input,
+        energy_stored: energy.stored,
         energy_generated: energy.generated,
-        energy_dissipated: energy.taken_out,
+        energy_dissipated: energy.dissipated,
         faults: FaultCounts {
             no_pose: faults.no_pose,
             jumps: faults.jumps,
@@ -329,7 +329,7 @@ fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
     writeln!(
         out,
         "  energy, N·mm:     {:.4} in, {:.4} stored at the end; at most {:.2e} generated, {:.2e} dissipated",
-        energy.put_in, energy.held, energy.generated, energy.taken_out,
+        energy.input, energy.stored, energy.generated, energy.dissipated,
     )?;
     let wrong = [
         (faults.no_pose, "cycles without a pose"),

@@ -43,7 +43,7 @@ impl Table {
             write!(self.out, ",{part}")?;
         }
         let (depth, colliding) = (wrench.depth(), wrench.colliding);
-        writeln!(self.out, ",{depth},{colliding},{},{}", energy.put_in, energy.held)
+        writeln!(self.out, ",{depth},{colliding},{},{}", energy.input, energy.stored)
     }
 }
 

@@ -17,13 +17,13 @@ use nalgebra::Vector6;
 #[non_exhaustive]
 pub struct EnergyBalance {
     /// The energy that the hand put in, less what it got back.
-    pub put_in: f64,
+    pub input: f64,
     /// The energy stored in contact and coupling.
-    pub held: f64,
+    pub stored: f64,
     /// The largest excess of stored over supplied energy: the generated energy.
     pub generated: f64,
     /// The energy that the controller dissipated.
-    pub taken_out: f64,
+    pub dissipated: f64,
 }
 
 /// The energy balance and the controller's damper.
@@ -39,19 +39,19 @@ pub(super) struct Passivity {
 impl Passivity {
     /// Accounts for a displacement of the hand under the last wrench.
     pub(super) fn add_work(&mut self, wrench: &DeviceWrench, displacement: &Vector6<f64>) {
-        self.energy.put_in -= to_vector(wrench).dot(displacement);
-        self.energy.taken_out -= self.damping.dot(displacement);
+        self.energy.input -= to_vector(wrench).dot(displacement);
+        self.energy.dissipated -= self.damping.dot(displacement);
     }
 
     /// Accounts for stored energy that does not come from the hand but counts as supplied.
     pub(super) fn supply(&mut self, energy: f64) {
-        self.energy.put_in += energy;
+        self.energy.input += energy;
     }
 
     /// Updates the stored energy and the excess.
-    pub(super) fn set_stored(&mut self, held: f64) {
-        self.energy.held = held;
-        self.excess = held - self.energy.put_in;
+    pub(super) fn set_stored(&mut self, stored: f64) {
+        self.energy.stored = stored;
+        self.excess = stored - self.energy.input;
         self.energy.generated = self.energy.generated.max(self.excess);
     }
 

@@ -284,8 +284,8 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
             force -= springs(&self.limits).component_mul(displacement) * (damping / self.period);
         }
         self.poses = Some(CoupledPoses { device, tool: device, displacement: Vector6::zeros() });
-        let held = evaluations.energy * gain;
-        (evaluations, to_wrench(&force), held)
+        let stored = evaluations.energy * gain;
+        (evaluations, to_wrench(&force), stored)
     }
 
     /// Renders through the coupling: finds the pose at which contact and coupling balance, by Newton's
@@ -313,9 +313,9 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
             };
             let Some(solved) = solved else {
                 self.poses = Some(CoupledPoses { device, tool, displacement });
-                let held = evaluations.energy + energy;
+                let stored = evaluations.energy + energy;
                 self.last = Some(evaluations);
-                return (evaluations, to_wrench(&-spring_force), held);
+                return (evaluations, to_wrench(&-spring_force), stored);
             };
             let step = solved.solve(&residual);
             evaluations_done += 1;

@@ -46,7 +46,7 @@ fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: Scene
     let mut last = session.cycle(&mut device).expect("it was somewhere");
     for _ in 0..2 * CYCLES_PER_DIRECTION {
         let state = session.cycle(&mut device).expect("it was somewhere");
-        max_held = max_held.max(state.energy.held);
+        max_held = max_held.max(state.energy.stored);
         let (from, to) = (last.device, state.device);
         let by_force =
             (state.wrench_on_hand.force - last.wrench_on_hand.force).dot(&(to.tip() - from.tip()));
@@ -84,7 +84,7 @@ fn gradient_coupling_generates_at_most_the_lag_of_held_wrenches() {
                 (false, ScenePath::Inside) => 0.09,
                 (false, _) => 1e-3,
             };
-            let net = energy.put_in - energy.held;
+            let net = energy.input - energy.stored;
             assert!(net > -tolerance * max_held, "{path:?}: {net} of {max_held}");
             assert!(energy.generated < tolerance * max_held, "{path:?}: {energy:?} of {max_held}");
             assert!(energy.generated < lag, "{path:?}: {energy:?}, lag {lag}");
@@ -105,22 +105,22 @@ fn generated_energy_is_dissipated_up_to_the_damper_limit() {
     for stiffness in [0.25, 0.5, 1.0, 2.0, 4.0] {
         let [free, passive] = [false, true]
             .map(|passive| *tapping_at(&part, stiffness, direct, passive).last().expect("states"));
-        assert!(free.put_in < 0.0 && free.taken_out == 0.0, "{free:?}");
+        assert!(free.input < 0.0 && free.dissipated == 0.0, "{free:?}");
         let beyond = free.generated > limit;
         reached[usize::from(beyond)] = true;
         if beyond {
             // The controller takes out all that it may; the rest stays.
-            assert!(passive.taken_out > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
-            let remaining = free.generated - passive.taken_out;
+            assert!(passive.dissipated > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
+            let remaining = free.generated - passive.dissipated;
             assert!(passive.generated < 1.01 * remaining, "{stiffness}: {passive:?} {free:?}");
         } else {
             // The controller takes out all but the energy of the last cycles.
             assert!(passive.generated < 0.002 * free.generated, "{passive:?} {free:?}");
-            assert!(passive.taken_out > 0.998 * free.generated, "{passive:?} {free:?}");
-            assert!(passive.put_in > 0.0, "{passive:?}");
+            assert!(passive.dissipated > 0.998 * free.generated, "{passive:?} {free:?}");
+            assert!(passive.input > 0.0, "{passive:?}");
         }
     }
     assert_eq!(reached, [true; 2]);
     let coupled = *tapping(&part, None, true).last().expect("states");
-    assert!(coupled.put_in > coupled.held && coupled.generated < 2e-6, "{coupled:?}");
+    assert!(coupled.input > coupled.stored && coupled.generated < 2e-6, "{coupled:?}");
 }
