@@ -79,7 +79,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             changed.depth = graph.mul(factor, changed.depth);
         }
         3 => {
-            changed.raw_direction.0 = changed.raw_direction.0.map(|component| graph.neg(component))
+            changed.raw_direction.0 = changed.raw_direction.0.map(|component| graph.neg(component));
         }
         4 => {
             // Turns the direction by a right angle in the half plane, or exchanges components in space.

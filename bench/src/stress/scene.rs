@@ -45,7 +45,7 @@ pub(super) fn compare_depths(
         match pair {
             (Some(a), Some(b)) => ledger.see(DEPTH_DIFFERENCE, (a - b).abs() / bound, location),
             (Some(depth), None) | (None, Some(depth)) => {
-                ledger.count(UNMATCHED_CONTACT, depth > bound, location)
+                ledger.count(UNMATCHED_CONTACT, depth > bound, location);
             }
             (None, None) => {}
         }

@@ -93,7 +93,7 @@ fn sampled_depths_of_fields_are_within_the_interval() {
             match verdict {
                 PoseVerdict::Touching(_) => assert!(high > 0.0, "{name} {pose:?}"),
                 PoseVerdict::Undecided(max_depth) => {
-                    assert!(sampled <= max_depth + 1e-9, "{name} {pose:?}")
+                    assert!(sampled <= max_depth + 1e-9, "{name} {pose:?}");
                 }
                 _ => assert!(sampled == 0.0, "{name} {pose:?}: {verdict:?} at {sampled}"),
             }
