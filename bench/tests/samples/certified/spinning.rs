@@ -54,7 +54,7 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
                 .motion_depth(SurfaceId(surface), &rotation_at(-24.5), 0.0, 1e-6)
                 .expect("a surface")
             {
-                MotionDepth::Deeper { depth, most, .. } => Some((depth, most)),
+                MotionDepth::Deeper { depth, max_depth, .. } => Some((depth, max_depth)),
                 MotionDepth::Within => None,
                 other => panic!("{other:?}"),
             }
@@ -167,7 +167,7 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                             .motion_depth(SurfaceId(surface), &motion, 0.0, TOLERANCE)
                             .expect("a surface")
                         {
-                            MotionDepth::Deeper { most, .. } => most,
+                            MotionDepth::Deeper { max_depth, .. } => max_depth,
                             MotionDepth::Within | MotionDepth::Inside => TOLERANCE,
                             MotionDepth::Undecided(_) => f64::INFINITY,
                         }
