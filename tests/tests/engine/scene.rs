@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::scenes::ScenePath;
-use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit, Wrench};
+use touchoff::{Part, Pose, Probe, Sampling, Scene, Tool, Unit};
 use touchoff_tests::fixtures::{part, poses};
 
 fn fig73() -> &'static dyn Tool {
