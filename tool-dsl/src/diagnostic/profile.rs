@@ -72,7 +72,7 @@ kinds! {
         "segment that touches the axis"
         message "this segment touches the axis between the ends of the profile"
         help "keep `d` above 0 except at the two ends of the profile"
-        explain "Where a profile touches the axis between its ends, two parts of the solid would be joined by a single point.";
+        explain "Where a profile touches the axis between its ends, two pieces of the solid would meet in a single point.";
     error T0314 Clockwise
         "profile that runs clockwise"
         message "the profile runs clockwise"
