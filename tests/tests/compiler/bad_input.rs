@@ -59,11 +59,16 @@ fn rejects_sizes_beyond_the_limits() {
         let said = refused(&text);
         assert!(said.iter().all(|said| said.contains("out of range")), "{said:?}");
     }
-    assert!(refused(&tool("curve a = d^1000000000;"))[0].contains("an exponent must be a multiple"));
+    assert!(
+        refused(&tool("curve a = d^1000000000;"))[0].contains("an exponent must be a multiple")
+    );
     let tower = format!("let a = {}2{};", "2^(".repeat(30), ")".repeat(30));
     assert!(refused(&tool(&tower))[0].contains("an exponent must be a multiple"));
     let arc = "profile { start (0, 0); arc to (3, 3) radius 1e80 as ball; line to (0, 9) as top; }";
-    assert!(refused(&format!("tool T {{ units mm; {arc} }}"))[0].contains("is too flat between these points"));
+    assert!(
+        refused(&format!("tool T {{ units mm; {arc} }}"))[0]
+            .contains("is too flat between these points")
+    );
     let huge = "region far where ((d^16)^16)^16 <= 1, 0 <= z <= 1 { depth: 1 - z; }";
     let said = refused(&format!("tool T {{ units m; {huge} }}"));
     assert!(!said[0].contains("square root"), "{said:?}");
@@ -127,7 +132,10 @@ fn rejects_text_that_is_not_a_tool() {
         (tool("let 🙂 = 3;"), "`🙂` is not part of the language"),
         (tool("let a = nan;"), "unknown name `nan`"),
         (tool("let a = inf;"), "unknown name `inf`"),
-        (tool(&format!("let a = {};", "\"".repeat(100_001))), "this text has no closing quotation mark"),
+        (
+            tool(&format!("let a = {};", "\"".repeat(100_001))),
+            "this text has no closing quotation mark",
+        ),
         (tool("let a = 3\r\n").replace('\n', "\r\n"), "`;` is missing after this"),
     ] {
         assert!(refused(&text)[0].contains(word), "{word}: {:?}", refused(&text));

@@ -228,7 +228,9 @@ fn points_have_three_numbers() {
     assert!(message.contains("a decimal comma? write `0.5`"), "{message}");
     let message = refused(&format!("{BALL} direction: (1, 0); }}"));
     assert_eq!(message, "a direction in a solid has three numbers, this has 2: write `(x, y, z)`");
-    assert!(refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("this direction mixes"));
+    assert!(
+        refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("this direction mixes")
+    );
 }
 
 /// Each mistake is shown with a point of space.
@@ -241,10 +243,7 @@ fn diagnostics_include_a_point() {
     assert_eq!(message.split(')').next().map(|head| head.matches(',').count()), Some(3));
     let slab = "region a where -1 <= x <= 1, -1 <= y <= 1 { depth: min(1 - abs(x), 1 - abs(y)); }";
     let message = refused(slab);
-    assert!(
-        message.starts_with("region a has no proved bound toward large z"),
-        "{message}"
-    );
+    assert!(message.starts_with("region a has no proved bound toward large z"), "{message}");
     // A face that nothing closes.
     let open = "region a where -1 <= x <= 1, -1 <= y <= 1, 0 <= z <= 2 {
         depth: min(1 - abs(x), 1 - abs(y), z); }";

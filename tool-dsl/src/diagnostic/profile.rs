@@ -109,7 +109,7 @@ kinds! {
         without "no outline is known for which the division fails";
     note T0320 LeftOut { surface: String }
         "segment left out"
-        message "this segment of `{surface}` has no length with these params and is left out"
+        message "this segment of `{surface}` has zero length with these params and is left out"
         help "change a param if the segment should be there"
         explain "A parametric tool may shrink a segment to nothing, such as a chamfer of 0. The profile continues without it.";
 }

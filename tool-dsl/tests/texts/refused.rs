@@ -81,7 +81,10 @@ fn each_cycle_is_said_once() {
     let said: Vec<String> = refusal.errors().map(|report| report.message()).collect();
     assert_eq!(
         said,
-        ["`a` is defined in terms of itself: `a` needs `b`, `b` needs `a`", "`e` is defined in terms of itself"]
+        [
+            "`a` is defined in terms of itself: `a` needs `b`, `b` needs `a`",
+            "`e` is defined in terms of itself"
+        ]
     );
 }
 

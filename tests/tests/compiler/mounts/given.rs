@@ -49,7 +49,11 @@ fn rejects_invalid_arguments() {
         &["`BallCutter` has no param `r`", "defined by `let` here", "own.tool:6:9"],
     );
     refused(BALL, &["D = 8", "D = 9"], &["`D` is given twice", "first value"]);
-    refused(BALL, &["D = 3deg"], &["`D` is a number, but the given value is an angle", "default value"]);
+    refused(
+        BALL,
+        &["D = 3deg"],
+        &["`D` is a number, but the given value is an angle", "default value"],
+    );
     refused(
         "tool T { units mm; param D = 6mm; profile { start (0, 0); line to (D, 0), (D, 5), (0, 5) as a; } }",
         &["D = 3mm^2"],
@@ -84,7 +88,11 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     assert!((evaluation("1") - 1.0).abs() < 1e-3);
     // Where it is not, 1 would be 1 mm or 1 inch.
     let bare = mounts("mount \"body.tool\" as a with wide = 1;");
-    refused(&bare, &[], &["the unit of `wide` is ambiguous: 1mm or 1inch", "write the unit", "`1mm/1mm`"]);
+    refused(
+        &bare,
+        &[],
+        &["the unit of `wide` is ambiguous: 1mm or 1inch", "write the unit", "`1mm/1mm`"],
+    );
     // A ratio is a mere number.
     let ratio = mounts("mount \"inch_flat.tool\" as a with edge = 0.25mm/1mm;");
     let face = tool_dsl::interpret::Interpreter::new(&tool(&ratio)).at([0.0, 0.0, 0.1], 1.0);

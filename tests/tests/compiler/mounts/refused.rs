@@ -24,10 +24,7 @@ fn rejects_files_that_cannot_be_mounted() {
         "mount \"regions.tool\" as a;",
         &["`regions.tool` has regions but no profile and cannot be mounted"],
     );
-    refused(
-        "mount \"plate.tool\" as a;",
-        &["`plate.tool` is a `solid` and cannot be mounted"],
-    );
+    refused("mount \"plate.tool\" as a;", &["`plate.tool` is a `solid` and cannot be mounted"]);
     let text = mounts("mount \"er16.tool\" as a;");
     let nowhere = compile(&Source::new("t.tool", text));
     assert!(said(&nowhere).contains("this text does not come from a file"), "{}", said(&nowhere));
@@ -43,7 +40,7 @@ fn mistakes_of_mounted_files() {
     refused("mount \"no_semicolon.tool\" as a;", &["`;` is missing", " no_semicolon.tool:3:"]);
     refused(
         "mount \"off_tip.tool\" as a;",
-        &["the tool ends at z = 3, but its tip is at z = 0", "off_tip.tool:1:6"],
+        &["the tool ends at z = 3, but `tip` is at z = 0", "off_tip.tool:1:6"],
     );
     refused("mount \"bad_law.tool\" as a;", &["adds a length to an area", "bad_law.tool:3:"]);
     // Reported once, though the file is mounted twice.
@@ -108,7 +105,10 @@ fn rejects_items_that_exclude_mounts() {
     let profile = "profile { start (0, 0); line to (1, 0), (1, 5), (0, 5) as a; }";
     refused(&format!("{nut} tip z = 0;"), &["a tool with mounts cannot set `tip` or `spindle`"]);
     refused(&format!("spindle -z; {nut}"), &["a tool with mounts cannot set `tip` or `spindle`"]);
-    refused(&format!("{nut} {profile}"), &["a tool has either a `profile` or mounts", "profile of this file"]);
+    refused(
+        &format!("{nut} {profile}"),
+        &["a tool has either a `profile` or mounts", "profile of this file"],
+    );
     refused(
         &format!("{nut} region r where d <= 1 {{ depth: 1 - d; }}"),
         &["the profile already gives the depth"],
@@ -125,10 +125,7 @@ fn rejects_items_that_exclude_mounts() {
         &["two mounts are called `nut`"],
     );
     refused(&format!("{nut} mount \"body.tool\" as body at z = 10deg;"), &["`at` takes a length"]);
-    refused(
-        &format!("{nut} mount \"body.tool\" as body at z = d;"),
-        &["`at` must be constant"],
-    );
+    refused(&format!("{nut} mount \"body.tool\" as body at z = d;"), &["`at` must be constant"]);
     refused(&format!("{nut} mount \"body.tool\" at z = 10;"), &["unexpected `at`"]);
 }
 
@@ -138,9 +135,15 @@ fn laws_name_the_parts_surfaces() {
     refused(&format!("{ball} magnitude ball: 3;"), &["unknown surface `ball`"]);
     refused(
         &format!("{ball} magnitude cutter: 3;"),
-        &["unknown surface `cutter`", "write a surface of the mounted tool: `cutter.ball`, `cutter.flute`"],
+        &[
+            "unknown surface `cutter`",
+            "write a surface of the mounted tool: `cutter.ball`, `cutter.flute`",
+        ],
     );
-    refused(&format!("{ball} niceness cutter.shank: 1;"), &["`cutter.shank` is not marked `cutting`"]);
+    refused(
+        &format!("{ball} niceness cutter.shank: 1;"),
+        &["`cutter.shank` is not marked `cutting`"],
+    );
     refused(&format!("{ball} magnitude cutter.flut: 3;"), &["did you mean `cutter.flute`?"]);
 }
 

@@ -124,7 +124,7 @@ fn each_mistake_is_shown_at_its_segment() {
         ("(0, 0); line to (3, 0), (3, 5), (0, 5) as cutting;", "cutting", "cutting"),
         (
             "(0, 1); line to (3, 1), (3, 5), (0, 5) as a;",
-            "the tool ends at z = 1, but its tip is at z = 0",
+            "the tool ends at z = 1, but `tip` is at z = 0",
             "",
         ),
         ("(0, 0); line to (3, 0, 1), (3, 5), (0, 5) as a;", "two numbers", "(3, 0, 1)"),

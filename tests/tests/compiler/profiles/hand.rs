@@ -174,7 +174,11 @@ fn mistakes_of_regions_are_shown() {
     let cases = [
         (two.replace("z >= 3", "z >= 4"), "no region covers", "profile"),
         (two.replace("z >= 3", "z >= 2"), "regions low and high overlap", "high"),
-        (two.replace("3 {}", "3 { depth: 3 - d; }"), "the profile already gives the depth", "3 - d"),
+        (
+            two.replace("3 {}", "3 { depth: 3 - d; }"),
+            "the profile already gives the depth",
+            "3 - d",
+        ),
         (two.replace("as shank", "as shnak"), "unknown surface `shnak`", "shnak"),
         (
             two.replace("as ball", "as ball cutting"),

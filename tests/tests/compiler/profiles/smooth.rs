@@ -376,7 +376,10 @@ fn fans_that_do_not_fit_are_refused() {
         )
     };
     let cases = [
-        ("1.2", &["do not fit on the segment of length", "write a tangent length of at most 0."][..]),
+        (
+            "1.2",
+            &["do not fit on the segment of length", "write a tangent length of at most 0."][..],
+        ),
         ("5", &["write a tangent length of at most 0."]),
     ];
     for (w, words) in cases {
