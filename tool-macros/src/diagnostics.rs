@@ -2,8 +2,13 @@
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use tool_dsl::diagnostic::{Diagnostic, Refusal, Severity};
+use tool_dsl::diagnostic::{Diagnostic, Kind, Refusal, Severity};
 use tool_dsl::source::Sources;
+
+/// Returns message, code and remedy of an error that the arguments of a macro cause.
+pub(crate) fn with_help(kind: &Kind) -> String {
+    format!("{} [{}]\nhelp: {}", kind.message(), kind.code(), kind.help())
+}
 
 /// Returns a tool's errors, each at its location.
 pub(crate) fn errors(refusal: &Refusal, sources: &Sources, call_site: Span) -> TokenStream {

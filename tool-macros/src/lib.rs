@@ -9,6 +9,7 @@ use quote::quote;
 use std::path::{Path, PathBuf};
 use syn::parse::{Parse, ParseStream};
 use syn::{Ident, LitStr, Token};
+use tool_dsl::diagnostic::{Kind, SyntaxKind};
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile, compile_with, emit, syntax};
 
@@ -58,8 +59,8 @@ impl Call {
         if let Some(name) = &self.name
             && !syntax::is_type_name(&name.to_string())
         {
-            let message = format!("`{name}` is not a tool's name: write it as `UpperCamelCase`");
-            return Err(syn::Error::new(name.span(), message));
+            let kind = Kind::from(SyntaxKind::NotTypeName { word: name.to_string() });
+            return Err(syn::Error::new(name.span(), diagnostics::with_help(&kind)));
         }
         let shown = self.path.value();
         let source = read(&at_root(&self.path)?.join(&shown), &shown, &self.path)?;

@@ -18,7 +18,7 @@ pub(super) fn section() -> Result<Section, Box<dyn Error>> {
     let mut body = format!(
             "Every tool is broken {MUTANTS_PER_TOOL} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are
 those that are no other solid, depth or direction at 20,000 points. The rest are seen by an **error**, with a point where depth
-jumps; by a warning of a proof that stays **open**; by another **warning**, with a point where the direction is not the steepest way out; only by
+jumps; by a warning of a proof that stays **open**; by another **warning**, with a point where the direction is not that of steepest descent; only by
 **comparing** the certificate with that of the tool before it was broken, which nobody has who writes a tool; or **not**. Of no whole tool is
 anything reported.
 

@@ -15,13 +15,13 @@ fn a_code_is_explained_with_remedy_and_example() {
         assert!(output.status.success(), "{}", stderr(&output));
         let said = stdout(&output);
         assert!(said.starts_with("error[T0203]: name used above its definition\n"), "{said}");
-        assert!(said.contains("Remedy: move the definition up."), "{said}");
+        assert!(said.contains("Remedy: move the definition above this use."), "{said}");
         assert!(said.contains("Example:\n\ntool Ball {\n    units mm;\n"), "{said}");
     }
     let said = stdout(&explain(&["T0201"]));
     assert!(said.contains("- did you mean `MEANT`?\n"), "{said}");
     let said = stdout(&explain(&["T0692"]));
-    assert!(said.contains("No example: it is a defect of the compiler."), "{said}");
+    assert!(said.contains("No example: it is a bug in the compiler."), "{said}");
 }
 
 #[test]
@@ -53,5 +53,5 @@ fn rows_of_json_hold_the_same() {
     let row: serde_json::Value =
         serde_json::from_slice(&explain(&["T0203", "--json"]).stdout).expect("one object");
     assert_eq!(row["code"], "T0203");
-    assert_eq!(row["remedies"][0], "move the definition up");
+    assert_eq!(row["remedies"][0], "move the definition above this use");
 }

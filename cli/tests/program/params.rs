@@ -48,7 +48,7 @@ fn params_that_cannot_be_set_are_named() {
     );
     refused(
         &["check", &cutter, "--set", "D=3deg"],
-        &["what is given is an angle", "cutter.tool:3:"],
+        &["the given value is an angle", "cutter.tool:3:"],
     );
     refused(&["expand", &cutter, "--set", "D"], &["PARAM = VALUE"]);
     refused(&["tools", "list", "--set", "D=3"], &["`--set` gives values to the params of `.tool`"]);

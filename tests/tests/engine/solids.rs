@@ -195,15 +195,15 @@ fn a_round_solid_is_bounded_closely() {
 #[test]
 fn diagnostics_name_coordinates_of_the_other_domain() {
     let message = refused(&format!("{BALL} magnitude: d; }}"));
-    assert_eq!(message, "`d` exists in a `tool` only: in a `solid` write `hypot(x, y)`");
+    assert_eq!(message, "`d` is a coordinate of a `tool` only: in a `solid` use `hypot(x, y)`");
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
     let compiled = compile(&Source::new("t.tool", tool));
     assert_eq!(compiled.diagnostics().len(), 1);
-    assert_eq!(compiled.diagnostics()[0].message(), "`y` exists in a `solid` only");
+    assert_eq!(compiled.diagnostics()[0].message(), "`y` is a coordinate of a `solid` only");
     let help = compiled.diagnostics()[0].help();
     assert!(help.contains("`d`, the distance from the axis"), "{help}");
-    assert!(refused("let x = 3;").contains("`x` is a coordinate and cannot be defined"));
-    assert!(refused("let d = 3;").contains("`d` belongs to the language"));
+    assert!(refused("let x = 3;").contains("`x` is a coordinate and cannot be redefined"));
+    assert!(refused("let d = 3;").contains("`d` is a reserved name"));
     assert!(refused(&format!("{BALL} magnitude: 2d; }}")).contains("write `2*hypot(x, y)`"));
 }
 
@@ -231,7 +231,9 @@ fn points_have_three_numbers() {
     assert!(message.contains("a decimal comma? write `0.5`"), "{message}");
     let message = refused(&format!("{BALL} direction: (1, 0); }}"));
     assert_eq!(message, "a direction in a solid has three numbers, this has 2: write `(x, y, z)`");
-    assert!(refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("a direction of"));
+    assert!(
+        refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("this direction mixes")
+    );
 }
 
 /// Each mistake is shown with a point of space.
@@ -244,10 +246,7 @@ fn diagnostics_include_a_point() {
     assert_eq!(message.split(')').next().map(|head| head.matches(',').count()), Some(3));
     let slab = "region a where -1 <= x <= 1, -1 <= y <= 1 { depth: min(1 - abs(x), 1 - abs(y)); }";
     let message = refused(slab);
-    assert!(
-        message.starts_with("region a has no end toward large z that can be proved"),
-        "{message}"
-    );
+    assert!(message.starts_with("region a has no proved bound toward large z"), "{message}");
     // A face that nothing closes.
     let open = "region a where -1 <= x <= 1, -1 <= y <= 1, 0 <= z <= 2 {
         depth: min(1 - abs(x), 1 - abs(y), z); }";
@@ -267,8 +266,8 @@ fn rejects_files_with_another_first_keyword() {
     };
     assert_eq!(
         message("sold S { units mm; }"),
-        "a file does not begin with `sold`: did you mean `solid`?"
+        "a file begins with `tool` or `solid`, not with `sold`: did you mean `solid`?"
     );
     let two = format!("solid S {{ units mm; {BALL} }} }} solid T {{ units mm; }}");
-    assert_eq!(message(&two), "a second solid: write one tool or solid a file");
+    assert_eq!(message(&two), "this is a second solid in one file: move it to a file of its own");
 }

@@ -9,7 +9,7 @@ kinds! {
 
     error T0601 OffTip { end: FormattedNumber, tip: FormattedNumber, spindle: Option<char> }
         "tool that does not end at its tip"
-        message "the tool ends at z = {end}, but its tip is at z = {tip}"
+        message "the tool ends at z = {end}, but `tip` is at z = {tip}"
         help (spindle) {
             Some(sign) => "write `spindle {sign}z;`: the tool's other end is at the tip",
             None => "write `tip z = {end};`",

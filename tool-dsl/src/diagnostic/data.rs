@@ -181,7 +181,7 @@ pub enum SurfaceRemedy {
     Meant(String),
     /// The surfaces of the tool.
     List(Names),
-    /// The surfaces of the mounted part with this name.
+    /// The surfaces of the mounted tool with this name.
     OfPart(Names),
     /// A surface of the profile must be named.
     OfProfile,

@@ -72,7 +72,7 @@ kinds! {
         "segment that touches the axis"
         message "this segment touches the axis between the ends of the profile"
         help "keep `d` above 0 except at the two ends of the profile"
-        explain "Where a profile touches the axis between its ends, two parts of the solid would be joined by a single point.";
+        explain "Where a profile touches the axis between its ends, two pieces of the solid would meet in a single point.";
     error T0314 Clockwise
         "profile that runs clockwise"
         message "the profile runs clockwise"
@@ -109,7 +109,7 @@ kinds! {
         without "no outline is known for which the division fails";
     note T0320 LeftOut { surface: String }
         "segment left out"
-        message "this segment of `{surface}` has no length with these params and is left out"
+        message "this segment of `{surface}` has zero length with these params and is left out"
         help "change a param if the segment should be there"
         explain "A parametric tool may shrink a segment to nothing, such as a chamfer of 0. The profile continues without it.";
 }

@@ -70,7 +70,10 @@ kinds! {
     error T0412 DepthNotLength { dimension: Dimension }
         "depth that is not a length"
         message "a depth must be a length, but this is {dimension}"
-        help "write the distance to the surface as `depth:`, and this as `magnitude:`"
+        help (dimension) {
+            Dimension::Angle => "write the distance to the surface",
+            _ => "write the distance to the surface as `depth:`, and this as `magnitude:`",
+        }
         explain "Certified queries compare depths with distances. A magnitude may be a number or any power of length.";
     error T0413 AngleAsMagnitude
         "magnitude that is an angle"
@@ -91,7 +94,7 @@ kinds! {
     error T0416 UnlikeSides { left: Dimension, right: Dimension }
         "comparison of different dimensions"
         message "this compares {left} with {right}"
-        help "give both sides the same power of length; a bare number fits any"
+        help "give both sides the same power of length; a number without a unit fits any"
         explain "A comparison of different dimensions would depend on the unit.";
     error T0417 NicenessOfAll
         "niceness without a surface"

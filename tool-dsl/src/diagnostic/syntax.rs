@@ -37,17 +37,17 @@ kinds! {
     error T0106 BracketsTooDeep { most: usize }
         "brackets nested too deep"
         message "brackets are nested more than {most} levels deep"
-        help "name a part of the expression with `let` or `curve`"
+        help "name a subexpression with `let` or `curve`"
         explain "The limit counts parentheses and braces together. It bounds the stack that the compiler needs.";
     error T0107 ExpressionTooTall { most: u32 }
         "expression nested too deep"
         message "this expression nests more than {most} operations"
-        help "name a part of it with `let` or `curve`"
+        help "name a subexpression with `let` or `curve`"
         explain "Each operation on the result of another one adds a level. A sum of many terms has one level per term.";
     error T0108 ExpressionTooLong
         "sum or product too long"
         message "this sum or product has too many operands"
-        help "name a part of it with `let` or `curve`"
+        help "name a subexpression with `let` or `curve`"
         explain "A sum or product has at most 64 operands.";
     error T0109 NumberOutOfRange
         "number out of range"

@@ -399,7 +399,7 @@ impl MountedPart {
                     span,
                     MountKind::TooShort { below, z, top, length, first: height.is_zero() },
                 )
-                .and(last.name.span, "lower part")
+                .and(last.name.span, "lower tool")
             }
             JoinError::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
             JoinError::Back(segment) => {

@@ -54,23 +54,23 @@ fn read(text: String) -> Result<(), String> {
 #[test]
 fn names_defined_by_themselves_are_named_with_every_link() {
     for word in ["let", "param", "curve"] {
-        assert_eq!(refused(&format!("{word} a = a;")), "`a` is defined by itself");
+        assert_eq!(refused(&format!("{word} a = a;")), "`a` is defined in terms of itself");
         assert_eq!(
             refused(&format!("{word} a = 2*(1 + hypot(a, 3));")),
-            "`a` is defined by itself"
+            "`a` is defined in terms of itself"
         );
     }
     assert_eq!(
         refused("let a = b; let b = a;"),
-        "`a` is defined by itself: `a` needs `b`, `b` needs `a`"
+        "`a` is defined in terms of itself: `a` needs `b`, `b` needs `a`"
     );
     assert_eq!(
         refused("let a = b; curve b = d + c; param c = min(1, a); let e = c;"),
-        "`a` is defined by itself: `a` needs `b`, `b` needs `c`, `c` needs `a`"
+        "`a` is defined in terms of itself: `a` needs `b`, `b` needs `c`, `c` needs `a`"
     );
     let given = [Source::new("--set", "a=3")];
     let compiled = compile_with(&Source::new("t.tool", tool("param a = a;")), &given);
-    assert_eq!(error(&compiled), "`a` is defined by itself");
+    assert_eq!(error(&compiled), "`a` is defined in terms of itself");
 }
 
 #[test]
@@ -81,7 +81,10 @@ fn each_cycle_is_said_once() {
     let said: Vec<String> = refusal.errors().map(|report| report.message()).collect();
     assert_eq!(
         said,
-        ["`a` is defined by itself: `a` needs `b`, `b` needs `a`", "`e` is defined by itself"]
+        [
+            "`a` is defined in terms of itself: `a` needs `b`, `b` needs `a`",
+            "`e` is defined in terms of itself"
+        ]
     );
 }
 
@@ -89,8 +92,8 @@ fn each_cycle_is_said_once() {
 fn a_cycle_as_long_as_a_file_is_said_too() {
     let links: String = (0..4000).map(|k| format!("let a{k} = a{};", (k + 1) % 4000)).collect();
     let said = read(tool(&links)).expect_err("a cycle");
-    assert!(said.starts_with("`a0` is defined by itself: `a0` needs `a1`"), "{said}");
-    assert!(said.ends_with("and 3936 links more lead back to `a0`"), "{said}");
+    assert!(said.starts_with("`a0` is defined in terms of itself: `a0` needs `a1`"), "{said}");
+    assert!(said.ends_with("and 3936 more links lead back to `a0`"), "{said}");
 }
 
 /// Constants are evaluated before curves, so a constant cannot use a curve, wherever the curve is defined.
@@ -98,7 +101,7 @@ fn a_cycle_as_long_as_a_file_is_said_too() {
 fn a_curve_is_no_constant() {
     for items in ["curve c = d; let a = c;", "curve c = 3; param a = c;", "curve c = 3; tip z = c;"]
     {
-        assert!(refused(items).starts_with("`c` changes from point to point"), "{items}");
+        assert!(refused(items).starts_with("`c` varies from point to point"), "{items}");
     }
 }
 
@@ -117,7 +120,7 @@ fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
         std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
         let text = format!("tool T {{ units mm; mount \"{name}.tool\" as a; }}");
         let compiled = compile(&Source::new("t.tool", text).with_path(folder.join("t.tool")));
-        assert_eq!(error(&compiled), "`a` is defined by itself");
+        assert_eq!(error(&compiled), "`a` is defined in terms of itself");
         let Err(refusal) = &compiled.outcome else { panic!("taken") };
         let place = refusal.diagnostics()[0].span;
         assert!(compiled.sources.locate(place).0.name.ends_with(&format!("{name}.tool")));
@@ -127,7 +130,7 @@ fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
 /// Each of these once hid its nesting from the limit, or is nested exactly to the limit.
 #[test]
 fn nesting_is_limited_on_a_small_stack() {
-    let limit = "brackets are nested more than 64 deep";
+    let limit = "brackets are nested more than 64 levels deep";
     let hidden = |hide: &str| {
         let (open, close) = (format!("({hide}").repeat(5000), ")".repeat(5000));
         read(tool(&format!("let a = {open}1{close};")))
@@ -160,9 +163,9 @@ fn brackets_in_comments_and_texts_do_not_count() {
 fn comments_that_do_not_end_are_refused_at_once() {
     for count in [1, 30, 60] {
         let text = format!("tool T {{ {}", "/* ".repeat(count));
-        assert_eq!(read(text), Err("this comment does not end".to_owned()));
+        assert_eq!(read(text), Err("this comment is not closed".to_owned()));
     }
-    assert_eq!(read("tool T { /*/".to_owned()), Err("this comment does not end".to_owned()));
+    assert_eq!(read("tool T { /*/".to_owned()), Err("this comment is not closed".to_owned()));
 }
 
 #[test]
@@ -176,12 +179,12 @@ fn expressions_are_limited_on_a_small_stack() {
     assert_eq!(read(tool(&format!("let a = 1; curve c = {right};"))), Ok(()));
     for deep in [left, powers] {
         let said = read(tool(&format!("let a = 1; curve c = {deep};"))).expect_err("too deep");
-        assert!(said.contains("too many steps"), "{said}");
+        assert_eq!(said, "this expression nests more than 300 operations");
     }
     let calls =
         (0..62).fold("d".to_owned(), |inner, _| format!("max(0, {inner}{})", "+1".repeat(4)));
     let said = read(tool(&format!("curve c = {calls};"))).expect_err("too deep");
-    assert!(said.contains("too many steps"), "{said}");
+    assert_eq!(said, "this expression nests more than 300 operations");
     let tall: String = (1..=290).map(|k| format!("curve c{k} = sqrt(1 + c{});", k - 1)).collect();
     let tall = tool(&format!("curve c0 = d; {tall} niceness ball: c290;"));
     assert!(read(tall).is_err());
@@ -257,13 +260,13 @@ fn mounts_stay_below_the_tools_folder() {
     let whole = other.join("part.tool").display().to_string();
     for file in ["../other/part.tool", "../none.tool", "../../x/../y.tool", "/etc/passwd", &whole] {
         let said = error(&compile(&held(file)));
-        assert_eq!(said, format!("`{file}` does not lie below the tool's folder"));
+        assert_eq!(said, format!("`{file}` is outside the tool's folder"));
     }
     // A folder above both, set by the caller.
     let above = own.parent().expect("a folder above");
     assert!(compile(&held("../other/part.tool").with_root(above)).tool().is_some());
     let said = error(&compile(&held("/etc/passwd").with_root(above)));
-    assert_eq!(said, format!("`/etc/passwd` does not lie below `{}`", above.display()));
+    assert_eq!(said, format!("`/etc/passwd` is outside the folder `{}`", above.display()));
     assert!(error(&compile(&held("none.tool"))).starts_with("cannot read"));
 }
 
@@ -275,7 +278,7 @@ fn links_lead_nowhere_else() {
     let _ = std::fs::remove_file(&link);
     std::os::unix::fs::symlink(other.join("part.tool"), &link).expect("a link");
     let said = error(&compile(&mounting("link.tool").with_path(own.join("t.tool"))));
-    assert!(said.contains("does not lie below"), "{said}");
+    assert!(said.contains("outside the tool's folder"), "{said}");
 }
 
 /// No line of a file that is not a tool is shown.
@@ -306,9 +309,9 @@ fn devices_and_pipes_are_no_tools() {
 fn what_cannot_be_seen_is_refused_or_escaped() {
     for hidden in ["\u{1b}[31m", "\u{7f}", "\u{9b}31m", "\u{202e}", "\u{2066}", "\u{200f}"] {
         let titled = tool("").replace("tool T", &format!("tool T \"a{hidden}b\""));
-        assert!(read(titled).expect_err("refused").contains("which cannot be seen"), "{hidden:?}");
+        assert!(read(titled).expect_err("refused").contains("invisible character"), "{hidden:?}");
         let mounted = format!("tool T {{ units mm; mount \"{hidden}.tool\" as a; }}");
-        assert!(read(mounted).expect_err("refused").contains("which cannot be seen"));
+        assert!(read(mounted).expect_err("refused").contains("invisible character"));
         // A comment may contain it. It is replaced where the line or the name of the file is shown.
         let source =
             Source::new(format!("t{hidden}.tool"), tool(&format!("/*{hidden}*/ let a = b;")));
@@ -347,7 +350,7 @@ fn profiles_that_would_take_minutes_are_refused_at_once() {
         )
     };
     let smooth = |count: usize| read(format!("{} regions smooth 0.05; }}", zigzag(count)));
-    assert_eq!(smooth(200), Err("`regions smooth` of more than 128 segments".to_owned()));
+    assert_eq!(smooth(200), Err("`regions smooth` with more than 128 segments".to_owned()));
     assert_eq!(smooth(24), Ok(()));
 }
 

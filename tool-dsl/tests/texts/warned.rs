@@ -56,7 +56,7 @@ fn a_direction_that_is_not_the_steepest_way_out_is_warned_of() {
         let said = warned(&pin(&written));
         let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
         let start =
-            format!("the direction of side is {angle} from the steepest way out of its depth at (");
+            format!("the direction of side is {angle} off the steepest descent of its depth at (");
         assert!(message.starts_with(&start), "{message}");
         assert_eq!(*place, written);
     }
@@ -75,7 +75,7 @@ fn the_largest_angle_is_given_with_its_place() {
 #[test]
 fn a_direction_that_leads_inward_is_warned_of() {
     let said = warned(&pin("direction: (-1, 0);"));
-    assert!(said[0].0.starts_with("the direction of side leads straight inward at ("), "{said:?}");
+    assert!(said[0].0.starts_with("the direction of side points straight inward at ("), "{said:?}");
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn regions_of_a_profile_are_held_to_its_depth() {
     };
     let said = warned(&split("direction: (0, -1);"));
     let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
-    assert!(message.starts_with("the direction of low is 90° from"), "{message}");
+    assert!(message.starts_with("the direction of low is 90° off"), "{message}");
     assert_eq!(place, "direction: (0, -1);");
     assert_eq!(compiled(&split("direction: (0, -1);")).diagnostics().len(), 1);
     assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
@@ -118,7 +118,7 @@ fn regions_of_a_profile_are_held_to_its_depth() {
 fn niceness_that_rises_with_depth_is_warned_of() {
     let said = warned(&pin("niceness: 1 - (3 - 2*depth)/10;"));
     let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
-    assert!(message.starts_with("`niceness` of side rises with depth at ("), "{message}");
+    assert!(message.starts_with("`niceness` of side increases with depth at ("), "{message}");
     assert!(message.ends_with("), by 0.2 per mm"), "{message}");
     assert_eq!(place, "1 - (3 - 2*depth)/10");
     // One law gives one warning, even for two surfaces.
@@ -167,7 +167,7 @@ fn regions_by_hand_are_warned_of_while_they_are_compiled() {
     };
     let both = said("direction: (0, 1); niceness: depth;");
     assert_eq!(both.len(), 2, "{both:?}");
-    assert!(both[0].contains("90°") && both[1].contains("rises with depth"), "{both:?}");
+    assert!(both[0].contains("90°") && both[1].contains("increases with depth"), "{both:?}");
     assert_eq!(said("direction: (0, 1) allow oblique; niceness: depth allow rising;"), [""; 0]);
 }
 
@@ -185,14 +185,14 @@ fn what_cannot_be_allowed_is_refused_with_the_words_that_can() {
         let Err(refusal) = &compiled.outcome else { panic!("{side}") };
         let errors: Vec<_> = refusal.errors().collect();
         assert_eq!(errors.len(), 1, "{side}: {errors:?}");
-        assert_eq!(errors[0].message(), format!("`allow {written}` does not fit here"));
+        assert_eq!(errors[0].message(), format!("`allow {written}` is not valid here"));
         let span = errors[0].span;
         assert_eq!(text[span.start..span.end], format!("allow {written}"));
         let help = errors[0].help();
         assert!(help.contains("allow oblique") && help.contains("allow rising"), "{help}");
     }
     let law = compiled(&profile("magnitude: depth allow rising;"));
-    assert_eq!(law.diagnostics()[0].message(), "`allow rising` does not fit here");
+    assert_eq!(law.diagnostics()[0].message(), "`allow rising` is not valid here");
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn a_misspelt_allow_is_told_what_would_fit() {
         let compiled = compiled(&pin(side));
         let Err(refusal) = &compiled.outcome else { panic!("{side}") };
         let first = &refusal.diagnostics()[0];
-        assert_eq!(first.message(), "`alow` does not fit here");
+        assert_eq!(first.message(), "unexpected `alow`");
         assert!(first.help().contains("`allow`"), "{first:?}");
     }
 }

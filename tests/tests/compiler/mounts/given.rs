@@ -46,26 +46,30 @@ fn rejects_invalid_arguments() {
     refused(
         BALL,
         &["r = 4"],
-        &["`BallCutter` has no param `r`", "this is a `let`", "own.tool:6:9"],
+        &["`BallCutter` has no param `r`", "defined by `let` here", "own.tool:6:9"],
     );
-    refused(BALL, &["D = 8", "D = 9"], &["`D` is given twice", "first here"]);
-    refused(BALL, &["D = 3deg"], &["`D` is a number, what is given is an angle", "its default"]);
+    refused(BALL, &["D = 8", "D = 9"], &["`D` is given twice", "first value"]);
+    refused(
+        BALL,
+        &["D = 3deg"],
+        &["`D` is a number, but the given value is an angle", "default value"],
+    );
     refused(
         "tool T { units mm; param D = 6mm; profile { start (0, 0); line to (D, 0), (D, 5), (0, 5) as a; } }",
         &["D = 3mm^2"],
-        &["`D` is a length, what is given is an area"],
+        &["`D` is a length, but the given value is an area"],
     );
     refused(
         BALL,
         &["D = flute"],
-        &["unknown name `flute`", "a constant: numbers with their units"],
+        &["unknown name `flute`", "use constants only: numbers with or without a unit"],
     );
-    refused(BALL, &["D = d"], &["`d` changes from point to point"]);
-    refused(BALL, &["D = 8 flute = 9"], &["`flute` does not fit here", "PARAM = VALUE"]);
-    refused(BALL, &["D ="], &["the text ends here", "PARAM = VALUE"]);
-    refused(BALL, &["D = .5"], &["`.5` needs a digit before the point"]);
+    refused(BALL, &["D = d"], &["`d` varies from point to point"]);
+    refused(BALL, &["D = 8 flute = 9"], &["unexpected `flute`", "PARAM = VALUE"]);
+    refused(BALL, &["D ="], &["unexpected end of the text", "PARAM = VALUE"]);
+    refused(BALL, &["D = .5"], &["`.5` needs a digit before the decimal point"]);
     refused(BALL, &["D = 1/0"], &["division by zero"]);
-    refused(BALL, &["D = 2^16^2"], &["`^` does not chain"]);
+    refused(BALL, &["D = 2^16^2"], &["`^` cannot be chained"]);
 }
 
 #[test]
@@ -84,7 +88,11 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     assert!((evaluation("1") - 1.0).abs() < 1e-3);
     // Where it is not, 1 would be 1 mm or 1 inch.
     let bare = mounts("mount \"body.tool\" as a with wide = 1;");
-    refused(&bare, &[], &["is `wide` 1mm or 1inch?", "write the unit", "`1mm/1mm`"]);
+    refused(
+        &bare,
+        &[],
+        &["the unit of `wide` is ambiguous: 1mm or 1inch", "write the unit", "`1mm/1mm`"],
+    );
     // A ratio is a mere number.
     let ratio = mounts("mount \"inch_flat.tool\" as a with edge = 0.25mm/1mm;");
     let face = tool_dsl::interpret::Interpreter::new(&tool(&ratio)).at([0.0, 0.0, 0.1], 1.0);
@@ -96,6 +104,6 @@ fn params_of_mounted_files_are_linted() {
     let ball = |with: &str| mounts(&format!("mount \"ball.tool\" as a with {with};"));
     refused(&ball("Dia = 8"), &[], &["`BallCutter` has no param `Dia`", "own.tool:1:"]);
     refused(&ball("D = 8, D = 9"), &[], &["`D` is given twice"]);
-    refused(&ball("D = 3deg"), &[], &["what is given is an angle", " ball.tool:3:15"]);
+    refused(&ball("D = 3deg"), &[], &["the given value is an angle", " ball.tool:3:15"]);
     refused(&ball("D = dia"), &[], &["unknown name `dia`"]);
 }

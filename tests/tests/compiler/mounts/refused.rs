@@ -24,13 +24,10 @@ fn rejects_files_that_cannot_be_mounted() {
         "mount \"regions.tool\" as a;",
         &["`regions.tool` has regions but no profile and cannot be mounted"],
     );
-    refused(
-        "mount \"plate.tool\" as a;",
-        &["`plate.tool` is a solid without an axis and cannot be mounted"],
-    );
+    refused("mount \"plate.tool\" as a;", &["`plate.tool` is a `solid` and cannot be mounted"]);
     let text = mounts("mount \"er16.tool\" as a;");
     let nowhere = compile(&Source::new("t.tool", text));
-    assert!(said(&nowhere).contains("this text is from no file"), "{}", said(&nowhere));
+    assert!(said(&nowhere).contains("this text does not come from a file"), "{}", said(&nowhere));
 }
 
 /// A mistake in a mounted file is shown there.
@@ -43,7 +40,7 @@ fn mistakes_of_mounted_files() {
     refused("mount \"no_semicolon.tool\" as a;", &["`;` is missing", " no_semicolon.tool:3:"]);
     refused(
         "mount \"off_tip.tool\" as a;",
-        &["the tool ends at z = 3 and its tip is said to be at 0", "off_tip.tool:1:6"],
+        &["the tool ends at z = 3, but `tip` is at z = 0", "off_tip.tool:1:6"],
     );
     refused("mount \"bad_law.tool\" as a;", &["adds a length to an area", "bad_law.tool:3:"]);
     // Reported once, though the file is mounted twice.
@@ -73,24 +70,24 @@ fn rejects_mount_heights_that_do_not_join() {
     let on_ball = |at: &str| {
         format!("mount \"ball.tool\" as cutter; mount \"er16.tool\" as nut at z = {at};")
     };
-    refused(&on_ball("60"), &["`cutter` is 50 long and cannot stick out 60", "own.tool:1:"]);
-    refused(&on_ball("0"), &["`nut` at z = 0 does not lie above `cutter`"]);
-    refused(&on_ball("-3"), &["does not lie above"]);
+    refused(&on_ball("60"), &["`cutter` is only 50 long and cannot stick out 60", "own.tool:1:"]);
+    refused(&on_ball("0"), &["`nut` at z = 0 is not above `cutter`"]);
+    refused(&on_ball("-3"), &["is not above"]);
     refused(
         "mount \"ball.tool\" as a; mount \"er16.tool\" as b at z = 30; mount \"body.tool\" as c at z = 60;",
         &["`b` ends at z = 47.5 and does not reach z = 60"],
     );
     refused(
         "mount \"ball.tool\" as a; mount \"er16.tool\" as b at z = 30; mount \"body.tool\" as c at z = 20;",
-        &["`c` at z = 20 does not lie above `b` at z = 30", "from the tip up"],
+        &["`c` at z = 20 is not above `b` at z = 30", "from the tip up"],
     );
     refused(
         "mount \"waisted.tool\" as a; mount \"er16.tool\" as b at z = 4;",
-        &["the plane z = 4 cuts `a` more than once", "waisted.tool:", "here it comes back"],
+        &["the plane z = 4 cuts `a` more than once", "waisted.tool:", "second crossing"],
     );
     refused(
         "mount \"pointed.tool\" as a; mount \"er16.tool\" as b at z = 10;",
-        &["`a` comes to a point at z = 10"],
+        &["`a` has radius 0 at z = 10"],
     );
     refused(
         "mount \"er16.tool\" as a; mount \"ball.tool\" as b at z = 10;",
@@ -106,30 +103,30 @@ fn rejects_mount_heights_that_do_not_join() {
 fn rejects_items_that_exclude_mounts() {
     let nut = "mount \"er16.tool\" as nut;";
     let profile = "profile { start (0, 0); line to (1, 0), (1, 5), (0, 5) as a; }";
-    refused(&format!("{nut} tip z = 0;"), &["mounts bring their own tip and spindle"]);
-    refused(&format!("spindle -z; {nut}"), &["mounts bring their own tip and spindle"]);
-    refused(&format!("{nut} {profile}"), &["a tool has a profile or mounts", "the profile"]);
+    refused(&format!("{nut} tip z = 0;"), &["a tool with mounts cannot set `tip` or `spindle`"]);
+    refused(&format!("spindle -z; {nut}"), &["a tool with mounts cannot set `tip` or `spindle`"]);
+    refused(
+        &format!("{nut} {profile}"),
+        &["a tool has either a `profile` or mounts", "profile of this file"],
+    );
     refused(
         &format!("{nut} region r where d <= 1 {{ depth: 1 - d; }}"),
-        &["`depth` is the profile's here"],
+        &["the profile already gives the depth"],
     );
-    refused("mount \"er16.tool\" as nut cutting;", &["a mount is not `cutting`"]);
-    refused("mount \"er16.tool\" as cutting;", &["no part is called `cutting`"]);
-    refused("mount \"er16.tool\" as nut at z = 3;", &["the first mount keeps its place"]);
+    refused("mount \"er16.tool\" as nut cutting;", &["a mount cannot be marked `cutting`"]);
+    refused("mount \"er16.tool\" as cutting;", &["a mount cannot be called `cutting`"]);
+    refused("mount \"er16.tool\" as nut at z = 3;", &["the first mount cannot have a position"]);
     refused(
         &format!("{nut} mount \"body.tool\" as body;"),
-        &["where along the axis does `body` begin?"],
+        &["mount `body` has no position along the axis"],
     );
     refused(
         &format!("{nut} mount \"body.tool\" as nut at z = 10;"),
         &["two mounts are called `nut`"],
     );
     refused(&format!("{nut} mount \"body.tool\" as body at z = 10deg;"), &["`at` takes a length"]);
-    refused(
-        &format!("{nut} mount \"body.tool\" as body at z = d;"),
-        &["`at` takes constants only"],
-    );
-    refused(&format!("{nut} mount \"body.tool\" at z = 10;"), &["`at` does not fit here"]);
+    refused(&format!("{nut} mount \"body.tool\" as body at z = d;"), &["`at` must be constant"]);
+    refused(&format!("{nut} mount \"body.tool\" at z = 10;"), &["unexpected `at`"]);
 }
 
 #[test]
@@ -138,9 +135,15 @@ fn laws_name_the_parts_surfaces() {
     refused(&format!("{ball} magnitude ball: 3;"), &["unknown surface `ball`"]);
     refused(
         &format!("{ball} magnitude cutter: 3;"),
-        &["unknown surface `cutter`", "name a surface of the part: `cutter.ball`, `cutter.flute`"],
+        &[
+            "unknown surface `cutter`",
+            "write a surface of the mounted tool: `cutter.ball`, `cutter.flute`",
+        ],
     );
-    refused(&format!("{ball} niceness cutter.shank: 1;"), &["`cutter.shank` does not cut"]);
+    refused(
+        &format!("{ball} niceness cutter.shank: 1;"),
+        &["`cutter.shank` is not marked `cutting`"],
+    );
     refused(&format!("{ball} magnitude cutter.flut: 3;"), &["did you mean `cutter.flute`?"]);
 }
 

@@ -23,23 +23,23 @@ fn each_mistake_is_shown_at_its_segment() {
         ),
         (
             "(1, 0); line to (3, 0), (3, 20), (0, 20) as a;",
-            "begins at (1, 0), not on the axis",
+            "starts at (1, 0), not on the axis",
             "(1, 0)",
         ),
         ("(0, 20); line to (3, 20), (3, 0), (0, 0) as a;", "runs clockwise", "(3, 20)"),
         (
             "(0, 0); line to (4, 0), (1, 5), (4, 5), (1, 1), (0, 9) as a;",
-            "crosses that one at (2.33333, 2.77778)",
+            "crosses another one at (2.33333, 2.77778)",
             "(1, 1)",
         ),
         (
             "(0, 0); line to (4, 0), (4, 5), (2, 5), (2, 0), (1, 0), (1, 9), (0, 9) as a;",
-            "touches that one at (2, 0)",
+            "touches another one at (2, 0)",
             "(2, 0)",
         ),
         (
             "(0, 0); line to (4, 0), (4, 2), (3, 2), (4, 1), (5, 6), (0, 6) as a;",
-            "touches that one at (4, 1)",
+            "touches another one at (4, 1)",
             "(4, 1)",
         ),
         (
@@ -47,16 +47,16 @@ fn each_mistake_is_shown_at_its_segment() {
             "this segment",
             "line to (0, 9)",
         ),
-        ("(0, 0); line to (3, 0), (3, 0), (3, 5), (0, 5) as a;", "has no length", "(3, 0)"),
+        ("(0, 0); line to (3, 0), (3, 0), (3, 5), (0, 5) as a;", "has zero length", "(3, 0)"),
         (
             "(0, 0); arc to (0, 0) radius 3 as a; line to (3, 5), (0, 5) as a;",
-            "has no length",
+            "has zero length",
             "arc to (0, 0)",
         ),
         ("(0, 0); line to (0, 2), (3, 2), (3, 5), (0, 5) as a;", "lies on the axis", "(0, 2)"),
         (
             "(0, 0); line to (3, 0), (3, 5), (3.0000000005, 9), (0, 9) as a;",
-            "turns by less than 1e-9 at (3, 5)",
+            "turns by less than 1e-9 rad at (3, 5)",
             "(3.0000000005, 9)",
         ),
         (
@@ -97,34 +97,34 @@ fn each_mistake_is_shown_at_its_segment() {
         ),
         (
             "(0, 0); arc to (3, 3) center (0, 3.02) as a; line to (0, 3) as b;",
-            "the arc's ends are 3.02 and ",
+            "the arc starts 3.02 from its centre but ends ",
             "arc to",
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) radius 2 as b; line to (0, 5) as c;",
-            "no arc of radius 2 spans a chord of 5",
+            "a radius of 2 is too small: the end points are 5 apart",
             "arc to",
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) radius -4 as b; line to (0, 5) as c;",
-            "an arc's radius is more than 0",
+            "the radius of an arc must be greater than 0",
             "-4",
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) center (5, 2.5) as b; line to (0, 5) as c;",
-            "this arc is concave: its centre (5, 2.5)",
+            "this arc is not marked `concave`, but its centre (5, 2.5)",
             "arc to",
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) center (1, 2.5) concave as b; line to (0, 5) as c;",
-            "this arc is not concave",
+            "this arc is marked `concave`",
             "concave",
         ),
         ("(0, 0); line to (3, 0) as a cutting; line to (3, 5), (0, 5) as a;", "`a` is ", "a"),
         ("(0, 0); line to (3, 0), (3, 5), (0, 5) as cutting;", "cutting", "cutting"),
         (
             "(0, 1); line to (3, 1), (3, 5), (0, 5) as a;",
-            "the tool ends at z = 1 and its tip is said to be at 0",
+            "the tool ends at z = 1, but `tip` is at z = 0",
             "",
         ),
         ("(0, 0); line to (3, 0, 1), (3, 5), (0, 5) as a;", "two numbers", "(3, 0, 1)"),

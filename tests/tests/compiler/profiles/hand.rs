@@ -172,33 +172,37 @@ fn mistakes_of_regions_are_shown() {
     let two = "region low as ball where z <= 3 {} region high as shank where z >= 3 {}";
     assert!(tool(&text(false, two)).is_ok());
     let cases = [
-        (two.replace("z >= 3", "z >= 4"), "nothing covers", "profile"),
+        (two.replace("z >= 3", "z >= 4"), "no region covers", "profile"),
         (two.replace("z >= 3", "z >= 2"), "regions low and high overlap", "high"),
-        (two.replace("3 {}", "3 { depth: 3 - d; }"), "`depth` is the profile's here", "3 - d"),
+        (
+            two.replace("3 {}", "3 { depth: 3 - d; }"),
+            "the profile already gives the depth",
+            "3 - d",
+        ),
         (two.replace("as shank", "as shnak"), "unknown surface `shnak`", "shnak"),
         (
             two.replace("as ball", "as ball cutting"),
-            "the profile says which surfaces cut",
+            "the profile already tells which surfaces cut",
             "cutting",
         ),
-        (two.to_owned() + " region far where z >= 30 {}", "region far has no point", "far"),
+        (two.to_owned() + " region far where z >= 30 {}", "region far contains no point", "far"),
         (
             two.to_owned() + " region never where z <= 1, z >= 2 {}",
-            "region never has no point",
+            "region never contains no point",
             "never",
         ),
         (
             two.to_owned() + " region late where z >= 15 {}",
-            "region late never wins a point: high, listed before it, covers it",
+            "region late has no points of its own: high, listed before it, covers it",
             "late",
         ),
         (two.replace("region high", "region low"), "two regions are called `low`", "low"),
         (
             two.replace("3 {}", "3 { direction: (0, 0); }"),
-            "the direction of low vanishes",
+            "the direction of low is the zero vector",
             "direction: (0, 0)",
         ),
-        (two.replace("z >= 3 {}", "z >= 3 { niceness: 1; }"), "does not cut", "1"),
+        (two.replace("z >= 3 {}", "z >= 3 { niceness: 1; }"), "is not marked `cutting`", "1"),
         (
             two.replace("z >= 3 {}", "z >= 3 { magnitude: d - 1; }"),
             "`magnitude` of high is -",

@@ -9,6 +9,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
@@ -25,7 +26,7 @@ const SHOWN: usize = 4;
 fn tried(outline: &Outline) -> Result<Tally, Flaw> {
     let text = outline.text();
     let run = || {
-        let tool = tool(&text).map_err(|message| (refusal(&message), message))?;
+        let tool = tool(&text).map_err(|message| (refusal(&text), message))?;
         let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
         compare(outline, (&tool, &planned), POINTS, &mut Rng::new(1))
     };
@@ -37,11 +38,13 @@ fn is_proved(outline: &Outline) -> bool {
     tool(&outline.text()).is_ok_and(|tool| Certificate::of(&tool).is_exact())
 }
 
-/// Returns the kind of a refusal, by its words.
-fn refusal(message: &str) -> &'static str {
-    if message.contains("no curve tells") {
-        "refused: no curve tells"
-    } else if message.contains("could not be divided") {
+/// Returns the kind of a refusal, by the codes of its diagnostics.
+fn refusal(text: &str) -> &'static str {
+    let compiled = compile(&Source::new("t.tool", text));
+    let has = |code: &str| compiled.diagnostics().iter().any(|report| report.code() == code);
+    if has("T0607") {
+        "refused: features too close together"
+    } else if has("T0319") {
         "refused: not divided"
     } else {
         "refused: not understood"

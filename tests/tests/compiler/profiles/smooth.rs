@@ -359,10 +359,10 @@ fn a_smooth_tip_points_along_the_axis() {
 fn fans_that_do_not_fit_are_refused() {
     let with = |w: &str| FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
     let cases = [
-        ("1.5", &["do not fit on the edge of length 2", "(3, 11)", "at most 1"][..]),
-        ("1.0001", &["do not fit on the edge of length 2", "at most 1"]),
-        ("0", &["a tangent length is more than 0"]),
-        ("-1", &["a tangent length is more than 0"]),
+        ("1.5", &["do not fit on the segment of length 2", "(3, 11)", "at most 1"][..]),
+        ("1.0001", &["do not fit on the segment of length 2", "at most 1"]),
+        ("0", &["the tangent length must be more than 0"]),
+        ("-1", &["the tangent length must be more than 0"]),
     ];
     for (w, words) in cases {
         let message = tool(&with(w)).expect_err("too long");
@@ -376,8 +376,11 @@ fn fans_that_do_not_fit_are_refused() {
         )
     };
     let cases = [
-        ("1.2", &["do not fit on the edge of length", "write at most 0."][..]),
-        ("5", &["write at most 0."]),
+        (
+            "1.2",
+            &["do not fit on the segment of length", "write a tangent length of at most 0."][..],
+        ),
+        ("5", &["write a tangent length of at most 0."]),
     ];
     for (w, words) in cases {
         let message = tool(&round(w)).expect_err("too long");
