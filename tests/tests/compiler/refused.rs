@@ -1,6 +1,6 @@
 //! Texts that once were accepted wrongly, took forever or took the process down.
 
-use tool_dsl::diagnostic::any_error;
+use tool_dsl::diagnostic::{Diagnostic, any_error};
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile, emit};
 use touchoff::{Pose, PoseError};
@@ -9,11 +9,16 @@ fn compiled(items: &str) -> Compiled {
     compile(&Source::new("t.tool", format!("tool T {{ units mm; {items} }}")))
 }
 
-/// Returns the messages of a text that must be refused.
-fn refused(items: &str) -> String {
+/// Returns the codes of a tool's diagnostics, in the order of the text.
+fn codes(compiled: &Compiled) -> Vec<&'static str> {
+    compiled.diagnostics().iter().map(Diagnostic::code).collect()
+}
+
+/// Returns the codes of a text that must be refused.
+fn refused(items: &str) -> Vec<&'static str> {
     let compiled = compiled(items);
     assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
-    compiled.diagnostics().iter().map(|r| r.message()).collect::<Vec<_>>().join("; ")
+    codes(&compiled)
 }
 
 /// A sum whose second part is no constant is computed before it is compared.
@@ -32,10 +37,10 @@ fn an_expanded_sphere_compiles() {
 /// A curve without a value beyond d = 3 has no side there.
 #[test]
 fn a_curve_that_is_undefined_somewhere_is_refused() {
-    let message = refused(
+    let found = refused(
         "curve s = sqrt(9 - d^2); region core where s >= 1, 0 <= z <= 5 { depth: min(z, 5 - z); }",
     );
-    assert!(message.contains("square root of a negative number"), "{message}");
+    assert!(found.contains(&"T0611"), "{found:?}");
 }
 
 /// No part of the tool lies outside its slabs, even a last sliver.
@@ -55,7 +60,7 @@ fn small_tools_are_linted_as_thoroughly() {
         region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
         region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
     let compiled = compile(&Source::new("t.tool", text));
-    assert!(compiled.diagnostics().iter().any(|report| report.code() == "T0608"));
+    assert!(codes(&compiled).contains(&"T0608"));
 }
 
 #[test]
@@ -70,15 +75,18 @@ fn rejects_tools_beyond_the_limits() {
                 "region r where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c{count}; }}"
             )
     };
-    assert!(
-        refused(&chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000))
-            .contains("nested too deeply")
-    );
-    assert!(refused(&format!("let a = 1{};", "+1".repeat(100_000))).contains("too many operands"));
-    assert!(refused("let a = 1e300000000;").contains("out of range"));
-    assert!(refused("let a = ((2^16)^16)^16;").contains("out of range"));
-    assert!(refused("let a = tan(90deg);").contains("right angle"));
-    assert!(refused(&"/*".repeat(100_000)).contains("nested"));
+    let steps = chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000);
+    for (items, code) in [
+        (steps.as_str(), "T0221"),
+        (&format!("let a = 1{};", "+1".repeat(100_000)), "T0108"),
+        ("let a = 1e300000000;", "T0109"),
+        ("let a = ((2^16)^16)^16;", "T0219"),
+        ("let a = tan(90deg);", "T0234"),
+        (&"/*".repeat(100_000), "T0105"),
+    ] {
+        let found = refused(items);
+        assert!(found.contains(&code), "{code} is not in {found:?}");
+    }
     // Doubling is no growth: the polynomial of a shared sum is made once.
     let doubled = "curve c0 = d;".to_owned()
         + &(1..=28).map(|k| format!("curve c{k} = c{0} + c{0};", k - 1)).collect::<String>()
@@ -90,10 +98,10 @@ fn rejects_tools_beyond_the_limits() {
 /// One mistake is reported once, however often the name it defines is used.
 #[test]
 fn consequential_errors_are_not_reported() {
-    let message = refused(
+    let found = refused(
         "let a = 1/0; let b = a + 1; region r where hypot(d, z - b) <= a { depth: a - d; }",
     );
-    assert_eq!(message, "division by zero");
+    assert_eq!(found, ["T0224"]);
 }
 
 #[test]
@@ -105,21 +113,18 @@ fn rejects_a_pose_beyond_the_coordinate_limit() {
 /// Warnings accompany a tool that is accepted.
 #[test]
 fn warnings_do_not_reject_a_tool() {
-    let said = |items: &str| {
+    let warnings = |items: &str| {
         let compiled = compiled(items);
         assert!(compiled.tool().is_some(), "{items}");
-        compiled.diagnostics().iter().map(|report| report.message()).collect::<Vec<_>>().join("; ")
+        codes(&compiled)
     };
     let ball =
         |depth: &str| format!("region ball where hypot(d, z - 3) <= 3 {{ depth: {depth}; }}");
     let exact = ball("3 - hypot(d, z - 3)");
-    assert_eq!(said(&exact), "");
-    assert_eq!(said(&format!("let neck = 3; {exact}")), "`neck` is never used");
-    let root = said(&ball("sqrt(9 - d^2 - (z - 3)^2)"));
-    assert!(root.starts_with("`depth` of ball has an infinite slope at ("), "{root}");
-    let steep = said(&ball("1000*(3 - hypot(d, z - 3))"));
-    assert_eq!(steep, "");
-    let idle =
-        said(&format!("{exact} region far where hypot(d, z - 3) <= 3, z >= 30 {{ depth: z; }}"));
-    assert!(idle.starts_with("region far contains none of the"), "{idle}");
+    assert_eq!(warnings(&exact), [""; 0]);
+    assert_eq!(warnings(&format!("let neck = 3; {exact}")), ["T0207"]);
+    assert_eq!(warnings(&ball("sqrt(9 - d^2 - (z - 3)^2)")), ["T0618"]);
+    assert_eq!(warnings(&ball("1000*(3 - hypot(d, z - 3))")), [""; 0]);
+    let idle = format!("{exact} region far where hypot(d, z - 3) <= 3, z >= 30 {{ depth: z; }}");
+    assert_eq!(warnings(&idle), ["T0610"]);
 }
