@@ -3,7 +3,6 @@
 mod api;
 mod bad_input;
 mod certificates;
-mod compile_fail;
 mod compile_pass;
 mod drawings;
 mod expressions;
