@@ -2,7 +2,7 @@
 
 use crate::checked::CheckedTool;
 use crate::domain::Domain;
-use crate::expr::{Id, Node};
+use crate::expr::{Coord, Id, Node};
 use crate::plan::Tree;
 use crate::prove::Bounds;
 use siphasher::sip::SipHasher24;
@@ -61,15 +61,38 @@ fn meaning(tool: &CheckedTool) -> String {
         match model.graph.node(*id) {
             // The rounded value, as in the generated code.
             Node::Const(value) => line(&value.to_f64()),
-            Node::Coord(coord) => line(coord),
             node => {
                 let operands: Vec<usize> = node.operands().map(index).collect();
-                let kind = format!("{node:?}");
-                line(&(kind.split(['(', ' ']).next(), operands));
+                line(&(operation(node), operands));
             }
         }
     }
     text
+}
+
+/// Returns the word for an operation or a coordinate.
+fn operation(node: &Node) -> &'static str {
+    match node {
+        Node::Const(_) => "constant",
+        Node::Coord(Coord::X) => "x",
+        Node::Coord(Coord::Y) => "y",
+        Node::Coord(Coord::Z) => "z",
+        Node::Coord(Coord::D) => "d",
+        Node::Coord(Coord::Q) => "d squared",
+        Node::Coord(Coord::Length) => "length",
+        Node::Coord(Coord::PerLength) => "reciprocal of length",
+        Node::Neg(_) => "negate",
+        Node::Add(..) => "add",
+        Node::Sub(..) => "subtract",
+        Node::Mul(..) => "multiply",
+        Node::Div(..) => "divide",
+        Node::Quotient(..) => "divide or 0",
+        Node::Min(..) => "min",
+        Node::Max(..) => "max",
+        Node::Abs(_) => "abs",
+        Node::Sqrt(_) => "sqrt",
+        Node::Select { .. } => "select",
+    }
 }
 
 /// Writes a tree as nested tests, with its leaves as text.
