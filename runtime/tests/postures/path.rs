@@ -324,8 +324,9 @@ fn a_tool_larger_than_the_part_reaches_it() {
     let case = Case::new(sphere(), &Wide);
     assert!(case.access.iter().flatten().any(|word| *word != 0));
     let path = case.plan_over_planes(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
+    // Five circles of 250 mm together, with a point every 2 mm.
     assert!(
-        path.contact_points > 200 && path.left_out == 0,
+        path.contact_points >= 120 && path.left_out == 0,
         "{} of {}",
         path.left_out,
         path.contact_points
