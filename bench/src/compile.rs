@@ -8,7 +8,7 @@ use tool_dsl::plan::Tree;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 use touchoff_tests::library::{folder, library};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points at which splits are counted.
 const SPLIT_SAMPLES: usize = 100_000;

@@ -105,7 +105,7 @@ impl Series {
     /// Returns the series with this colour number instead of the colour of its index in the plot. A method can
     /// thus have the same colour in every plot.
     #[must_use]
-    pub fn look(self, colour_number: usize) -> Series {
+    pub fn with_colour(self, colour_number: usize) -> Series {
         Series { colour_number: Some(colour_number), ..self }
     }
 

@@ -1,6 +1,6 @@
 //! Test points that are hard for an evaluator of a profile, and as many ordinary ones.
 
-use crate::oracle::draw::Rng;
+use crate::oracle::rng::Rng;
 use crate::oracle::{Nearest, Oracle};
 
 /// Number of points beside each border point that is found.
@@ -13,11 +13,11 @@ const HARD_POINTS: &str = include_str!("hard_points.tsv");
 /// surface or of a splitting curve. Adds every vertex, every centre, points on the axis, and the points with the
 /// largest errors that are known.
 pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
-    let mut draw = Rng::new(seed);
+    let mut rng = Rng::new(seed);
     let mut points = Vec::new();
-    anywhere(oracle, count / 2, &mut draw, &mut points);
-    beside_borders(oracle, count.div_ceil(2 * POINTS_PER_BORDER_POINT), &mut draw, &mut points);
-    at_corners(oracle, &mut draw, &mut points);
+    anywhere(oracle, count / 2, &mut rng, &mut points);
+    beside_borders(oracle, count.div_ceil(2 * POINTS_PER_BORDER_POINT), &mut rng, &mut points);
+    at_corners(oracle, &mut rng, &mut points);
     on_the_axis(oracle, &mut points);
     points.extend(hard(oracle.name()));
     points
@@ -41,42 +41,42 @@ fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
     [d * cos, d * sin, z]
 }
 
-fn any_azimuth(draw: &mut Rng) -> [f64; 2] {
-    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+fn any_azimuth(rng: &mut Rng) -> [f64; 2] {
+    let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
     [cos, sin]
 }
 
 /// Returns a unit vector across the axis: exactly along x or y, or in a random direction.
-fn azimuth(draw: &mut Rng) -> [f64; 2] {
-    match draw.bits() % 6 {
+fn azimuth(rng: &mut Rng) -> [f64; 2] {
+    match rng.bits() % 6 {
         0 => [1.0, 0.0],
         1 => [0.0, 1.0],
         2 => [-1.0, -0.0],
         3 => [0.0, -1.0],
-        _ => any_azimuth(draw),
+        _ => any_azimuth(rng),
     }
 }
 
-fn anywhere(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn anywhere(oracle: &Nearest, count: usize, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
     for _ in 0..count {
-        let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-        points.push([across[0], across[1], draw.between(-0.05 * height, 1.05 * height)]);
+        let across = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+        points.push([across[0], across[1], rng.between(-0.05 * height, 1.05 * height)]);
     }
 }
 
 /// Finds border points by bisection of a line segment on whose ends the oracle disagrees.
-fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn beside_borders(oracle: &Nearest, count: usize, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let curves = oracle.curves();
-    let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
+    let owner = |[d, z]: [f64; 2]| oracle.evaluate([d, 0.0, z]).map(|evaluation| evaluation.owner);
     let mut found = 0;
     while found < count {
         // Short curves as often as long ones.
-        let curve = &curves[draw.bits() as usize % curves.len()];
-        let sample = curve[draw.bits() as usize % curve.len()];
+        let curve = &curves[rng.bits() as usize % curves.len()];
+        let sample = curve[rng.bits() as usize % curve.len()];
         let reach = 0.1 * oracle.extent()[0];
         let mut near = || {
-            let mut step = || draw.between(-reach, reach);
+            let mut step = || rng.between(-reach, reach);
             [(sample[0] + step()).abs(), sample[1] + step()]
         };
         let (mut a, mut b) = (near(), near());
@@ -91,20 +91,20 @@ fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut V
         }
         for _ in 0..POINTS_PER_BORDER_POINT {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
-            let size = 10f64.powf(draw.between(-16.0, -6.0));
-            let [cos, sin] = any_azimuth(draw);
-            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth(draw)));
+            let size = 10f64.powf(rng.between(-16.0, -6.0));
+            let [cos, sin] = any_azimuth(rng);
+            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth(rng)));
         }
     }
 }
 
 /// Adds vertices, centres and ends of known curves, and points one ulp to either side in `d` and in `z`.
-fn at_corners(oracle: &Nearest, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn at_corners(oracle: &Nearest, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     for [d, z] in oracle.corners() {
         for d in neighbours(d) {
             for z in neighbours(z) {
-                let straight = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([any_azimuth(draw)]);
+                let straight = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([any_azimuth(rng)]);
                 points.extend(straight.map(|azimuth| over([d.abs(), z], azimuth)));
             }
         }

@@ -60,9 +60,9 @@ impl Subject {
             Subject::Profile(_, outline) => {
                 outline.depth([(p[0] * p[0] + p[1] * p[1]).sqrt(), p[2]])
             }
-            Subject::Field(field) => {
-                field.sense(p).map_or_else(|| -field.signed_distance(p), |sense| sense.depth)
-            }
+            Subject::Field(field) => field
+                .evaluate(p)
+                .map_or_else(|| -field.signed_distance(p), |evaluation| evaluation.depth),
         }
     }
 

@@ -6,14 +6,14 @@
 //! not exceed the upper bound, and should reach the lower bound, which the search does not know.
 
 use super::subject::Subject;
-use super::{Worst, buried, poses};
+use super::{Worst, enclosed, poses};
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Interval, Mesh, Pose, Tool, TriangleId};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// A point of the tool's frame.
 type Point = [f64; 3];
@@ -50,15 +50,15 @@ pub struct Row {
     /// Number of samples.
     pub samples: u64,
     /// Excess of a sample's depth over the upper bound. More than rounding is a violation.
-    pub over: Worst,
+    pub upper_excess: Worst,
     /// Excess of the lower bound over the samples' greatest depth.
-    pub behind: Worst,
+    pub sample_deficit: Worst,
     /// Number of poses at which the samples come near enough to the lower bound.
     pub reached: usize,
     /// The width of the widest interval.
-    pub wide: Worst,
+    pub max_width: Worst,
     /// Number of intervals wider than tolerance and rounding together.
-    pub wider: usize,
+    pub too_wide: usize,
     /// Poses at which a sample exceeds the upper bound.
     pub violations: Vec<String>,
 }
@@ -129,10 +129,10 @@ impl Zoomed<'_> {
                 "{} in {}: [{low:e}, {high:e}], {max_depth:e} at {pose:?}",
                 row.tool, row.part
             );
-            row.over.update((max_depth - high) / size, || case.clone());
-            row.behind.update((low - max_depth) / size, || case.clone());
-            row.wide.update((high - low) / size, || case.clone());
-            row.wider += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
+            row.upper_excess.update((max_depth - high) / size, || case.clone());
+            row.sample_deficit.update((low - max_depth) / size, || case.clone());
+            row.max_width.update((high - low) / size, || case.clone());
+            row.too_wide += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
             if max_depth > high + rounding {
                 row.violations.push(case);
             }
@@ -333,13 +333,14 @@ fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
 ///
 /// # Errors
 /// Never in practice: writing to a string cannot fail.
-pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::Error> {
+pub fn table(rows: &[Row], blocks: &[enclosed::Row]) -> Result<String, std::fmt::Error> {
     let mut page =
         "| tool | part | poses | in contact | worst over | worst behind | reached | widest | wider | violations |\n\
                     |---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
             .to_owned();
     for row in rows {
-        let [over, behind, wide] = [&row.over, &row.behind, &row.wide].map(|worst| worst.by);
+        let [over, behind, wide] =
+            [&row.upper_excess, &row.sample_deficit, &row.max_width].map(|worst| worst.value);
         writeln!(
             page,
             "| {} | {} | {} | {} | {over:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} |",
@@ -348,7 +349,7 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
             row.poses,
             row.touching,
             row.reached,
-            row.wider,
+            row.too_wide,
             row.violations.len()
         )?;
     }
@@ -361,11 +362,11 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
         sum(|row| row.touching as u64),
         sum(|row| row.samples),
         100.0 * reached as f64 / poses.max(1) as f64,
-        sum(|row| row.wider as u64)
+        sum(|row| row.too_wide as u64)
     )?;
     page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
              | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
-    for buried::Row { tool, inside, cut, violations } in blocks {
+    for enclosed::Row { tool, inside, cut, violations } in blocks {
         let [[a, b], [c, d]] = [inside, cut];
         writeln!(page, "| {tool} | {a} | {b} | {c} | {d} | {} |", violations.len())?;
     }

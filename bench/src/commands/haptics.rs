@@ -6,8 +6,8 @@ use touchoff::haptic::{EnergyBalance, Rendering};
 use touchoff::scenes::tube;
 use touchoff::{Law, Part, Sampling};
 use touchoff_bench::haptics::latency;
-use touchoff_bench::haptics::page::{Measured, page, plots};
-use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
+use touchoff_bench::haptics::page::{Measurements, page, plots};
+use touchoff_bench::haptics::roughness::{Case, ForceStats, HandPath, force_stats, tools};
 use touchoff_bench::page::{Page, Section};
 use touchoff_tests::haptics::{energy, sheet, wall};
 
@@ -28,9 +28,9 @@ impl Haptics {
             true => &[1000.0],
             false => &[250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 40_000.0],
         };
-        let measured = Measured {
+        let measured = Measurements {
             walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
-            shaking: shaking_rows(self.quick)?,
+            roughness: roughness_rows(self.quick)?,
             sheet: pressing_rows(),
             tapping: tapping_rows(),
             latency: {
@@ -38,7 +38,7 @@ impl Haptics {
                 let rates: &[f64] = if self.quick { &[1.0] } else { &[1.0, 5.0] };
                 let run = |factor: &f64| {
                     let seconds = if *factor > 1.0 { self.latency / 10.0 } else { self.latency };
-                    (1000.0 * factor, seconds, latency::both(1000.0 * factor, seconds))
+                    (1000.0 * factor, seconds, latency::measure(1000.0 * factor, seconds))
                 };
                 rates.iter().map(run).collect()
             },
@@ -54,27 +54,27 @@ impl Haptics {
     }
 }
 
-type ShakingRow = (usize, Case<'static>, Shaking);
+type RoughnessRow = (usize, Case<'static>, ForceStats);
 
-fn shaking_rows(quick: bool) -> Result<Vec<ShakingRow>, Box<dyn Error>> {
+fn roughness_rows(quick: bool) -> Result<Vec<RoughnessRow>, Box<dyn Error>> {
     let mut rows = Vec::new();
     let [fig73, exact, smooth] = tools();
     let points: &[usize] = if quick { &[20_000] } else { &[1_000, 20_000, 400_000] };
     for count in points {
         let part = Part::from_mesh(&tube(), Sampling::new(*count))?;
         let mut add = |movement, tool, law, rendering, stiffness| {
-            let case = Case { way: movement, tool, law, how: rendering, stiffness };
-            rows.push((*count, case, shaking(&part, &case)));
+            let case = Case { path: movement, tool, law, rendering, stiffness };
+            rows.push((*count, case, force_stats(&part, &case)));
         };
         for law in [Law::Thesis, Law::Gradient] {
             for rendering in ["direct", "coupled"] {
-                add(Way::Wall, exact, law, rendering, 3.0);
+                add(HandPath::Wall, exact, law, rendering, 3.0);
                 for tool in [fig73, exact, smooth] {
-                    add(Way::Edge, tool, law, rendering, 3.0);
+                    add(HandPath::Edge, tool, law, rendering, 3.0);
                 }
             }
             for rendering in ["direct", "scaled", "coupled"] {
-                add(Way::Wall, exact, law, rendering, 300.0);
+                add(HandPath::Wall, exact, law, rendering, 300.0);
             }
         }
     }

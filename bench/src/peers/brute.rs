@@ -7,7 +7,7 @@
 
 use super::formula;
 use super::points::{Point, points};
-use crate::race::contender::{Answer, Contender, Sums, View};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use touchoff::{Cloud, Pose};
 
@@ -22,7 +22,7 @@ impl Scalar {
     /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Scalar {
         let points = points(cloud);
-        Scalar { positions: points.iter().map(|point| point.at).collect(), points }
+        Scalar { positions: points.iter().map(|point| point.position).collect(), points }
     }
 }
 
@@ -32,15 +32,15 @@ impl Contender for Scalar {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let view = PoseTransform::of(pose);
         let mut sums = Sums::default();
         for (position, point) in self.positions.iter().zip(&self.points) {
-            let arm = view.arm(*position);
-            let p = view.turn(arm);
-            if formula::beside(p) {
+            let arm = view.offset_from_tip(*position);
+            let p = view.to_tool_frame(arm);
+            if formula::is_outside_envelope(p) {
                 continue;
             }
-            if let Some(evaluation) = formula::sense(p) {
+            if let Some(evaluation) = formula::evaluate(p) {
                 sums.add([arm, p], (point.weight, point.normal), evaluation);
             }
         }
@@ -64,7 +64,8 @@ impl Lanes {
         let points = points(cloud);
         let padded_length = points.len().next_multiple_of(WIDTH);
         let coordinates = [0, 1, 2].map(|axis| {
-            let mut padded: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();
+            let mut padded: Vec<f32> =
+                points.iter().map(|point| point.position[axis] as f32).collect();
             padded.resize(padded_length, 1e6);
             padded
         });
@@ -72,19 +73,20 @@ impl Lanes {
     }
 
     /// Adds one inside point to the sums. Its coordinates are rounded to single precision; the sums are doubles.
-    fn add_point(&self, view: &View, index: usize, sums: &mut Sums) {
+    fn add_point(&self, view: &PoseTransform, index: usize, sums: &mut Sums) {
         let point = &self.points[index];
-        let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
-        let p = view.turn(arm).map(|c| f64::from(c as f32));
+        let arm =
+            view.offset_from_tip([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
+        let p = view.to_tool_frame(arm).map(|c| f64::from(c as f32));
         // Within rounding of the surface the two formulas may disagree about the side.
-        let evaluation = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
+        let evaluation = formula::evaluate(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
         sums.add([arm, p], (point.weight, point.normal), evaluation);
     }
 }
 
 #[inline(always)]
-fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
-    let rows = view.single();
+fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &PoseTransform, sums: &mut Sums) {
+    let rows = view.rows_f32();
     let tip = view.tip.map(|c| c as f32);
     let zero = f32x16::splat(simd, 0.0);
     for block in 0..lanes.coordinates[0].len() / WIDTH {
@@ -109,7 +111,7 @@ impl Contender for Lanes {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let view = PoseTransform::of(pose);
         let mut sums = Sums::default();
         dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
         sums.answer(&view)

@@ -7,7 +7,7 @@
 //! compiling a shorter one takes longer than evaluating all points.
 
 use super::points::{Bounds, Tree};
-use crate::race::contender::{Answer, Contender, Sums, View};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fidget::context::Tree as Formula;
 use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape, TracingEvaluator};
 use fidget::jit::{JitFloatSliceEval, JitFunction, JitGradSliceEval, JitIntervalEval};
@@ -67,11 +67,11 @@ impl Fidget {
     }
 
     /// Collects the points of the leaves that the tool may touch, in the tool's frame.
-    fn gather(&mut self, view: &View) {
+    fn gather(&mut self, view: &PoseTransform) {
         let (eval, tape, indices) = &mut self.interval;
         let (points, leaves) = self.tree.leaves(|bounds| {
-            let centre = view.turn(view.arm(bounds.centre));
-            let half = view.reach(bounds.half);
+            let centre = view.to_tool_frame(view.offset_from_tip(bounds.centre));
+            let half = view.box_half_extents(bounds.half);
             let mut sides = [Interval::from(0.0); 3];
             for axis in 0..3 {
                 let [low, high] = [-1.0, 1.0].map(|sign| (centre[axis] + sign * half[axis]) as f32);
@@ -84,8 +84,8 @@ impl Fidget {
         self.arms.clear();
         self.at.iter_mut().for_each(Vec::clear);
         for index in leaves.flatten() {
-            let arm = view.arm(points[index].at);
-            let p = view.turn(arm);
+            let arm = view.offset_from_tip(points[index].position);
+            let p = view.to_tool_frame(arm);
             self.candidates.push(index);
             self.arms.push([arm, p]);
             for (coordinate, index) in p.iter().zip(self.values.2) {
@@ -119,7 +119,7 @@ impl Contender for Fidget {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let view = PoseTransform::of(pose);
         self.gather(&view);
         let mut sums = Sums::default();
         if self.candidates.is_empty() {

@@ -1,7 +1,7 @@
 //! Points in kd order and a tree of boxes over them, shared by several methods.
 
 use super::formula;
-use crate::race::contender::{Sums, View};
+use crate::race::contender::{PoseTransform, Sums};
 use std::ops::Range;
 use touchoff::Cloud;
 
@@ -9,7 +9,7 @@ use touchoff::Cloud;
 #[derive(Clone, Copy)]
 pub struct Point {
     /// The position.
-    pub at: [f64; 3],
+    pub position: [f64; 3],
     /// The unit normal, out of the material.
     pub normal: [f64; 3],
     /// The surface area that the point represents.
@@ -19,10 +19,10 @@ pub struct Point {
 impl Point {
     /// Adds the point to the sums if the formula in `f64` classifies it as inside.
     #[inline]
-    pub fn feel(&self, view: &View, sums: &mut Sums) {
-        let arm = view.arm(self.at);
-        let p = view.turn(arm);
-        if let Some(evaluation) = formula::sense(p) {
+    pub fn add_to(&self, view: &PoseTransform, sums: &mut Sums) {
+        let arm = view.offset_from_tip(self.position);
+        let p = view.to_tool_frame(arm);
+        if let Some(evaluation) = formula::evaluate(p) {
             sums.add([arm, p], (self.weight, self.normal), evaluation);
         }
     }
@@ -33,7 +33,7 @@ pub fn points(cloud: &Cloud) -> Vec<Point> {
     let lists = cloud.points().iter().zip(cloud.normals()).zip(cloud.weights());
     lists
         .map(|((at, normal), weight)| Point {
-            at: at.coords.into(),
+            position: at.coords.into(),
             normal: (*normal).into(),
             weight: *weight,
         })
@@ -46,9 +46,9 @@ pub fn order(points: &mut [Point], leaf: usize) {
         return;
     }
     let left = leaf * (points.len().div_ceil(leaf).next_power_of_two() / 2);
-    let bounds = Bounds::of(points.iter().map(|point| Bounds::at(point.at)));
+    let bounds = Bounds::of(points.iter().map(|point| Bounds::of_point(point.position)));
     let axis = (0..3).fold(0, |best, k| if bounds.half[k] > bounds.half[best] { k } else { best });
-    points.select_nth_unstable_by(left, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+    points.select_nth_unstable_by(left, |a, b| a.position[axis].total_cmp(&b.position[axis]));
     let (low, high) = points.split_at_mut(left);
     order(low, leaf);
     order(high, leaf);
@@ -65,7 +65,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the box of a single point.
-    pub fn at(point: [f64; 3]) -> Bounds {
+    pub fn of_point(point: [f64; 3]) -> Bounds {
         Bounds { centre: point, half: [0.0; 3] }
     }
 
@@ -108,7 +108,10 @@ impl<N> Tree<N> {
             let level: Vec<N> = points
                 .chunks(size)
                 .map(|chunk| {
-                    node(Bounds::of(chunk.iter().map(|point| Bounds::at(point.at))), chunk)
+                    node(
+                        Bounds::of(chunk.iter().map(|point| Bounds::of_point(point.position))),
+                        chunk,
+                    )
                 })
                 .collect();
             let is_root = level.len() == 1;

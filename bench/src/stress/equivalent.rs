@@ -9,11 +9,11 @@ use super::truth::Subject;
 use nalgebra::{Matrix3, Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Contact, Part, Pose, Probe, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
-const MIRRORED: Kind = Kind::never("mirrored: other bits");
-const MERGED: Kind = Kind::never("merged: other contacts");
-const ADDED: Kind = Kind::of("merged: force and torque", "3 roundings of the sums", 1.0);
+const MIRRORED: Kind = Kind::forbidden_event("mirrored: other bits");
+const MERGED: Kind = Kind::forbidden_event("merged: other contacts");
+const ADDED: Kind = Kind::with_limit("merged: force and torque", "3 roundings of the sums", 1.0);
 
 /// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.
 const GRID: f64 = 1.0 / 1024.0;
@@ -31,7 +31,7 @@ pub(super) fn equivalent_scenes(
         let placed = scene.transformed(&scene_pose, GRID);
         rotate_scene(subject, (&placed, &scene_pose), rng, ledger);
         mirror_part(subject, &scene, ledger);
-        if subject.oracle.revolved() {
+        if subject.oracle.is_revolved() {
             spin_tool(subject, &scene, rng, ledger);
         }
         merge_clouds(subject, &placed, &scene_pose, rng, ledger);
@@ -100,7 +100,7 @@ fn evaluation(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, 
 fn mirror_part(subject: &Subject, scene: &PointSet, ledger: &mut Ledger) {
     let expected = evaluation(subject, &contacts(subject, &scene.part(), &Pose::default()));
     let mut mirrors = vec![Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0)];
-    if subject.oracle.revolved() {
+    if subject.oracle.is_revolved() {
         mirrors.push(Matrix3::new(-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
         mirrors.push(Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0));
     }
@@ -177,8 +177,8 @@ fn merge_clouds(
     let ratio = |difference: Vector3<f64>, bound: f64| {
         if difference == Vector3::zeros() { 0.0 } else { difference.norm() / (3.0 * bound) }
     };
-    ledger.see(ADDED, ratio(a.force + b.force - ab.force, force), || format_pose(pose));
-    ledger.see(ADDED, ratio(a.torque + b.torque - ab.torque, torque), || format_pose(pose));
+    ledger.record(ADDED, ratio(a.force + b.force - ab.force, force), || format_pose(pose));
+    ledger.record(ADDED, ratio(a.torque + b.torque - ab.torque, torque), || format_pose(pose));
 }
 
 /// Compares the scene in millimetres, inches and metres, with the points given in that unit and with the part converted

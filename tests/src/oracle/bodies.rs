@@ -1,8 +1,8 @@
 //! Solids without an axis: a block, and an L-bracket with a hole. Their surfaces are patches. The depth of a point
 //! is its distance to the nearest patch, found by clamping to each. Splitting surfaces are used only to bound
-//! [`Oracle::border`].
+//! [`Oracle::border_distance`].
 
-use super::draw::Rng;
+use super::rng::Rng;
 use super::{Oracle, OracleEvaluation};
 use std::sync::OnceLock;
 
@@ -138,8 +138,8 @@ trait Body {
     /// another owner or none.
     fn borders(&self, low: P3, high: P3) -> Vec<Vec<P3>> {
         let owner = |p: P3| self.won(p).map(|((region, ..), _)| region);
-        let mut draw = Rng::new(77);
-        let mut any = || [0, 1, 2].map(|k| draw.between(low[k] - 1.0, high[k] + 1.0));
+        let mut rng = Rng::new(77);
+        let mut any = || [0, 1, 2].map(|k| rng.between(low[k] - 1.0, high[k] + 1.0));
         let mut points = Vec::new();
         while points.len() < 16 * 66 {
             let (mut a, mut b) = (any(), any());
@@ -157,7 +157,7 @@ trait Body {
     }
 }
 
-macro_rules! ask_the_body {
+macro_rules! body_oracle {
     ($name:literal, $extent:expr, $low:expr, $high:expr) => {
         fn name(&self) -> &'static str {
             $name
@@ -165,7 +165,7 @@ macro_rules! ask_the_body {
         fn regions(&self) -> Vec<&str> {
             Self::REGIONS.to_vec()
         }
-        fn sense(&self, p: P3) -> Option<OracleEvaluation> {
+        fn evaluate(&self, p: P3) -> Option<OracleEvaluation> {
             let ((owner, patch, depth), _) = self.won(p)?;
             Some(OracleEvaluation {
                 owner,
@@ -176,19 +176,19 @@ macro_rules! ask_the_body {
             })
         }
         fn gradient(&self, p: P3) -> Option<P3> {
-            Some(self.sense(p)?.direction.map(|c| -c))
+            Some(self.evaluate(p)?.direction.map(|c| -c))
         }
         fn signed_distance(&self, p: P3) -> f64 {
             if self.inside(p) { -self.distance(p) } else { self.distance(p) }
         }
-        fn border(&self, p: P3) -> f64 {
+        fn border_distance(&self, p: P3) -> f64 {
             // A step changes each distance by at most its own length.
             match self.won(p) {
                 Some(((.., depth), lag)) => depth.min(lag / 2.0).min(self.zone(p)),
                 None => self.distance(p),
             }
         }
-        fn revolved(&self) -> bool {
+        fn is_revolved(&self) -> bool {
             false
         }
         fn curve_points(&self) -> Vec<Vec<P3>> {
@@ -243,9 +243,9 @@ impl Body for Block {
 }
 
 impl Oracle for Block {
-    ask_the_body!("Block", [25.0, 20.0], [-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
+    body_oracle!("Block", [25.0, 20.0], [-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
 
-    fn singular(&self, _: P3) -> f64 {
+    fn singularity_distance(&self, _: P3) -> f64 {
         f64::INFINITY
     }
 
@@ -364,9 +364,9 @@ impl Body for LBracket {
 }
 
 impl Oracle for LBracket {
-    ask_the_body!("LBracket", [500f64.sqrt(), 24.0], [-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]);
+    body_oracle!("LBracket", [500f64.sqrt(), 24.0], [-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]);
 
-    fn singular(&self, p: P3) -> f64 {
+    fn singularity_distance(&self, p: P3) -> f64 {
         match self.won(p) {
             Some(((4, ..), _)) => length2(HOLE.offset(p)),
             Some(((8, ..), _)) => (p[0] - WALL_POSITION).hypot(p[2] - LEDGE_HEIGHT),
@@ -396,7 +396,7 @@ mod tests {
 
     #[test]
     fn the_block_at_a_few_points() {
-        let at = |p| Block.sense(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
+        let at = |p| Block.evaluate(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
         assert_eq!(at([18.0, 0.0, 10.0]), Some(("right", 2.0, [1.0, 0.0, 0.0])));
         assert_eq!(at([0.0, -14.5, 10.0]), Some(("front", 0.5, [0.0, -1.0, 0.0])));
         assert_eq!(at([0.0, 0.0, 10.0]), Some(("bottom", 10.0, [0.0, 0.0, -1.0])));
@@ -407,7 +407,7 @@ mod tests {
 
     #[test]
     fn the_bracket_at_a_few_points() {
-        let at = |p| LBracket.sense(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
+        let at = |p| LBracket.evaluate(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
         assert_eq!(at([0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
         assert_eq!(at([-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
         assert_eq!(at([-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));

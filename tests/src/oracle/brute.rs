@@ -133,7 +133,7 @@ impl<'a> Query<'a> {
         let mut size = [Sum::default(); 2];
         for (i, &p) in self.points.iter().enumerate() {
             let q = self.in_tool(p);
-            let Some(s) = self.oracle.sense(q) else {
+            let Some(s) = self.oracle.evaluate(q) else {
                 continue;
             };
             contacts.push(i);

@@ -4,7 +4,7 @@ use super::brute::{Answer, Law, Pose, Query, Sum};
 use super::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use super::draw::Rng;
+use super::rng::Rng;
 use super::{Fig73, Oracle, UnitSphere, fig_7_3_exact};
 
 /// A weighted cloud.
@@ -181,16 +181,12 @@ fn units_scale() {
 /// unit.
 #[test]
 fn the_gradient_law_is_conservative() {
-    let mut draw = Rng::new(8);
+    let mut rng = Rng::new(8);
     let mut cloud = Cloud::default();
     for _ in 0..3000 {
-        cloud.points.push([
-            draw.between(-5.0, 5.0),
-            draw.between(-5.0, 5.0),
-            draw.between(2.0, 18.0),
-        ]);
+        cloud.points.push([rng.between(-5.0, 5.0), rng.between(-5.0, 5.0), rng.between(2.0, 18.0)]);
         cloud.normals.push([0.0, 0.0, 1.0]);
-        cloud.weights.push(draw.between(0.0, 1.0));
+        cloud.weights.push(rng.between(0.0, 1.0));
     }
     let tool = Fig73::default();
     for (is_depth, scale) in [(false, 1.0), (false, 0.5), (true, 0.5)] {

@@ -14,14 +14,14 @@ use super::{Meridian, Nearest};
 const BORDER_MARGIN: f64 = 1e-9;
 
 /// A point, and the half plane through it and the axis.
-pub struct At {
+pub struct QueryPoint {
     dz: Point,
     /// Unit vector away from the axis; +x on the axis.
     radial: [Big; 2],
     rough: [f64; 2],
 }
 
-impl At {
+impl QueryPoint {
     /// Creates the point with these coordinates, taken exactly.
     pub fn new(p: [f64; 3]) -> Self {
         Self::of(p.map(Big::exactly))
@@ -155,23 +155,23 @@ impl Reference {
         let profile: &Profile = rough.profile();
         let mut at = tool.start.clone();
         let mut parts: Vec<Part> = Vec::new();
-        for way in &tool.ways {
-            let shape = match &way.centre {
+        for segment in &tool.segments {
+            let shape = match &segment.centre {
                 None => {
-                    let along = sub(&way.to, &at);
+                    let along = sub(&segment.to, &at);
                     let length = norm(&along);
                     Shape::Line { along, length }
                 }
                 Some(centre) => {
-                    let (a, b) = (sub(&at, centre), sub(&way.to, centre));
+                    let (a, b) = (sub(&at, centre), sub(&segment.to, centre));
                     let convex = !cross(&a, &b).is_negative();
                     Shape::Arc { centre: centre.clone(), radius: norm(&a), convex }
                 }
             };
-            let centre = way.centre.as_ref().map(double);
-            let rough = Piece::new(double(&at), double(&way.to), centre, parts.len());
-            parts.push(Part { rough, a: at, b: way.to.clone(), shape });
-            at = way.to.clone();
+            let centre = segment.centre.as_ref().map(double);
+            let rough = Piece::new(double(&at), double(&segment.to), centre, parts.len());
+            parts.push(Part { rough, a: at, b: segment.to.clone(), shape });
+            at = segment.to.clone();
         }
         let owners = profile.owners().to_vec();
         let turns = (0..parts.len()).map(|piece| profile.turn(piece)).collect();
@@ -185,7 +185,7 @@ impl Reference {
     }
 
     /// Returns the depth of a point: the distance to the surface, negative outside.
-    pub fn depth(&self, at: &At) -> Big {
+    pub fn depth(&self, at: &QueryPoint) -> Big {
         let rough: Vec<f64> = self.parts.iter().map(|part| part.rough.clamped(at.rough)).collect();
         let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + BORDER_MARGIN * self.size;
         let mut best: Option<(Far, usize)> = None;
@@ -209,7 +209,7 @@ impl Reference {
 
     /// Returns whether a point is inside whose nearest point is an end of a piece: in the fan of a reflex corner,
     /// or where rounding alone keeps it from facing the piece.
-    fn beside(&self, at: &At, index: usize) -> bool {
+    fn beside(&self, at: &QueryPoint, index: usize) -> bool {
         let part = &self.parts[index];
         let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
         let turn = if b < a { Some(index) } else { index.checked_sub(1) };
@@ -222,7 +222,7 @@ impl Reference {
 
     /// Returns the owner of a point of the solid: the nearest feature. Among equals a corner comes before the
     /// pieces that end in it, otherwise the first listed. `None` outside.
-    pub fn owner(&self, at: &At) -> Option<usize> {
+    pub fn owner(&self, at: &QueryPoint) -> Option<usize> {
         let depth = self.depth(at);
         if depth.is_negative() {
             return None;
@@ -248,7 +248,7 @@ impl Reference {
     }
 
     /// Returns the distance to an owner: a piece with its ends, or a corner.
-    pub fn distance_to(&self, at: &At, owner: usize) -> Big {
+    pub fn distance_to(&self, at: &QueryPoint, owner: usize) -> Big {
         match self.owners[owner] {
             Feature::Piece(piece) => self.parts[piece].distance(&at.dz).distance,
             Feature::Corner(piece) => norm(&sub(&at.dz, &self.parts[piece].b)),
@@ -257,7 +257,7 @@ impl Reference {
 
     /// Returns the unit vector from a point that an owner owns to its nearest point of the surface; where there is
     /// none, +z.
-    pub fn direction(&self, at: &At, owner: usize) -> [Big; 3] {
+    pub fn direction(&self, at: &QueryPoint, owner: usize) -> [Big; 3] {
         let toward = match self.owners[owner] {
             Feature::Piece(piece) => self.parts[piece].outward(&at.dz),
             Feature::Corner(piece) => unit(&sub(&self.parts[piece].b, &at.dz)),
@@ -267,7 +267,7 @@ impl Reference {
     }
 
     /// Returns the distance from a point to the nearest one at which its owner's direction does not exist.
-    pub fn singular(&self, at: &At, owner: usize) -> f64 {
+    pub fn singularity_distance(&self, at: &QueryPoint, owner: usize) -> f64 {
         let (distance, level) = match self.owners[owner] {
             Feature::Piece(piece) => match &self.parts[piece].shape {
                 Shape::Line { along, .. } => (f64::INFINITY, along[1] == Big::zero()),
@@ -290,7 +290,7 @@ impl Reference {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Rng;
+    use super::super::rng::Rng;
     use super::super::{Oracle, restated};
     use super::*;
 
@@ -300,23 +300,26 @@ mod tests {
             let (rough, reference) = (Nearest::new(&tool), Reference::new(&tool));
             let [radius, height] = rough.extent();
             let size = radius.max(height);
-            let mut draw = Rng::new(8);
+            let mut rng = Rng::new(8);
             for _ in 0..300 {
-                let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-                let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];
-                let at = At::new(p);
+                let [x, y] = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+                let p = [x, y, rng.between(-0.1 * height, 1.1 * height)];
+                let at = QueryPoint::new(p);
                 let depth = reference.depth(&at).to_f64();
                 let expected = -rough.signed_distance(p);
                 assert!((depth - expected).abs() < 1e-13 * size, "{} {p:?}", tool.name);
-                let Some(sense) = rough.sense(p) else { continue };
-                let distance = reference.distance_to(&at, sense.owner).to_f64();
+                let Some(evaluation) = rough.evaluate(p) else { continue };
+                let distance = reference.distance_to(&at, evaluation.owner).to_f64();
                 assert!((distance - depth).abs() < 1e-13 * size, "{} {p:?}", tool.name);
                 assert!(
-                    (reference.singular(&at, sense.owner) - rough.singular(p)).abs() < 1e-12 * size
-                        || rough.singular(p) == f64::INFINITY
+                    (reference.singularity_distance(&at, evaluation.owner)
+                        - rough.singularity_distance(p))
+                    .abs()
+                        < 1e-12 * size
+                        || rough.singularity_distance(p) == f64::INFINITY
                 );
-                let u = reference.direction(&at, sense.owner);
-                for (u, v) in u.iter().zip(sense.direction) {
+                let u = reference.direction(&at, evaluation.owner);
+                for (u, v) in u.iter().zip(evaluation.direction) {
                     assert!((u.to_f64() - v).abs() < 1e-9, "{} {p:?}", tool.name);
                 }
             }

@@ -12,8 +12,8 @@ use touchoff_tests::accuracy::{owners, tools};
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::rng::Rng;
 
 fn checked(source: &Source) -> Box<CheckedTool> {
     let compiled = compile(source);
@@ -240,7 +240,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
             }
             let region = evaluation.region[k] as usize;
 
-            let at = At::new(*p);
+            let at = QueryPoint::new(*p);
             let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
             let off =
                 exact.map(|exact| (&Big::exactly(evaluation.depth[k]) - &exact).abs().to_f64());

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use tools_library::{Ball, Fig73, Fig73Exact};
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 const POSES: usize = 2_000;
 

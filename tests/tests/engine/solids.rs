@@ -9,7 +9,7 @@ use tools_library::{Block, LBracket};
 use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, Symmetry};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
 /// Returns the region and the depth at a point.

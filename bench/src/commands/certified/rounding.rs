@@ -4,7 +4,7 @@ use std::error::Error;
 use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 use touchoff_bench::rounding::cases::Family;
-use touchoff_bench::rounding::{Rounding as Cases, Row, table};
+use touchoff_bench::rounding::{RoundingCheck as Cases, Row, table};
 
 /// Number of cases that a thread takes at once.
 const CHUNK: u64 = 2000;
@@ -40,7 +40,7 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
 pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
     let cases = Cases::new(seed);
     let mut rows = Family::ALL.map(Row::new).to_vec();
-    cases.ask(number, &mut rows);
+    cases.run_case(number, &mut rows);
     rows.retain(|row| row.cases > 0);
     println!("{}\n{}", cases.describe(number), table(&rows)?);
     Ok(())
@@ -48,7 +48,8 @@ pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
 
 /// Returns a description of the violations of a family.
 fn describe_violations(row: &Row) -> String {
-    let Row { family, exceeded, off, shallow, .. } = row;
+    let Row { family, upper_violations: exceeded, off_triangle: off, too_shallow: shallow, .. } =
+        row;
     format!(
         "{family:?}: {exceeded} upper ends exceeded, {off} witnesses off their triangles, {shallow} shallow"
     )
@@ -61,9 +62,9 @@ fn rows(cases: &Cases, count: u64) -> Result<Vec<Row>, std::num::TryFromIntError
         let from = k as u64 * CHUNK;
         let mut chunk_rows = Family::ALL.map(Row::new);
         for number in from..(from + CHUNK).min(count) {
-            cases.ask(number, &mut chunk_rows);
+            cases.run_case(number, &mut chunk_rows);
         }
-        chunk_rows.iter().flat_map(|row| &row.shown).for_each(|text| eprintln!("{text}"));
+        chunk_rows.iter().flat_map(|row| &row.descriptions).for_each(|text| eprintln!("{text}"));
         chunk_rows
     });
     let mut rows = Family::ALL.map(Row::new).to_vec();

@@ -3,7 +3,7 @@
 use std::error::Error;
 use touchoff::certify::TriangleBvh;
 use touchoff_bench::certified::subject::{FIELDS, PROFILES, Subject};
-use touchoff_bench::certified::{buried, poses, zoomed};
+use touchoff_bench::certified::{enclosed, poses, zoomed};
 use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 
@@ -33,7 +33,7 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
         let subject = Subject::of(round[k]);
         let tool = tools_library::find(round[k]).expect("a tool of the library");
         let count = if matches!(subject, Subject::Profile(..)) { 1000 } else { 20 };
-        buried::measure(tool, &subject, count, seed)
+        enclosed::measure(tool, &subject, count, seed)
     });
 
     let about = format!(
@@ -44,8 +44,9 @@ their field or with overhangs, 1e-6. Tolerances are 1e-9 of the size, and of the
 
 "
     );
-    let buried = blocks.iter().flat_map(|row| row.violations.clone());
-    let missed = rows.iter().flat_map(|row| row.violations.clone()).chain(buried).collect();
+    let enclosed_violations = blocks.iter().flat_map(|row| row.violations.clone());
+    let missed =
+        rows.iter().flat_map(|row| row.violations.clone()).chain(enclosed_violations).collect();
     Ok(Section {
         title: "Beside samples that zoom in",
         body: about + &zoomed::table(&rows, &blocks)?,

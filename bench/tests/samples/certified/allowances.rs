@@ -7,10 +7,10 @@ use touchoff::certify::{
 };
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_bench::certified::brute::Brute;
-use touchoff_bench::certified::owned::Owned;
-use touchoff_bench::certified::{poses, ways};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_bench::certified::allowances::SurfaceAllowances;
+use touchoff_bench::certified::brute::BruteForce;
+use touchoff_bench::certified::{motions, poses};
+use touchoff_tests::oracle::rng::Rng;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 const TOOLS: [&str; 10] = [
@@ -51,7 +51,7 @@ fn certifier_with<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)])
 /// Runs a check for all parts and tools.
 fn for_all_parts_and_tools(
     tools: &[&str],
-    mut check: impl FnMut(&str, &TriangleBvh, &Owned<'_>, &mut Rng),
+    mut check: impl FnMut(&str, &TriangleBvh, &SurfaceAllowances<'_>, &mut Rng),
 ) {
     let mut rng = Rng::new(5);
     for (_, mesh) in poses::parts().expect("parts") {
@@ -59,21 +59,25 @@ fn for_all_parts_and_tools(
         for name in tools {
             let oracle = oracle(name);
             let length = tool(name).info().unit.factor_to(mesh.unit());
-            let brute = Brute::new(&mesh, &oracle, length);
+            let brute = BruteForce::new(&mesh, &oracle, length);
             let names = names(tool(name));
-            let owned = Owned { brute: &brute, allowed: vec![0.0; names.len()], names };
+            let owned = SurfaceAllowances {
+                brute: &brute,
+                allowances: vec![0.0; names.len()],
+                surface_names: names,
+            };
             check(name, &bvh, &owned, &mut rng);
         }
     }
 }
 
-fn random_pose(owned: &Owned<'_>, rng: &mut Rng) -> Pose {
-    ways::way(owned.brute, "still", rng).from
+fn random_pose(owned: &SurfaceAllowances<'_>, rng: &mut Rng) -> Pose {
+    motions::random_motion(owned.brute, "still", rng).from
 }
 
 /// Sets random allowances of the order of the depths that occur.
-fn set_random_allowances(owned: &mut Owned<'_>, rng: &mut Rng) {
-    for allowed in &mut owned.allowed {
+fn set_random_allowances(owned: &mut SurfaceAllowances<'_>, rng: &mut Rng) {
+    for allowed in &mut owned.allowances {
         let size = 10f64.powf(rng.between(-3.0, 0.7));
         *allowed = match rng.bits() % 5 {
             0 => 0.0,
@@ -84,7 +88,7 @@ fn set_random_allowances(owned: &mut Owned<'_>, rng: &mut Rng) {
     }
 }
 
-fn rounding(owned: &Owned<'_>) -> f64 {
+fn rounding(owned: &SurfaceAllowances<'_>) -> f64 {
     64.0 * f64::EPSILON * owned.brute.size
 }
 
@@ -116,22 +120,25 @@ fn check_surface_depths(tools: &[&str]) -> usize {
             let (pose, tolerance) = (random_pose(owned, rng), [0.0, 1e-6, 1e-3][k % 3]);
             let samples = owned.samples(&pose, rng);
             let mut max_depths = [0.0f64; 2];
-            for surface in 0..owned.names.len() {
+            for surface in 0..owned.surface_names.len() {
                 let penetration =
                     certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
                 let text = format!("{name} {surface} at {pose:?}, {tolerance:e}: {penetration:?}");
                 let Interval { low, high } = penetration.depth;
                 assert!(0.0 <= low && low <= high, "{text}");
-                let best = owned.most(&pose, &samples, |p| owned.depth(surface, p), rng);
+                let best = owned.max_sample(&pose, &samples, |p| owned.depth(surface, p), rng);
                 if let Some(best) = best {
                     assert!(best.value <= high + rounding, "{text}, {best:?}");
                     owners += 1;
                 }
                 if let Some(witness) = penetration.witness {
-                    let p = owned.brute.inside(&pose, witness.point);
+                    let p = owned.brute.point_in_tool_frame(&pose, witness.point);
                     let depth = owned.brute.depth(p) * owned.brute.length;
                     assert!(depth >= low - rounding, "{text}: {depth}");
-                    assert!(owned.away(surface, p) <= depth.abs() + 4.0 * rounding, "{text}");
+                    assert!(
+                        owned.distance_to_surface(surface, p) <= depth.abs() + 4.0 * rounding,
+                        "{text}"
+                    );
                     assert_eq!(witness.surface, SurfaceId(surface), "{text}");
                 } else {
                     assert_eq!(low, 0.0, "{text}");
@@ -152,15 +159,17 @@ fn check_surface_depths(tools: &[&str]) -> usize {
 
 /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
 fn assert_witness_violates_allowance(
-    owned: &Owned<'_>,
+    owned: &SurfaceAllowances<'_>,
     pose: &Pose,
     witness: &Witness,
     text: &str,
 ) {
-    let p = owned.brute.inside(pose, witness.point);
-    let (slack, allowed) = (4.0 * rounding(owned), owned.allowed[witness.surface.0]);
-    let (depth, distance) =
-        (owned.brute.depth(p) * owned.brute.length, owned.away(witness.surface.0, p));
+    let p = owned.brute.point_in_tool_frame(pose, witness.point);
+    let (slack, allowed) = (4.0 * rounding(owned), owned.allowances[witness.surface.0]);
+    let (depth, distance) = (
+        owned.brute.depth(p) * owned.brute.length,
+        owned.distance_to_surface(witness.surface.0, p),
+    );
     let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
     assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
 }
@@ -170,18 +179,27 @@ fn pose_verdicts_respect_allowances() {
     let mut counts = [0; 2];
     for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
         for _ in 0..POSES {
-            let mut owned =
-                Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
+            let mut owned = SurfaceAllowances {
+                surface_names: owned.surface_names.clone(),
+                allowances: owned.allowances.clone(),
+                ..*owned
+            };
             set_random_allowances(&mut owned, rng);
-            let allowed: Vec<_> =
-                owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
+            let allowed: Vec<_> = owned
+                .surface_names
+                .iter()
+                .map(String::as_str)
+                .zip(owned.allowances.iter().copied())
+                .collect();
             let mut certifier = certifier_with(bvh, name, &allowed);
             let pose = random_pose(&owned, rng);
             let verdict = certifier.check_pose(&pose);
             let text = format!("{name} at {pose:?} with {allowed:?}: {verdict:?}");
             let max_excess = |rng: &mut Rng| {
                 let samples = owned.samples(&pose, rng);
-                owned.most(&pose, &samples, |p| owned.over(p), rng).map_or(0.0, |best| best.value)
+                owned
+                    .max_sample(&pose, &samples, |p| owned.max_excess(p), rng)
+                    .map_or(0.0, |best| best.value)
             };
             match verdict {
                 PoseVerdict::Clear | PoseVerdict::Inside(_) | PoseVerdict::SurfaceOnly => {
@@ -208,13 +226,24 @@ fn motion_verdicts_respect_allowances() {
     let mut counts = [0; 3];
     for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
         for k in 0..MOTIONS {
-            let mut owned =
-                Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
+            let mut owned = SurfaceAllowances {
+                surface_names: owned.surface_names.clone(),
+                allowances: owned.allowances.clone(),
+                ..*owned
+            };
             set_random_allowances(&mut owned, rng);
-            let allowed: Vec<_> =
-                owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
+            let allowed: Vec<_> = owned
+                .surface_names
+                .iter()
+                .map(String::as_str)
+                .zip(owned.allowances.iter().copied())
+                .collect();
             let mut certifier = certifier_with(bvh, name, &allowed).with_budget(1 << 17);
-            let path = ways::way(owned.brute, ways::KINDS[(5 * k) % ways::KINDS.len()], rng);
+            let path = motions::random_motion(
+                owned.brute,
+                motions::MOTION_KINDS[(5 * k) % motions::MOTION_KINDS.len()],
+                rng,
+            );
             let motion = Motion::new(&path.from, &path.to).expect("one way");
             let tolerance = [0.0, 1e-3][k % 2];
             let verdict = certifier.check_motion(&motion, tolerance);
@@ -239,7 +268,7 @@ fn motion_verdicts_respect_allowances() {
                 let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
                 let pose = path.pose(t);
                 let samples = owned.samples(&pose, rng);
-                let excess = owned.most(&pose, &samples, |p| owned.over(p), rng);
+                let excess = owned.max_sample(&pose, &samples, |p| owned.max_excess(p), rng);
                 let excess = excess.map_or(0.0, |best| best.value);
                 assert!(
                     excess <= tolerance.max(16.0 * rounding) + 4.0 * rounding,

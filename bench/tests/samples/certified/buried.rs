@@ -6,7 +6,7 @@ use tools_library::TOOLS;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Returns a cube around the origin that contains any library tool.
@@ -107,12 +107,13 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
         let samples: Vec<([f64; 2], f64, usize)> = (0..SAMPLES)
             .filter_map(|_| {
                 let point = [rng.between(0.0, radius), rng.between(0.0, height)];
-                let sense = oracle.sense([point[0], 0.0, point[1]])?;
-                let distance_to = |surface: &str| oracle.away(surface, [point[0], 0.0, point[1]]);
+                let evaluation = oracle.evaluate([point[0], 0.0, point[1]])?;
+                let distance_to =
+                    |surface: &str| oracle.distance_to_surface(surface, [point[0], 0.0, point[1]]);
                 let nearest = (0..surfaces.len()).min_by(|a, b| {
                     distance_to(surfaces[*a]).total_cmp(&distance_to(surfaces[*b]))
                 })?;
-                Some((point, sense.depth, nearest))
+                Some((point, evaluation.depth, nearest))
             })
             .collect();
         for _ in 0..60 {

@@ -102,7 +102,7 @@ fn pose_verdicts_tell_inside_from_outside() {
     let mut in_block = Certifier::new(&block, tool("D2Ball")).expect("a profile");
     let plane = TriangleBvh::new(&shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"));
     let mut on_plane = Certifier::new(&plane, tool("D2Ball")).expect("a profile");
-    let mut rng = touchoff_tests::oracle::draw::Rng::new(3);
+    let mut rng = touchoff_tests::oracle::rng::Rng::new(3);
     for _ in 0..200 {
         let axis = rng.direction();
         let inside_tip = [0; 3].map(|_| rng.between(-100.0, 100.0));

@@ -167,7 +167,7 @@ fn a_rim_is_as_deep_as_its_circle() {
         let samples = (0..=250).flat_map(|i| (0..=250 - i).map(move |j| (i, j)));
         let depth = |(i, j): (i32, i32)| {
             let p = a + (b - a) * (f64::from(i) / 250.0) + (c - a) * (f64::from(j) / 250.0);
-            oracle.sense(p.into()).map_or(0.0, |sense| sense.depth)
+            oracle.evaluate(p.into()).map_or(0.0, |evaluation| evaluation.depth)
         };
         let sampled = samples.map(depth).fold(0.0, f64::max);
         let Interval { low, high } =

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, SurfaceId, TriangleId, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Block, LBracket, Oracle};
 
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
@@ -138,8 +138,8 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                             a + ((b - a) + (c - a)) / 3.0,
                         ]
                     });
-                    let evaluations = points.filter_map(move |p| oracle.sense(to_tool(p)));
-                    evaluations.map(|sense| sense.depth).fold(0.0, f64::max)
+                    let evaluations = points.filter_map(move |p| oracle.evaluate(to_tool(p)));
+                    evaluations.map(|evaluation| evaluation.depth).fold(0.0, f64::max)
                 };
                 let times = (0..=60).map(|step| f64::from(step) / 60.0);
                 let sampled = times.map(depths).fold(0.0, f64::max);
@@ -154,7 +154,7 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                         let contact_pose = motion.pose(at);
                         let p = contact_pose.rotation().transpose()
                             * (witness.point - contact_pose.tip());
-                        assert!(oracle.sense(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
+                        assert!(oracle.evaluate(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
                     }
                     MotionVerdict::Inside(_) => assert_eq!(sampled, 0.0, "{text}"),
                     MotionVerdict::Undecided(_) => undecided += 1,

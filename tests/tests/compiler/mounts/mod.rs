@@ -10,7 +10,7 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, Compiled, compile};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a text that lies among the tools beside these tests.
 fn source(text: &str) -> Source {

@@ -6,7 +6,7 @@ use super::{said, tool};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 fn text(profile: &str) -> String {
     format!("tool T {{ units mm; profile {{ start {profile} }} }}")

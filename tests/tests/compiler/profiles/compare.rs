@@ -5,7 +5,7 @@ use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Evaluation, Interpreter};
 use touchoff::Level;
 use touchoff::tool::{Evaluations as Lists, Interpreted, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The results of a comparison.
 #[derive(Clone, Copy, Debug, Default)]

@@ -7,7 +7,7 @@ use tool_dsl::interpret::{Evaluation, Interpreter};
 use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 const PROFILE: &str = "profile {
         start (0, 0);

@@ -13,7 +13,7 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Points per profile.
 const POINTS: usize = 320;

@@ -7,7 +7,7 @@ use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Evaluation, Interpreter};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// A smoothed tool, and the same tool by nearest features.
 struct Pair {

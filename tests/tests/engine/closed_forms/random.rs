@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Pose, Sampling};
 use touchoff_tests::oracle::closed_forms::quadrature;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Compares the errors of the four figures on random clouds of a mesh with their standard deviations, over seeds
 /// and four numbers of points, each four times the last. `squares` are the integrals of the squares of the four

@@ -8,7 +8,7 @@ use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::TriangleId;
 use touchoff::{Cloud, Part};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the largest error of a measurement, relative to the figures. Forces across the axis and torques are
 /// relative to the thesis's force.

@@ -5,7 +5,7 @@
 use super::LENGTHS;
 use super::points::{scale, shown};
 use touchoff::tool::Evaluators;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
@@ -69,15 +69,15 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
                 .push(format!("contains = {contained}, distance {distance:e}: {}", shown(p)));
         }
         let owner = T::owner(p);
-        let sense = oracle.sense(p);
-        if oracle.border(p) > BORDER_DISTANCE_FRACTION * s
-            && owner != sense.map(|sense| sense.owner)
+        let expected = oracle.evaluate(p);
+        if oracle.border_distance(p) > BORDER_DISTANCE_FRACTION * s
+            && owner != expected.map(|expected| expected.owner)
         {
-            found.owners.push(format!("{owner:?}, not {sense:?}: {}", shown(p)));
+            found.owners.push(format!("{owner:?}, not {expected:?}: {}", shown(p)));
         }
         if let Some(owner) = owner.filter(|_| contained) {
             inside += 1;
-            evaluation::<T>(oracle, p, owner, sense, ulp, reference.as_ref(), &mut found);
+            evaluation::<T>(oracle, p, owner, expected, ulp, reference.as_ref(), &mut found);
         }
     }
     println!(
@@ -113,7 +113,7 @@ fn evaluation<T: Evaluators>(
     oracle: &dyn Oracle,
     p: [f64; 3],
     owner: usize,
-    sense: Option<OracleEvaluation>,
+    expected: Option<OracleEvaluation>,
     ulp: f64,
     reference: Option<&Reference>,
     found: &mut Findings,
@@ -123,14 +123,14 @@ fn evaluation<T: Evaluators>(
     assert!(whole.clone().all(f64::is_finite), "{:?} at {}", whole.collect::<Vec<_>>(), shown(p));
     assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
     // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
-    let mut deep = sense.map_or(0.0, |sense| sense.depth);
+    let mut deep = expected.map_or(0.0, |expected| expected.depth);
     if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
         && let Some(reference) = reference
     {
-        deep = reference.depth(&At::new(p)).to_f64().max(0.0);
+        deep = reference.depth(&QueryPoint::new(p)).to_f64().max(0.0);
     }
     let is_depth = magnitude_is_depth(oracle);
-    let hard = if is_depth { deep } else { sense.map_or(0.0, |sense| sense.magnitude) };
+    let hard = if is_depth { deep } else { expected.map_or(0.0, |expected| expected.magnitude) };
     found.depth.see((depth - deep).abs() / ulp, p, || format!("{depth:e}, not {deep:e}"));
     for length in LENGTHS {
         let magnitude = T::magnitude(p, length);
@@ -143,8 +143,8 @@ fn evaluation<T: Evaluators>(
     let size = norm(direction);
     found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));
     // On a border each of the two neighbours has its own direction.
-    let Some(sense) = sense.filter(|sense| sense.owner == owner) else { return };
-    let rho = oracle.singular(p);
+    let Some(expected) = expected.filter(|expected| expected.owner == owner) else { return };
+    let rho = oracle.singularity_distance(p);
     // Exactly where no direction exists, the one that the language fixes is required; but off the axes `hypot` only
     // rounds to such a point.
     let exact = p[0] == 0.0 || p[1] == 0.0;
@@ -153,11 +153,11 @@ fn evaluation<T: Evaluators>(
         rho => (ulp / f64::EPSILON / rho.max(ulp)).max(1.0),
     };
     let doubt = closeness * f64::EPSILON;
-    found.direction.see(distance(direction, sense.direction) / doubt, p, || {
-        format!("{direction:?}, not {:?}, rho {rho:e}", sense.direction)
+    found.direction.see(distance(direction, expected.direction) / doubt, p, || {
+        format!("{direction:?}, not {:?}, rho {rho:e}", expected.direction)
     });
-    let error = (niceness - sense.niceness).abs() / ulp;
-    found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", sense.niceness));
+    let error = (niceness - expected.niceness).abs() / ulp;
+    found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", expected.niceness));
     if rho == 0.0 {
         // A distance has no gradient at a centre; the language fixes a direction only.
         return;

@@ -47,7 +47,7 @@ pub(crate) fn of<T: Evaluators>(
         for (p, code) in points.iter().zip(&code) {
             let expected = answer_of(reference.at(*p, length));
             if *code != expected {
-                let border = oracle.border(*p) / (scale(oracle) * f64::EPSILON);
+                let border = oracle.border_distance(*p) / (scale(oracle) * f64::EPSILON);
                 let (code, expected) = (numbers(*code), numbers(expected));
                 let point = shown(*p);
                 assert!(border <= CORNER, "{code:?}, not {expected:?} as the reference at {point}");

@@ -5,7 +5,7 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a rod of radius 5 from z = 0 to 20 with these regions, which all have the same depth and direction.
 fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {

@@ -1,7 +1,7 @@
 //! Test points that are hard for an evaluator, and plenty of ordinary ones.
 
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::{Meridian, Oracle, moved};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Meridian, Oracle, displaced};
 
 /// Number of points spread over the box; as many are close to borders.
 const UNIFORM_POINTS: usize = 60_000;
@@ -47,14 +47,14 @@ fn uniform(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
 /// whose ends the oracle disagrees, so that nothing but the oracle's evaluation is trusted.
 fn beside_borders(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let samples: Vec<[f64; 3]> = oracle.curve_points().into_iter().flatten().collect();
-    let owner = |p: [f64; 3]| oracle.sense(p).map(|sense| sense.owner);
+    let owner = |p: [f64; 3]| oracle.evaluate(p).map(|evaluation| evaluation.owner);
     let mut found = 0;
     while found < BORDER_POINTS {
         let sample = samples[draw.bits() as usize % samples.len()];
         let reach = 0.05 * oracle.extent()[0];
         let mut near = || {
             let step = [0; 3].map(|_| draw.between(-reach, reach));
-            moved(oracle, sample, step, 0.0)
+            displaced(oracle, sample, step, 0.0)
         };
         let (mut a, mut b) = (near(), near());
         let first = owner(a);
@@ -69,7 +69,7 @@ fn beside_borders(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]
         for _ in 0..POINTS_PER_BORDER_POINT {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
             let size = 10f64.powf(draw.between(-16.0, -6.0));
-            let neighbour = moved(oracle, a, draw.direction().map(|c| size * c), 0.0);
+            let neighbour = displaced(oracle, a, draw.direction().map(|c| size * c), 0.0);
             let azimuths = azimuths(draw);
             let azimuth = azimuths[draw.bits() as usize % azimuths.len()];
             points.push(turned(oracle, neighbour, azimuth));
@@ -84,7 +84,7 @@ fn exact(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     for [x, y, z] in oracle.corner_points().into_iter().chain(curves) {
         for x in neighbours(x) {
             for z in neighbours(z) {
-                if oracle.revolved() {
+                if oracle.is_revolved() {
                     points.extend(azimuths(draw).map(|azimuth| over([x.abs(), z], azimuth)));
                 } else {
                     points.extend(neighbours(y).map(|y| [x, y, z]));
@@ -97,7 +97,7 @@ fn exact(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
 /// Returns a point of the half plane y = 0 turned about z if the solid is one of revolution; of another solid as it
 /// is.
 fn turned(oracle: &dyn Oracle, p: [f64; 3], azimuth: [f64; 2]) -> [f64; 3] {
-    if oracle.revolved() { over([p[0], p[2]], azimuth) } else { p }
+    if oracle.is_revolved() { over([p[0], p[2]], azimuth) } else { p }
 }
 
 /// Adds points on the axis and as close to it as numbers go, at every height that a corner has and at others.

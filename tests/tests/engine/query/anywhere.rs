@@ -4,7 +4,7 @@ use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Checks every tool about a part; fails unless two fifths of the poses touch.
 fn all_tools(what: &str, part: &Part, count: usize) {

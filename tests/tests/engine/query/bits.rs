@@ -6,7 +6,7 @@ use std::path::Path;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns every SIMD level of this machine.
 fn levels() -> Vec<Level> {

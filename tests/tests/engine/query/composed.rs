@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;

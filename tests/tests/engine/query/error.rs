@@ -5,8 +5,8 @@ use touchoff::TriangleId;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
 use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn depths_keep_the_stated_error_bound() {
@@ -44,7 +44,7 @@ fn depths_keep_the_stated_error_bound() {
         for contact in probe.contacts(&pose) {
             let given = points[contact.triangle.index()] - far;
             let at = [given.x, given.y, given.z];
-            let exact = reference.depth(&At::new(at));
+            let exact = reference.depth(&QueryPoint::new(at));
             worst = worst.max((&Big::exactly(contact.depth) - &exact).abs().to_f64());
         }
         assert!(worst <= stated, "{}: {worst:e} over {stated:e}", info.name);

@@ -4,7 +4,7 @@ use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Rounds coordinates to multiples of 2^-10, so that sums with 2^40 are exact.
 fn on_a_grid(p: Point3<f64>) -> Point3<f64> {

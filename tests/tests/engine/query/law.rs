@@ -4,7 +4,7 @@ use super::compare::tools;
 use super::{parts, poses};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the energy at a pose.
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {

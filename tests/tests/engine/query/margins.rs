@@ -4,8 +4,8 @@
 use super::compare::{Case, Statistics, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::{Oracle, moved};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Oracle, displaced};
 
 /// Checks points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, moved to a pose, among others over a
 /// part of `size`.
@@ -36,7 +36,7 @@ fn own_points(oracle: &dyn Oracle, draw: &mut Rng) -> Vec<Vector3<f64>> {
             let step = if power == 0 { 0.0 } else { 10f64.powi(power) };
             let step = draw.direction().map(|c| step * c);
             let angle = draw.between(0.0, std::f64::consts::TAU);
-            points.push(moved(oracle, p, step, angle).into());
+            points.push(displaced(oracle, p, step, angle).into());
         }
     }
     points
@@ -92,8 +92,8 @@ fn points_just_outside_never_touch_and_points_just_inside_do() {
                     for turn in 0..8 {
                         let (up, out) = (f64::from(turn) * std::f64::consts::FRAC_PI_4).sin_cos();
                         let direction =
-                            if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
-                        let q = moved(&*oracle, p, direction.map(|c| hair * c), angle);
+                            if oracle.is_revolved() { [out, 0.0, up] } else { draw.direction() };
+                        let q = displaced(&*oracle, p, direction.map(|c| hair * c), angle);
                         let offset = oracle.signed_distance(q);
                         if offset.abs() > 0.3 * hair && offset.abs() < 2.0 * hair {
                             let q = Vector3::from(q);

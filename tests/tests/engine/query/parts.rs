@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Sampling, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
 

@@ -4,7 +4,7 @@ use super::parts::{direction, vector};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a random orientation, as a unit quaternion.
 pub(crate) fn quaternion(draw: &mut Rng) -> [f64; 4] {
@@ -38,7 +38,7 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Rng) 
         let distance = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
         return bringing(vector(draw, height), point + distance * height * direction(draw), draw);
     }
-    if !oracle.revolved() {
+    if !oracle.is_revolved() {
         // A solid may fill little of the box about it, so the point is near a face or a splitting surface.
         let curves = oracle.curve_points();
         let curve = &curves[draw.bits() as usize % curves.len()];

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use tools_library::{Block, LBracket};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.
 fn plane(pose: &Pose) -> Part {

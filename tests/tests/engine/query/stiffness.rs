@@ -7,7 +7,7 @@ use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
 use touchoff_tests::haptics::{block, tool, upright};
 use touchoff_tests::library::read;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Step of the finite differences: a length in the part's unit, and an angle in rad.
 const STEP: f64 = 1e-6;

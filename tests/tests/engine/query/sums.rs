@@ -5,7 +5,7 @@ use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Law, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 type Triple = [Big; 3];
 

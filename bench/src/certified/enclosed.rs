@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The verdicts for a tool.
 #[derive(Clone, Debug, Default)]
