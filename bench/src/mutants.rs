@@ -43,11 +43,11 @@ pub enum Detection {
     /// An error.
     Error,
     /// A warning, while some part of the proof is undecided.
-    Open,
+    Undecided,
     /// A warning, with no part of the proof undecided.
     Warning,
     /// Only a difference from the certificate of the original tool, which no user has.
-    Compared,
+    ByComparison,
     /// No evidence.
     Undetected,
 }
@@ -222,13 +222,13 @@ pub fn detect(original: &Certificate, mutant: &PlannedTool) -> Detection {
         Detection::Error
     } else if diagnostics.is_empty() {
         if has_larger_error || !has_same_bounds {
-            Detection::Compared
+            Detection::ByComparison
         } else {
             Detection::Undetected
         }
     } else if certificate.undecided.is_empty() {
         Detection::Warning
     } else {
-        Detection::Open
+        Detection::Undecided
     }
 }

@@ -98,10 +98,10 @@ pub struct Row {
 impl Row {
     /// Returns the violations of the contract, section 1 of the accuracy reference.
     pub fn violations(&self) -> Vec<String> {
-        let mut missed = Vec::new();
+        let mut violations = Vec::new();
         let mut bar = |what: &str, worst: &Worst, bound: f64| {
             if worst.error > bound || worst.error.is_nan() {
-                missed.push(format!(
+                violations.push(format!(
                     "{what} {:.3} > {bound} in {}",
                     worst.error,
                     worst.location_exact()
@@ -116,7 +116,7 @@ impl Row {
         {
             if wrong.count > 0 {
                 let (by, location) = (wrong.worst.error, wrong.worst.location_exact());
-                missed.push(format!(
+                violations.push(format!(
                     "{} {what}, the worst by {by:.3} ulp(S) in {location}",
                     wrong.count
                 ));
@@ -124,10 +124,10 @@ impl Row {
         }
         for (what, count) in [("lanes unlike", self.different_bits), ("senseless", self.invalid)] {
             if count > 0 {
-                missed.push(format!("{what}: {count} points"));
+                violations.push(format!("{what}: {count} points"));
             }
         }
-        missed
+        violations
     }
 }
 
@@ -269,16 +269,16 @@ impl<'a> PointChecker<'a> {
         let side = if wrong { depth.abs() / self.ulp } else { 0.0 };
         let Some(answer) = answer else {
             let clearance_error = || (self.tool.clearance(p) + depth).abs() / self.ulp;
-            let has = self.tool.info().is_exact()
+            let has_clearance = self.tool.info().is_exact()
                 && -depth < MAX_DISTANCE_IN_SIZES * self.reference.scale();
-            let clearance = has.then(clearance_error);
+            let clearance = has_clearance.then(clearance_error);
             return PointErrors { side, clearance, inside: None };
         };
         PointErrors { side, clearance: None, inside: Some(self.inside(&at, &exact, answer)) }
     }
 
     fn inside(&self, at: &QueryPoint, exact: &Big, answer: [f64; 7]) -> InsideErrors {
-        let [region, found, _, niceness, ux, uy, uz] = answer;
+        let [region, computed_depth, _, niceness, ux, uy, uz] = answer;
         let (region, depth) = (region as usize, exact.to_f64());
         let finite = answer.iter().all(|v| v.is_finite());
         let distance = |owner: &usize| self.reference.distance_to(at, *owner).to_f64();
@@ -286,7 +286,7 @@ impl<'a> PointChecker<'a> {
             self.owners[region].iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied();
         let mut inside = InsideErrors {
             region,
-            invalid: !finite || found < 0.0 || niceness < 0.0 || owner.is_none(),
+            invalid: !finite || computed_depth < 0.0 || niceness < 0.0 || owner.is_none(),
             depth: f64::NAN,
             owner: 0.0,
             length: 0.0,
@@ -296,23 +296,26 @@ impl<'a> PointChecker<'a> {
             return inside;
         }
         // A point that only rounding puts inside has depth 0.
-        let depth_error =
-            if depth > 0.0 { exact - &Big::exactly(found) } else { Big::exactly(found) };
+        let depth_error = if depth > 0.0 {
+            exact - &Big::exactly(computed_depth)
+        } else {
+            Big::exactly(computed_depth)
+        };
         inside.depth = depth_error.abs().to_f64() / self.ulp;
         let Some(owner) = owner else { return inside };
         if depth > 0.0 {
             inside.owner = (distance(&owner) - depth).max(0.0) / self.ulp;
         }
         let u = [ux, uy, uz].map(Big::exactly);
-        let size = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
-        inside.length = (size.to_f64() - 1.0).abs() / f64::EPSILON;
+        let norm = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
+        inside.length = (norm.to_f64() - 1.0).abs() / f64::EPSILON;
         let expected = self.reference.direction(at, owner);
         let squared_difference =
             u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
         let rho = self.reference.singularity_distance(at, owner);
         // Exactly where no direction exists, the one that the language fixes is required.
-        let blur = if rho == 0.0 { 1.0 } else { (self.reference.scale() / rho).max(1.0) };
-        inside.direction = squared_difference.sqrt() / (8.0 * f64::EPSILON * blur);
+        let amplification = if rho == 0.0 { 1.0 } else { (self.reference.scale() / rho).max(1.0) };
+        inside.direction = squared_difference.sqrt() / (8.0 * f64::EPSILON * amplification);
         inside
     }
 }

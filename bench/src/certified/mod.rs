@@ -7,10 +7,10 @@
 pub mod allowances;
 pub mod approach;
 pub mod brute;
+pub mod depth_oracle;
 pub mod enclosed;
 pub mod motions;
 pub mod poses;
-pub mod subject;
 pub mod sweeps;
 pub mod zoomed;
 
@@ -145,8 +145,8 @@ struct Validation<'a> {
 
 impl Validation<'_> {
     fn validate(&mut self, certifier: &mut Certifier<'_>, rng: &mut Rng) {
-        let found = certifier.deepest(&self.pose, self.tolerance);
-        let Interval { low, high } = found.depth;
+        let penetration = certifier.deepest(&self.pose, self.tolerance);
+        let Interval { low, high } = penetration.depth;
         let sampled_depth = self.brute.deepest(&self.frame, rng, &mut self.row.samples);
         let case = format!(
             "{} in {} at tip {:?} axis {:?}, tolerance {:e}: {:?}, brute force {sampled_depth:?}",
@@ -155,13 +155,13 @@ impl Validation<'_> {
             self.pose.tip().coords.as_slice(),
             self.pose.axis().as_slice(),
             self.tolerance,
-            found
+            penetration
         );
         self.row.touching += usize::from(sampled_depth > 0.0);
         self.row.sample_deficit.update(low - sampled_depth.max(0.0), || case.clone());
         self.row.reached += usize::from(low - sampled_depth.max(0.0) <= 1e-6);
         let mut max_depth = sampled_depth;
-        match found.witness {
+        match penetration.witness {
             Some(witness) => {
                 let depth = self.witness_depth(&witness, &case);
                 self.row.witness_deficit.update(low - depth, || case.clone());
@@ -217,9 +217,13 @@ impl Validation<'_> {
     fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
         let triangle = self.brute.triangle(&self.frame, witness.triangle.index());
         let point = self.brute.point_in_tool_frame(&self.pose, witness.point);
-        let off = brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
-        if off > self.rounding {
-            self.add_violation(&format!("the witness is {off:e} from its triangle"), case);
+        let triangle_distance =
+            brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
+        if triangle_distance > self.rounding {
+            self.add_violation(
+                &format!("the witness is {triangle_distance:e} from its triangle"),
+                case,
+            );
         }
         if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
             self.add_violation("the witness is at no surface", case);
@@ -248,12 +252,12 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
                     | undecided | violations |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
     for row in rows {
-        let [over, under, behind, wide] =
+        let [upper_excess, witness_deficit, sample_deficit, excess_width] =
             [&row.upper_excess, &row.witness_deficit, &row.sample_deficit, &row.excess_width]
                 .map(|worst| worst.value);
         writeln!(
             page,
-            "| {} | {} | {} | {} | {over:.1e} | {under:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {upper_excess:.1e} | {witness_deficit:.1e} | {sample_deficit:.1e} | {} | {excess_width:.1e} | {} | {} | {} |",
             row.tool,
             row.part,
             row.poses,

@@ -121,12 +121,12 @@ fn shift_to_near_miss(
     let gap = random_power(rng, -7.0, -0.3) * (radius * brute.length / 5.0);
     let gap = if rng.bits().is_multiple_of(10) { -gap } else { gap };
     for _ in 0..SHIFTS {
-        let closest = brute.deepest_in_motion(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);
+        let deepest = brute.deepest_in_motion(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);
         let normal = brute
             .mesh
-            .normal(TriangleId(closest.triangle as u32))
+            .normal(TriangleId(deepest.triangle as u32))
             .unwrap_or_else(|| random_direction(rng));
-        let shift = normal * (closest.depth + gap);
+        let shift = normal * (deepest.depth + gap);
         let shifted = |pose: &Pose| pose_at(pose.tip() + shift, pose.axis());
         motion = ReferenceMotion { from: shifted(&motion.from), to: shifted(&motion.to) };
     }

@@ -127,9 +127,9 @@ impl Validation<'_> {
         match verdict {
             MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
                 self.row.proved += 1;
-                let closest =
+                let deepest =
                     self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
-                self.check_proved(&closest);
+                self.check_proved(&deepest);
                 self.check_side(verdict);
             }
             MotionVerdict::Touching(t, witness) => {
@@ -143,8 +143,8 @@ impl Validation<'_> {
 
     /// Validates an undecided motion: the part before time `t` must be clear.
     fn check_undecided(&mut self, t: f64, rng: &mut Rng) {
-        let closest = self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
-        self.row.undecided.push(format!("{}, {closest:?}", self.case));
+        let deepest = self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
+        self.row.undecided.push(format!("{}, {deepest:?}", self.case));
         if !(0.0..=1.0).contains(&t) {
             self.add_violation("undecided at no time");
         } else if t > 0.0 {
@@ -155,13 +155,13 @@ impl Validation<'_> {
         }
     }
 
-    fn check_proved(&mut self, closest: &MotionSample) {
+    fn check_proved(&mut self, deepest: &MotionSample) {
         let allowed = self.tolerance.max(16.0 * self.rounding) + self.rounding;
-        let over = closest.depth - allowed;
-        self.row.near_misses += usize::from(closest.depth > -1e-3);
-        self.row.depth_excess.update(over, || format!("{}, {closest:?}", self.case));
-        if over > 0.0 {
-            self.add_violation(&format!("it is proved, but {closest:?}"));
+        let excess = deepest.depth - allowed;
+        self.row.near_misses += usize::from(deepest.depth > -1e-3);
+        self.row.depth_excess.update(excess, || format!("{}, {deepest:?}", self.case));
+        if excess > 0.0 {
+            self.add_violation(&format!("it is proved, but {deepest:?}"));
         }
     }
 
@@ -189,9 +189,9 @@ impl Validation<'_> {
             self.add_violation(&format!("the witness is {depth:e} deep"));
         }
         let triangle = brute.triangle(&brute.tool_frame(&pose), witness.triangle.index());
-        let off = distance(point, nearest(point, &triangle)) * brute.length;
-        if off > self.rounding {
-            self.add_violation(&format!("the witness is {off:e} from its triangle"));
+        let triangle_distance = distance(point, nearest(point, &triangle)) * brute.length;
+        if triangle_distance > self.rounding {
+            self.add_violation(&format!("the witness is {triangle_distance:e} from its triangle"));
         }
         let surface = self.pair.tool.info().surface(witness.surface);
         let surface_distance =

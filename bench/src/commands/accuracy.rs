@@ -25,7 +25,7 @@ impl Accuracy {
             row
         });
         rows.sort_by(|a, b| a.name.cmp(&b.name));
-        let missed: Vec<String> = rows
+        let missed_limits: Vec<String> = rows
             .iter()
             .flat_map(|row| {
                 row.violations().into_iter().map(|violation| format!("{}: {violation}", row.name))
@@ -35,7 +35,11 @@ impl Accuracy {
             name: "accuracy",
             title: "Rounding of the compiled tools",
             covers: &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"],
-            sections: vec![Section { title: "", body: body(&rows, &missed, self.points)?, missed }],
+            sections: vec![Section {
+                title: "",
+                body: body(&rows, &missed_limits, self.points)?,
+                missed_limits,
+            }],
             figures: Vec::new(),
         }))
     }

@@ -31,7 +31,7 @@ impl Haptics {
         let measured = Measurements {
             walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
             roughness: roughness_rows(self.quick)?,
-            sheet: pressing_rows(),
+            pressing: pressing_rows(),
             tapping: tapping_rows(),
             latency: {
                 // At five times the rate, a tenth of the time.
@@ -48,7 +48,11 @@ impl Haptics {
             name: "haptics",
             title: "The haptic loop",
             covers: &["runtime/src"],
-            sections: vec![Section { title: "", body: page(&measured)?, missed: Vec::new() }],
+            sections: vec![Section {
+                title: "",
+                body: page(&measured)?,
+                missed_limits: Vec::new(),
+            }],
             figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
         }))
     }
@@ -82,22 +86,22 @@ fn roughness_rows(quick: bool) -> Result<Vec<RoughnessRow>, Box<dyn Error>> {
 }
 
 fn tapping_rows() -> Vec<(&'static str, Vec<EnergyBalance>)> {
-    let part = energy::plane();
+    let part = energy::plane_part();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     vec![
-        ("direct", energy::tapping(&part, direct, false)),
-        ("direct, controlled", energy::tapping(&part, direct, true)),
-        ("coupled, controlled", energy::tapping(&part, None, true)),
+        ("direct", energy::tapping_energy(&part, direct, false)),
+        ("direct, controlled", energy::tapping_energy(&part, direct, true)),
+        ("coupled, controlled", energy::tapping_energy(&part, None, true)),
     ]
 }
 
 fn pressing_rows() -> Vec<(&'static str, Vec<[f64; 3]>)> {
-    let part = sheet::sheet();
+    let part = sheet::sheet_part();
     let direct = Some(Rendering::Direct { scaled: true, damping: 0.0 });
     vec![
-        ("thesis, direct", sheet::pressed(&part, Law::Thesis, direct)),
-        ("facing, direct", sheet::pressed(&part, Law::Facing, direct)),
-        ("gradient, direct", sheet::pressed(&part, Law::Gradient, direct)),
-        ("gradient, coupled", sheet::pressed(&part, Law::Gradient, None)),
+        ("thesis, direct", sheet::press_on_sheet(&part, Law::Thesis, direct)),
+        ("facing, direct", sheet::press_on_sheet(&part, Law::Facing, direct)),
+        ("gradient, direct", sheet::press_on_sheet(&part, Law::Gradient, direct)),
+        ("gradient, coupled", sheet::press_on_sheet(&part, Law::Gradient, None)),
     ]
 }

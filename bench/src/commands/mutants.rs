@@ -49,9 +49,9 @@ anything reported.
             }
             let (column, detection) = match detect(&proved, &mutant.tool) {
                 Detection::Error => (2, 0),
-                Detection::Open => (3, 0),
+                Detection::Undecided => (3, 0),
                 Detection::Warning => (4, 0),
-                Detection::Compared => (5, 1),
+                Detection::ByComparison => (5, 1),
                 Detection::Undetected => (6, 2),
             };
             counts[column] += 1;
@@ -98,7 +98,7 @@ anything reported.
             writeln!(body, "| {name} | {kind} | {place} | {detected_by} |")?;
         }
     }
-    Ok(Section { title: "Broken on purpose", body, missed: Vec::new() })
+    Ok(Section { title: "Broken on purpose", body, missed_limits: Vec::new() })
 }
 
 fn row(counts: &[usize]) -> String {

@@ -77,7 +77,7 @@ impl Postures {
             sections: vec![Section {
                 title: "",
                 body: introduction.to_owned() + &page(&name, &settings, &results)?,
-                missed: contradicted
+                missed_limits: contradicted
                     .map(|Discrepancy { posture, result }| format!("{posture}: {result}"))
                     .collect(),
             }],

@@ -51,7 +51,7 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
             sections: vec![Section {
                 title: "",
                 body: introduction.to_owned() + &page::page(&rows)?,
-                missed: rows
+                missed_limits: rows
                     .iter()
                     .filter(|row| row.exceeds_limit())
                     .map(|row| row.describe())

@@ -14,7 +14,7 @@ pub struct Measurements {
     pub roughness: Vec<(usize, Case<'static>, ForceStats)>,
     /// Description of each rendering with which the sheet was pressed, and the samples: wanted depth in mm, height of
     /// the tip in mm, force in N.
-    pub sheet: Vec<(&'static str, Vec<[f64; 3]>)>,
+    pub pressing: Vec<(&'static str, Vec<[f64; 3]>)>,
     /// Description of each rendering under a tapping hand, and the energy balance after each cycle.
     pub tapping: Vec<(&'static str, Vec<EnergyBalance>)>,
     /// Cycle rate in Hz, duration in s, and the reports of a pressing hand and of a loop that does nothing.
@@ -37,17 +37,17 @@ pub fn plots(measured: &Measurements) -> Vec<(&'static str, String)> {
         Axis::log("cycles a second"),
         Axis::log("N/mm"),
     )
-    .with(Series::dashes("theory", theory))
-    .with(limits("direct", &|row| row.measured[0]))
-    .with(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
-    .with(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
-    .with(Series::points("felt as clean (Choi and Tan)", CLEAN_WALLS.to_vec()));
+    .with_series(Series::dashes("theory", theory))
+    .with_series(limits("direct", &|row| row.measured[0]))
+    .with_series(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
+    .with_series(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
+    .with_series(Series::points("felt as clean (Choi and Tan)", CLEAN_WALLS.to_vec()));
     let axes = |label: &str| (Axis::linear("how deep the hand wants it, mm"), Axis::linear(label));
     let sheet = |label: &str, title: &str, row: usize| {
         let (x, y) = axes(label);
-        measured.sheet.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
+        measured.pressing.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
             let points = points.iter().step_by(20).map(|point| [point[0], point[row]]).collect();
-            plot.with(Series::line(*name, points))
+            plot.with_series(Series::line(*name, points))
         })
     };
     let tapping = measured.tapping.iter().fold(
@@ -61,7 +61,7 @@ pub fn plots(measured: &Measurements) -> Vec<(&'static str, String)> {
                 [cycle as f64 / 1000.0, energy.input - energy.stored]
             };
             let points = energies.iter().enumerate().step_by(25).map(point).collect();
-            plot.with(Series::line(*name, points))
+            plot.with_series(Series::line(*name, points))
         },
     );
     vec![
@@ -79,7 +79,7 @@ pub fn plots(measured: &Measurements) -> Vec<(&'static str, String)> {
 pub fn page(measured: &Measurements) -> Result<String, fmt::Error> {
     let mut page = String::new();
     write_walls(&mut page, measured)?;
-    write_shaking(&mut page, measured)?;
+    write_roughness(&mut page, measured)?;
     writeln!(page, "## Energy\n")?;
     writeln!(
         page,
@@ -137,7 +137,7 @@ fn write_walls(page: &mut String, measured: &Measurements) -> fmt::Result {
     writeln!(page)
 }
 
-fn write_shaking(page: &mut String, measured: &Measurements) -> fmt::Result {
+fn write_roughness(page: &mut String, measured: &Measurements) -> fmt::Result {
     writeln!(page, "## What shakes\n")?;
     writeln!(
         page,

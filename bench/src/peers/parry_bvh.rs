@@ -5,7 +5,7 @@
 //! `f32` with a margin, by the widest SIMD instructions of the machine. The remaining points are evaluated in `f64`.
 
 use super::formula;
-use super::points::{Bounds, Point, order, points};
+use super::points::{Bounds, Point, points, sort_in_kd_order};
 use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use parry3d::bounding_volume::Aabb;
@@ -35,7 +35,7 @@ impl ParryBvh {
     /// Sorts the points of a cloud into blocks and builds the hierarchy.
     pub fn new(cloud: &Cloud) -> ParryBvh {
         let mut points = points(cloud);
-        order(&mut points, POINTS_PER_BLOCK);
+        sort_in_kd_order(&mut points, POINTS_PER_BLOCK);
         let boxes: Vec<Aabb> = points
             .chunks(POINTS_PER_BLOCK)
             .map(|chunk| {

@@ -41,7 +41,7 @@ pub fn points(cloud: &Cloud) -> Vec<Point> {
 }
 
 /// Sorts points in kd order: splits at the longest side, with a power of two of full leaves in the left half.
-pub fn order(points: &mut [Point], leaf: usize) {
+pub fn sort_in_kd_order(points: &mut [Point], leaf: usize) {
     if points.len() <= leaf {
         return;
     }
@@ -50,8 +50,8 @@ pub fn order(points: &mut [Point], leaf: usize) {
     let axis = (0..3).fold(0, |best, k| if bounds.half[k] > bounds.half[best] { k } else { best });
     points.select_nth_unstable_by(left, |a, b| a.position[axis].total_cmp(&b.position[axis]));
     let (low, high) = points.split_at_mut(left);
-    order(low, leaf);
-    order(high, leaf);
+    sort_in_kd_order(low, leaf);
+    sort_in_kd_order(high, leaf);
 }
 
 /// A box, by its centre and half extents.
@@ -101,7 +101,7 @@ impl<N> Tree<N> {
     /// Builds the tree of a cloud with `leaf` points per leaf. `node` makes a node from its box and points.
     pub fn new(cloud: &Cloud, leaf: usize, node: impl Fn(Bounds, &[Point]) -> N) -> Self {
         let mut points = points(cloud);
-        order(&mut points, leaf);
+        sort_in_kd_order(&mut points, leaf);
         let mut levels = Vec::new();
         let mut size = leaf;
         loop {

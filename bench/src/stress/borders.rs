@@ -15,16 +15,16 @@ pub(super) struct Bracket {
 /// Returns brackets along each splitting curve and each segment of the surface, at about
 /// `max_points` of its points.
 pub(super) fn brackets(subject: &Subject, max_points: usize, rng: &mut Rng) -> Vec<Bracket> {
-    let mut found = Vec::new();
+    let mut brackets = Vec::new();
     for curve in subject.oracle.curve_points() {
         let step = curve.len().div_ceil(max_points).max(1);
         let first = rng.bits() as usize % step;
         for p in curve.iter().skip(first).step_by(step) {
             let axes: &[usize] = if subject.oracle.is_revolved() { &[2, 0] } else { &[2, 0, 1] };
-            found.extend(axes.iter().filter_map(|axis| bracket_at(subject, *p, *axis)));
+            brackets.extend(axes.iter().filter_map(|axis| bracket_at(subject, *p, *axis)));
         }
     }
-    found
+    brackets
 }
 
 /// Returns the border that a coordinate line crosses at a point or within 1e-6 of the tool's size.

@@ -108,9 +108,9 @@ fn mirror_part(subject: &Subject, scene: &PointSet, ledger: &mut Ledger) {
         let image = |p: &Point3<f64>| Point3::from(mirror * p.coords);
         let mirrored_scene =
             PointSet { points: scene.points.iter().map(image).collect(), ..scene.clone() };
-        let found =
+        let actual =
             evaluation(subject, &contacts(subject, &mirrored_scene.part(), &Pose::default()));
-        ledger.count(MIRRORED, found != expected, || format!("by {:?}", mirror.as_slice()));
+        ledger.count(MIRRORED, actual != expected, || format!("by {:?}", mirror.as_slice()));
     }
 }
 
@@ -133,8 +133,8 @@ fn spin_tool(subject: &Subject, scene: &PointSet, rng: &mut Rng, ledger: &mut Le
     // A half turn does not round.
     let half_turn = [0.0, 0.0, 1.0, 0.0];
     let pose = Pose::from_quaternion(Point3::origin(), half_turn).expect("a unit quaternion");
-    let found = evaluation(subject, &contacts(subject, &part, &pose));
-    ledger.count(MIRRORED, found != evaluation(subject, &expected), || format_pose(&pose));
+    let actual = evaluation(subject, &contacts(subject, &part, &pose));
+    ledger.count(MIRRORED, actual != evaluation(subject, &expected), || format_pose(&pose));
 }
 
 /// Compares a part with two parts that have half of its points each.
@@ -200,12 +200,12 @@ fn convert_units(subject: &Subject, (scene, pose): (&PointSet, &Pose), ledger: &
         ProbeCheck { tool, truth, point_set: &converted_scene, part: &converted_part }
             .check(&converted_pose, ledger);
         let part_in_unit = part.clone().converted_to(unit);
-        let mut found = contacts(subject, &part_in_unit, &converted_pose);
-        for contact in &mut found {
+        let mut actual = contacts(subject, &part_in_unit, &converted_pose);
+        for contact in &mut actual {
             contact.depth /= factor;
         }
         let bound = depth_bound(subject, [&part, &part], 2.0 * subject.scale());
         let location = || format!("in {}, {}", unit.symbol(), format_pose(&converted_pose));
-        compare_depths([&expected, &found], scene.points.len(), bound, location, ledger);
+        compare_depths([&expected, &actual], scene.points.len(), bound, location, ledger);
     }
 }

@@ -120,14 +120,14 @@ fn write_worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
             f64::INFINITY => (worst_row.worst, "told".to_owned()),
             bar => (worst_row.worst, format_value(bar)),
         };
-        let (tool, place) = if value == 0.0 {
+        let (tool, location) = if value == 0.0 {
             (String::new(), String::new())
         } else {
             (worst_row.tool.clone(), code_cell(&worst_row.location))
         };
         writeln!(
             page,
-            "| {} | {cases} | {} | {bar} | {} | {tool} | {place} |",
+            "| {} | {cases} | {} | {bar} | {} | {tool} | {location} |",
             escape_bars(kind.quantity),
             format_value(value),
             escape_bars(kind.unit),

@@ -192,7 +192,7 @@ pub(super) fn find_equidistant_points(
     let borders = borders(&features);
     let radius = tool.segments.iter().map(|segment| segment.to[0].to_f64()).fold(0.0, f64::max);
     let height = tool.segments.iter().map(|segment| segment.to[1].to_f64()).fold(0.0, f64::max);
-    let mut found: Vec<EquidistantPoint> = Vec::new();
+    let mut points: Vec<EquidistantPoint> = Vec::new();
     let pairs = borders
         .iter()
         .enumerate()
@@ -201,17 +201,17 @@ pub(super) fn find_equidistant_points(
         for _ in 0..starts {
             let start =
                 [rng.between(0.0, 2.0 * radius), rng.between(-0.5 * radius, height + 0.5 * radius)];
-            let Some(at) = intersect(&features, pair, start, size) else { continue };
-            let Some(count) = nearest_count(&features, at, size) else { continue };
+            let Some(point) = intersect(&features, pair, start, size) else { continue };
+            let Some(count) = nearest_count(&features, point, size) else { continue };
             let is_same = |other: &EquidistantPoint| {
-                subtract(other.point, at).iter().all(|c| c.abs() < 1e-9 * size)
+                subtract(other.point, point).iter().all(|c| c.abs() < 1e-9 * size)
             };
-            if !found.iter().any(is_same) {
-                found.push(EquidistantPoint { point: at, features: count });
+            if !points.iter().any(is_same) {
+                points.push(EquidistantPoint { point, features: count });
             }
         }
     }
-    found
+    points
 }
 
 /// Returns the number of nearest features. Returns `None` if there are fewer than three, or if the point is on the
@@ -239,9 +239,9 @@ mod tests {
         let tool = restated::of("Fig73Exact").expect("it is restated");
         let found = find_equidistant_points(&tool, 32.0, (2, 1), &mut Rng::new(1));
         for known in [[5.0, 7.0], [11.0, 1.0]] {
-            let meeting =
+            let point =
                 found.iter().find(|m| subtract(m.point, known).iter().all(|c| c.abs() < 1e-12));
-            assert_eq!(meeting.map(|m| m.features), Some(4), "{known:?} in {found:?}");
+            assert_eq!(point.map(|m| m.features), Some(4), "{known:?} in {found:?}");
         }
     }
 }

@@ -36,7 +36,7 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
         name: NAME,
         title: "Run time against error",
         covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
-        sections: vec![Section { title: "", body, missed: Vec::new() }],
+        sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
         figures: figures(measured),
     })
 }

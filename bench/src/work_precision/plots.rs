@@ -104,7 +104,7 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
         }
     }
     for (colour, ends) in percentile_lines {
-        plot = plot.with(Series::dashes("", ends).with_colour(colour));
+        plot = plot.with_series(Series::dashes("", ends).with_colour(colour));
     }
     for (family, points) in families {
         let series = match family.joined {
@@ -112,7 +112,7 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
             false => Series::points(family.name, points),
         };
         let series = series.with_colour(family.colour);
-        plot = plot.with(if family.bold { series.bold() } else { series });
+        plot = plot.with_series(if family.bold { series.bold() } else { series });
     }
     plot
 }

@@ -157,26 +157,26 @@ fn defects_of_library_tools_are_detected_without_the_originals() {
         // Other mutants than those in the table.
         let mut mutants = mutants(&original, 4, 1000 + index as u64);
         mutants.retain(|mutant| differs(&original, &mutant.tool, 1));
-        let location = |kind: usize, place: &str| {
-            format!("{}: {} at {place}", original.model.name, KINDS[kind])
+        let location = |kind: usize, location: &str| {
+            format!("{}: {} at {location}", original.model.name, KINDS[kind])
         };
         let detected = |mutant: &Mutant| {
             (detect(&proved, &mutant.tool), location(mutant.kind, &mutant.location))
         };
         mutants.iter().map(detected).collect::<Vec<_>>()
     });
-    let (mut detected, mut compared, mut missed) = (0, Vec::new(), Vec::new());
-    for (detection, place) in results.into_iter().flatten() {
+    let (mut detected, mut compared, mut undetected) = (0, Vec::new(), Vec::new());
+    for (detection, location) in results.into_iter().flatten() {
         match detection {
-            Detection::Error | Detection::Open | Detection::Warning => detected += 1,
-            Detection::Compared => compared.push(place),
-            Detection::Undetected => missed.push(place),
+            Detection::Error | Detection::Undecided | Detection::Warning => detected += 1,
+            Detection::ByComparison => compared.push(location),
+            Detection::Undetected => undetected.push(location),
         }
     }
-    println!("{detected} seen, {} by comparing, {} not", compared.len(), missed.len());
+    println!("{detected} seen, {} by comparing, {} not", compared.len(), undetected.len());
     assert!(
         detected > 100 && 9 * compared.len() <= detected,
         "{detected} seen, by comparing only {compared:#?}"
     );
-    assert!(missed.is_empty(), "{missed:#?}");
+    assert!(undetected.is_empty(), "{undetected:#?}");
 }

@@ -32,12 +32,12 @@ impl Nearest {
     /// Creates the oracle of a restated tool.
     pub fn new(tool: &Restated) -> Self {
         let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
-        let drafts: Vec<_> = tool
+        let segments: Vec<_> = tool
             .segments
             .iter()
             .map(|segment| (point(&segment.to), segment.centre.as_ref().map(point)))
             .collect();
-        let profile = Profile::new(point(&tool.start), &drafts);
+        let profile = Profile::new(point(&tool.start), &segments);
         let surface = profile.surface();
         let largest =
             |axis: usize| surface.iter().flatten().fold(0.0f64, |largest, p| largest.max(p[axis]));
@@ -87,13 +87,13 @@ impl Nearest {
     }
 
     /// Returns points at which the nearest feature changes, found by bisection; one list per pair of owners.
-    fn found(&self) -> Vec<Points> {
-        const STRETCHES: usize = 4_000;
+    fn sample_splits(&self) -> Vec<Points> {
+        const BISECTED_SEGMENTS: usize = 4_000;
         let owner = |q: [f64; 2]| self.evaluate([q[0], 0.0, q[1]]).map(|s| s.owner);
         let [radius, height] = self.extent;
         let mut rng = Rng::new(27);
         let mut all = std::collections::BTreeMap::<_, Points>::new();
-        for _ in 0..STRETCHES {
+        for _ in 0..BISECTED_SEGMENTS {
             let a = [rng.between(0.0, radius), rng.between(0.0, height)];
             let mut step = || rng.between(-0.3 * radius, 0.3 * radius);
             let b = [(a[0] + step()).abs(), a[1] + step()];
@@ -126,12 +126,12 @@ fn regions(tool: &Restated, profile: &Profile) -> Vec<Region> {
     let of = |feature: &Feature| match *feature {
         Feature::Piece(piece) => {
             let surface = tool.segments[piece].surface;
-            let mine = |segments: &[restated::Segment]| {
-                segments.iter().filter(|w| w.surface == surface).count()
+            let count_on_surface = |segments: &[restated::Segment]| {
+                segments.iter().filter(|segment| segment.surface == surface).count()
             };
-            let name = match mine(&tool.segments) {
+            let name = match count_on_surface(&tool.segments) {
                 1 => surface.to_owned(),
-                _ => format!("{surface}.{}", mine(&tool.segments[..=piece])),
+                _ => format!("{surface}.{}", count_on_surface(&tool.segments[..=piece])),
             };
             Region { name, surface, cutting: cuts(surface) }
         }
@@ -162,15 +162,15 @@ impl Oracle for Nearest {
         if d > self.extent[0] || z < 0.0 || z > self.extent[1] {
             return None; // most points of most clouds
         }
-        let (near, toward) = self.profile.evaluate(m.dz)?;
-        let region = &self.regions[near.owner];
-        let nice = || (self.niceness)(region.surface, near.distance, m.dz).max(0.0);
+        let (nearest, outward) = self.profile.evaluate(m.dz)?;
+        let region = &self.regions[nearest.owner];
+        let niceness = || (self.niceness)(region.surface, nearest.distance, m.dz).max(0.0);
         Some(OracleEvaluation {
-            owner: near.owner,
-            depth: near.distance,
-            magnitude: near.distance,
-            direction: m.lift(toward),
-            niceness: if region.cutting { nice() } else { 0.0 },
+            owner: nearest.owner,
+            depth: nearest.distance,
+            magnitude: nearest.distance,
+            direction: m.lift(outward),
+            niceness: if region.cutting { niceness() } else { 0.0 },
         })
     }
 
@@ -200,7 +200,7 @@ impl Oracle for Nearest {
 
     fn curves(&self) -> Vec<Points> {
         let mut all = self.profile.surface();
-        all.extend(self.splits.clone().unwrap_or_else(|| self.found()));
+        all.extend(self.splits.clone().unwrap_or_else(|| self.sample_splits()));
         all
     }
 

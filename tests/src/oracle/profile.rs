@@ -64,17 +64,17 @@ pub enum Feature {
 impl Profile {
     /// Creates the profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each
     /// reflex corner between its pieces; the first wins a tie.
-    pub fn new(start: P2, drafts: &[SegmentSpec]) -> Self {
+    pub fn new(start: P2, segments: &[SegmentSpec]) -> Self {
         let mut at = start;
         let mut pieces: Vec<Piece> = Vec::new();
         let mut vertices = vec![Vertex { point: start, turn: Turn::Axis }];
         let mut owners = Vec::new();
-        for (place, &(to, centre)) in drafts.iter().enumerate() {
+        for (index, &(to, centre)) in segments.iter().enumerate() {
             let mut piece = Piece::new(at, to, centre, 0);
             if let Some(before) = pieces.last() {
                 let bend = cross(before.tangent(at), piece.tangent(at));
                 let turn = if bend < -1e-12 {
-                    owners.push(Feature::Corner(place - 1));
+                    owners.push(Feature::Corner(index - 1));
                     Turn::Reflex(owners.len() - 1)
                 } else if bend > 1e-12 {
                     Turn::Convex
@@ -84,7 +84,7 @@ impl Profile {
                 vertices.push(Vertex { point: at, turn });
             }
             piece.rank = owners.len();
-            owners.push(Feature::Piece(place));
+            owners.push(Feature::Piece(index));
             pieces.push(piece);
             at = to;
         }
@@ -229,7 +229,7 @@ impl Profile {
             near.distance
         } else {
             let centre = self.owner_piece(&near, p).centre();
-            centre.map_or(f64::INFINITY, |c| len(sub(p, c)))
+            centre.map_or(f64::INFINITY, |centre| len(sub(p, centre)))
         };
         axis.min(point)
     }
@@ -248,9 +248,9 @@ impl Profile {
     /// Returns the piece with the owner's rank whose foot is the nearest point; failing that, the first with that
     /// rank.
     fn owner_piece(&self, near: &NearestFeature, p: P2) -> &Piece {
-        let mine = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
-        let facing = mine().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
-        facing.or_else(|| mine().next()).unwrap_or(&self.pieces[0])
+        let owned_pieces = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
+        let facing = owned_pieces().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
+        facing.or_else(|| owned_pieces().next()).unwrap_or(&self.pieces[0])
     }
 }
 

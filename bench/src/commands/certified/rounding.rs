@@ -32,7 +32,11 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
     Ok(Section {
         title: "Beside 256 bits",
         body: about.to_owned() + &table(&rows)?,
-        missed: rows.iter().filter(|row| row.violations() > 0).map(describe_violations).collect(),
+        missed_limits: rows
+            .iter()
+            .filter(|row| row.violations() > 0)
+            .map(describe_violations)
+            .collect(),
     })
 }
 
@@ -48,10 +52,9 @@ pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
 
 /// Returns a description of the violations of a family.
 fn describe_violations(row: &Row) -> String {
-    let Row { family, upper_violations: exceeded, off_triangle: off, too_shallow: shallow, .. } =
-        row;
+    let Row { family, upper_violations, off_triangle, too_shallow, .. } = row;
     format!(
-        "{family:?}: {exceeded} upper ends exceeded, {off} witnesses off their triangles, {shallow} shallow"
+        "{family:?}: {upper_violations} upper ends exceeded, {off_triangle} witnesses off their triangles, {too_shallow} shallow"
     )
 }
 
