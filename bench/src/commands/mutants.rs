@@ -10,7 +10,7 @@ use touchoff_tests::library::library;
 
 /// Number of mutants per tool.
 const MUTANTS_PER_TOOL: usize = 20;
-/// Number of columns with counts: all mutants, equivalent mutants, and one per variant of [`Caught`].
+/// Number of columns with counts: all mutants, equivalent mutants, and one per variant of [`Detection`].
 const COLUMNS: usize = 7;
 
 /// Makes mutants of every library tool and returns the section that counts which of them the proofs detect.

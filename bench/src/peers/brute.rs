@@ -32,19 +32,19 @@ impl Contender for Scalar {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = PoseTransform::of(pose);
+        let transform = PoseTransform::of(pose);
         let mut sums = Sums::default();
         for (position, point) in self.positions.iter().zip(&self.points) {
-            let arm = view.offset_from_tip(*position);
-            let p = view.to_tool_frame(arm);
+            let offset = transform.offset_from_tip(*position);
+            let p = transform.to_tool_frame(offset);
             if formula::is_outside_envelope(p) {
                 continue;
             }
             if let Some(evaluation) = formula::evaluate(p) {
-                sums.add([arm, p], (point.weight, point.normal), evaluation);
+                sums.add([offset, p], (point.weight, point.normal), evaluation);
             }
         }
-        sums.answer(&view)
+        sums.answer(&transform)
     }
 }
 
@@ -73,21 +73,21 @@ impl Lanes {
     }
 
     /// Adds one inside point to the sums. Its coordinates are rounded to single precision; the sums are doubles.
-    fn add_point(&self, view: &PoseTransform, index: usize, sums: &mut Sums) {
+    fn add_point(&self, transform: &PoseTransform, index: usize, sums: &mut Sums) {
         let point = &self.points[index];
-        let arm =
-            view.offset_from_tip([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
-        let p = view.to_tool_frame(arm).map(|c| f64::from(c as f32));
+        let offset = transform
+            .offset_from_tip([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
+        let p = transform.to_tool_frame(offset).map(|c| f64::from(c as f32));
         // Within rounding of the surface the two formulas may disagree about the side.
         let evaluation = formula::evaluate(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
-        sums.add([arm, p], (point.weight, point.normal), evaluation);
+        sums.add([offset, p], (point.weight, point.normal), evaluation);
     }
 }
 
 #[inline(always)]
-fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &PoseTransform, sums: &mut Sums) {
-    let rows = view.rows_f32();
-    let tip = view.tip.map(|c| c as f32);
+fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, transform: &PoseTransform, sums: &mut Sums) {
+    let rows = transform.rows_f32();
+    let tip = transform.tip.map(|c| c as f32);
     let zero = f32x16::splat(simd, 0.0);
     for block in 0..lanes.coordinates[0].len() / WIDTH {
         let range = block * WIDTH..(block + 1) * WIDTH;
@@ -99,7 +99,7 @@ fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &PoseTransform, sums
         let depth = formula::magnitude_from(simd, lists, (rows, tip));
         let mut hits = depth.simd_ge(zero).to_bitmask();
         while hits != 0 {
-            lanes.add_point(view, block * WIDTH + hits.trailing_zeros() as usize, sums);
+            lanes.add_point(transform, block * WIDTH + hits.trailing_zeros() as usize, sums);
             hits &= hits - 1;
         }
     }
@@ -111,9 +111,9 @@ impl Contender for Lanes {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = PoseTransform::of(pose);
+        let transform = PoseTransform::of(pose);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
-        sums.answer(&view)
+        dispatch!(self.level, simd => add_points_inside(simd, self, &transform, &mut sums));
+        sums.answer(&transform)
     }
 }

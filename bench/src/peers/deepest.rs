@@ -10,9 +10,10 @@ pub const TOLERANCE: f64 = 1e-6;
 
 /// Returns the largest magnitude on the part's triangles, to [`TOLERANCE`]. `best` is a magnitude known to be attained.
 pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
-    let view = PoseTransform::of(pose);
-    let to_tool =
-        |p: Point3<f64>| Vector3::from(view.to_tool_frame(view.offset_from_tip(p.coords.into())));
+    let transform = PoseTransform::of(pose);
+    let to_tool = |p: Point3<f64>| {
+        Vector3::from(transform.to_tool_frame(transform.offset_from_tip(p.coords.into())))
+    };
     let ids = 0..mesh.triangles().len() as u32;
     let mut pending: Vec<_> = ids.map(|id| mesh.triangle(TriangleId(id)).map(to_tool)).collect();
     while let Some([a, b, c]) = pending.pop() {

@@ -65,9 +65,14 @@ impl ParryBvh {
 
 /// Adds the points of the found blocks that are inside to the sums.
 #[inline(always)]
-fn add_points_inside<S: Simd>(simd: S, method: &ParryBvh, view: &PoseTransform, sums: &mut Sums) {
-    let rows = view.rows_f32();
-    let tip = view.tip.map(|c| c as f32);
+fn add_points_inside<S: Simd>(
+    simd: S,
+    method: &ParryBvh,
+    transform: &PoseTransform,
+    sums: &mut Sums,
+) {
+    let rows = transform.rows_f32();
+    let tip = transform.tip.map(|c| c as f32);
     let margin = f32x16::splat(simd, -MARGIN as f32);
     for block in &method.found_blocks {
         let Block([xs, ys, zs]) = &method.blocks[*block as usize];
@@ -80,7 +85,7 @@ fn add_points_inside<S: Simd>(simd: S, method: &ParryBvh, view: &PoseTransform, 
                 let index = *block as usize * POINTS_PER_BLOCK
                     + lane_group * WIDTH
                     + hits.trailing_zeros() as usize;
-                method.points[index].add_to(view, sums);
+                method.points[index].add_to(transform, sums);
                 hits &= hits - 1;
             }
         }
@@ -93,7 +98,7 @@ impl Contender for ParryBvh {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = PoseTransform::of(pose);
+        let transform = PoseTransform::of(pose);
         self.found_blocks.clear();
         let leaves = self.bvh.leaves(|node| {
             let (low, high) = (node.mins(), node.maxs());
@@ -101,13 +106,13 @@ impl Contender for ParryBvh {
             let centre = ends.map(|(low, high)| 0.5 * (f64::from(low) + f64::from(high)));
             let half = ends.map(|(low, high)| 0.5 * (f64::from(high) - f64::from(low)));
             formula::may_touch(
-                view.to_tool_frame(view.offset_from_tip(centre)),
-                view.box_half_extents(half),
+                transform.to_tool_frame(transform.offset_from_tip(centre)),
+                transform.box_half_extents(half),
             )
         });
         self.found_blocks.extend(leaves);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
-        sums.answer(&view)
+        dispatch!(self.level, simd => add_points_inside(simd, self, &transform, &mut sums));
+        sums.answer(&transform)
     }
 }

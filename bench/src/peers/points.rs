@@ -19,11 +19,11 @@ pub struct Point {
 impl Point {
     /// Adds the point to the sums if the formula in `f64` classifies it as inside.
     #[inline]
-    pub fn add_to(&self, view: &PoseTransform, sums: &mut Sums) {
-        let arm = view.offset_from_tip(self.position);
-        let p = view.to_tool_frame(arm);
+    pub fn add_to(&self, transform: &PoseTransform, sums: &mut Sums) {
+        let offset = transform.offset_from_tip(self.position);
+        let p = transform.to_tool_frame(offset);
         if let Some(evaluation) = formula::evaluate(p) {
-            sums.add([arm, p], (self.weight, self.normal), evaluation);
+            sums.add([offset, p], (self.weight, self.normal), evaluation);
         }
     }
 }

@@ -148,17 +148,17 @@ fn children_of(volume: usize) -> Option<[usize; 2]> {
 
 /// The tool at a pose.
 struct Tool {
-    view: PoseTransform,
+    transform: PoseTransform,
     volumes: [Dop; 5],
     sums: Sums,
 }
 
 impl Tool {
     fn at(pose: &Pose) -> Tool {
-        let view = PoseTransform::of(pose);
+        let transform = PoseTransform::of(pose);
         let axis: [f64; 3] = pose.axis().into();
         let projections = Projections {
-            tip: DIRECTION_VECTORS.map(|direction| dot(direction, view.tip)),
+            tip: DIRECTION_VECTORS.map(|direction| dot(direction, transform.tip)),
             axis: DIRECTION_VECTORS.map(|direction| dot(direction, axis)),
         };
         let cutter = union(projections.ball(), &projections.bound(&CUTTER));
@@ -166,7 +166,7 @@ impl Tool {
         let housing = projections.bound(&HOUSING);
         let neck = union(cutter, &spindle);
         let volumes = [cutter, spindle, housing, neck, union(neck, &housing)];
-        Tool { view, volumes, sums: Sums::default() }
+        Tool { transform, volumes, sums: Sums::default() }
     }
 
     /// Descends both trees at once.
@@ -187,12 +187,12 @@ impl Tool {
 
     fn add_points(&mut self, points: &[Point], decision_tree: DecisionTree) {
         for point in points {
-            let arm = self.view.offset_from_tip(point.position);
-            let p = self.view.to_tool_frame(arm);
+            let offset = self.transform.offset_from_tip(point.position);
+            let p = self.transform.to_tool_frame(offset);
             let squared = p[0] * p[0] + p[1] * p[1];
             if let Some(evaluation) = decision_tree(squared, formula::TIP - p[2]) {
                 let evaluation = formula::in_space(p, squared, evaluation);
-                self.sums.add([arm, p], (point.weight, point.normal), evaluation);
+                self.sums.add([offset, p], (point.weight, point.normal), evaluation);
             }
         }
     }
@@ -216,6 +216,6 @@ impl Contender for Thesis {
     fn query(&mut self, pose: &Pose) -> Answer {
         let mut tool = Tool::at(pose);
         tool.descend(&self.0, WHOLE);
-        tool.sums.answer(&tool.view)
+        tool.sums.answer(&tool.transform)
     }
 }

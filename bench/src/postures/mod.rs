@@ -1,7 +1,7 @@
 //! A posture sweep compared with brute force, on postures drawn from those found accessible and from the others.
 //!
-//! Each posture is rebuilt from the tool's restatement ([`stand`]) and validated by subdividing all triangles
-//! ([`free`]). Accessible postures must be free, and the others must be blocked.
+//! Each posture is rebuilt from the tool's restatement ([`tool_model`]) and validated by subdividing all triangles
+//! ([`brute_force`]). Accessible postures must be free, and the others must be blocked.
 
 pub mod brute_force;
 pub mod page;

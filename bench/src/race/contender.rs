@@ -81,12 +81,12 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Adds a point inside. `arm` and `p` are its vectors from the tip in the world frame and in the tool's frame. The
-    /// pairs are its weight and normal in the world frame, and its magnitude and direction in the tool's frame.
+    /// Adds a point inside. `offset` and `p` are its vectors from the tip in the world frame and in the tool's frame.
+    /// The pairs are its weight and normal in the world frame, and its magnitude and direction in the tool's frame.
     #[inline]
     pub fn add(
         &mut self,
-        [arm, p]: [[f64; 3]; 2],
+        [offset, p]: [[f64; 3]; 2],
         (weight, normal): (f64, [f64; 3]),
         (magnitude, direction): (f64, [f64; 3]),
     ) {
@@ -96,14 +96,14 @@ impl Sums {
         let (normal_force, direction_force) =
             (force_scale * Vector3::from(normal), force_scale * Vector3::from(direction));
         self.part[0] += normal_force;
-        self.part[1] += Vector3::from(arm).cross(&normal_force);
+        self.part[1] += Vector3::from(offset).cross(&normal_force);
         self.tool[0] -= direction_force;
         self.tool[1] -= Vector3::from(p).cross(&direction_force);
     }
 
     /// Returns the answer, with both sums in the world frame.
-    pub fn answer(&self, view: &PoseTransform) -> Answer {
-        let sum = |index: usize| view.to_world_frame(self.tool[index]) + self.part[index];
+    pub fn answer(&self, transform: &PoseTransform) -> Answer {
+        let sum = |index: usize| transform.to_world_frame(self.tool[index]) + self.part[index];
         Answer { colliding: self.colliding, depth: self.depth, wrench: Some([sum(0), sum(1)]) }
     }
 }

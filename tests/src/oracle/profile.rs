@@ -219,7 +219,7 @@ impl Profile {
         min_distance.max(0.0)
     }
 
-    /// Returns the distance defined at [`super::Oracle::singular`].
+    /// Returns the distance defined at [`super::Oracle::singularity_distance`].
     pub fn singularity_distance(&self, p: P2) -> f64 {
         let Some((near, direction)) = self.evaluate(p) else {
             return f64::INFINITY;

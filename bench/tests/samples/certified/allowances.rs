@@ -244,7 +244,7 @@ fn motion_verdicts_respect_allowances() {
                 motions::MOTION_KINDS[(5 * k) % motions::MOTION_KINDS.len()],
                 rng,
             );
-            let motion = Motion::new(&path.from, &path.to).expect("one way");
+            let motion = Motion::new(&path.from, &path.to).expect("an unambiguous rotation");
             let tolerance = [0.0, 1e-3][k % 2];
             let verdict = certifier.check_motion(&motion, tolerance);
             let text = format!("{name} on {path:?} with {allowed:?}, {tolerance:e}: {verdict:?}");
@@ -289,17 +289,17 @@ fn a_flute_may_cut_and_a_shank_may_not() {
         let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, top]);
         let bvh = TriangleBvh::new(&wall);
         let mut certifier = certifier_with(&bvh, "Flat", &[("flute", f64::INFINITY)]);
-        let found = certifier.check_pose(&upright);
-        let verdict_at_rest =
-            certifier.check_motion(&Motion::new(&upright, &upright).expect("one way"), 0.0);
+        let verdict = certifier.check_pose(&upright);
+        let verdict_at_rest = certifier
+            .check_motion(&Motion::new(&upright, &upright).expect("an unambiguous rotation"), 0.0);
         if clear {
             assert_eq!(
-                (found, verdict_at_rest),
+                (verdict, verdict_at_rest),
                 (PoseVerdict::Clear, MotionVerdict::Clear),
                 "{top}"
             );
         } else {
-            let PoseVerdict::Touching(witness) = found else { panic!("{top}: {found:?}") };
+            let PoseVerdict::Touching(witness) = verdict else { panic!("{top}: {verdict:?}") };
             assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
             assert!(
                 matches!(verdict_at_rest, MotionVerdict::Touching(..)),
@@ -313,14 +313,15 @@ fn a_flute_may_cut_and_a_shank_may_not() {
         let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
         assert_eq!(certifier.check_pose(&upright) == PoseVerdict::Clear, clear, "{allowed}");
         // Along the wall the depth is constant.
-        let found = certifier.check_motion(&motion_along_wall(), 0.02);
-        assert_eq!(found == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {found:?}");
+        let verdict = certifier.check_motion(&motion_along_wall(), 0.02);
+        assert_eq!(verdict == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {verdict:?}");
     }
 }
 
 /// Returns a motion on which the flute stays 2 mm deep in a wall at x = 4.
 fn motion_along_wall() -> Motion {
-    Motion::new(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP)).expect("one way")
+    Motion::new(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP))
+        .expect("an unambiguous rotation")
 }
 
 #[test]
@@ -330,8 +331,8 @@ fn a_flute_cuts_along_a_wall() {
     for allowed in [2.01, 3.0, f64::INFINITY] {
         for tolerance in [0.0, 1e-6, 1e-3] {
             let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
-            let found = certifier.check_motion(&motion_along_wall(), tolerance);
-            assert_eq!(found, MotionVerdict::Clear, "{allowed} {tolerance:e}");
+            let verdict = certifier.check_motion(&motion_along_wall(), tolerance);
+            assert_eq!(verdict, MotionVerdict::Clear, "{allowed} {tolerance:e}");
         }
     }
 }
@@ -354,18 +355,19 @@ fn a_nut_keeps_its_margin_from_all_sides() {
             let bvh = TriangleBvh::new(&part(gap));
             let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
             let end_pose = pose([0.0; 3], UP);
-            let found = certifier.check_pose(&end_pose);
-            let rest = Motion::new(&pose([0.0; 3], UP), &end_pose).expect("one way");
+            let verdict = certifier.check_pose(&end_pose);
+            let rest =
+                Motion::new(&pose([0.0; 3], UP), &end_pose).expect("an unambiguous rotation");
             let verdict_at_rest = certifier.check_motion(&rest, 0.0);
             if clear {
                 assert_eq!(
-                    (found, verdict_at_rest),
+                    (verdict, verdict_at_rest),
                     (PoseVerdict::Clear, MotionVerdict::Clear),
                     "{case} {gap}"
                 );
             } else {
-                let PoseVerdict::Touching(witness) = found else {
-                    panic!("{case} {gap}: {found:?}")
+                let PoseVerdict::Touching(witness) = verdict else {
+                    panic!("{case} {gap}: {verdict:?}")
                 };
                 assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
                 assert!(
@@ -375,7 +377,8 @@ fn a_nut_keeps_its_margin_from_all_sides() {
             }
             // Approach from far away along the axis.
             let lift = if case == "end" { -30.0 } else { 3.0 };
-            let approach = Motion::new(&pose([0.0, 0.0, lift], UP), &end_pose).expect("one way");
+            let approach = Motion::new(&pose([0.0, 0.0, lift], UP), &end_pose)
+                .expect("an unambiguous rotation");
             let approach = certifier.check_motion(&approach, 0.0);
             if case != "side" {
                 assert_eq!(approach == MotionVerdict::Clear, clear, "{case} {gap}: {approach:?}");
@@ -397,31 +400,32 @@ fn a_level_face_alone_keeps_its_margin() {
     for (tip, clear) in [(0.4, false), (0.6, true), (0.5 + 1e-9, true), (0.5 - 1e-9, false)] {
         let mut certifier = certifier_with(&bvh, "Flat", &[("face", -0.5)]);
         let end_pose = pose([1.0, 2.0, tip], UP);
-        let found = certifier.check_pose(&end_pose);
-        assert_eq!(found == PoseVerdict::Clear, clear, "{tip}: {found:?}");
+        let verdict = certifier.check_pose(&end_pose);
+        assert_eq!(verdict == PoseVerdict::Clear, clear, "{tip}: {verdict:?}");
         for from in [[-60.0, 2.0, tip], [1.0, 2.0, 30.0]] {
-            let path = Motion::new(&pose(from, UP), &end_pose).expect("one way");
-            let found = certifier.check_motion(&path, 0.0);
-            assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
+            let path = Motion::new(&pose(from, UP), &end_pose).expect("an unambiguous rotation");
+            let verdict = certifier.check_motion(&path, 0.0);
+            assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
         }
         // A part inside the middle of the tool, with depth allowed for the flute.
         let inside = TriangleBvh::new(&block([-1.0, -1.0, tip], [1.0, 1.0, 5.0]));
         let allowed = [("face", -0.5), ("flute", f64::INFINITY), ("shank", f64::INFINITY)];
         let mut certifier = certifier_with(&inside, "Flat", &allowed);
         // The face is the nearest surface here, and it must not be in the part at all.
-        let found = certifier.check_pose(&pose([0.0; 3], UP));
-        assert!(matches!(found, PoseVerdict::Touching(_)), "{tip}: {found:?}");
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
+        assert!(matches!(verdict, PoseVerdict::Touching(_)), "{tip}: {verdict:?}");
         let above = TriangleBvh::new(&block([5.8, -0.1, tip], [5.9, 0.1, 5.0]));
         let mut certifier = certifier_with(&above, "Flat", &allowed);
-        let found = certifier.check_pose(&pose([0.0; 3], UP));
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
         assert_eq!(
-            matches!(found, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
+            matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
             clear,
-            "{tip}: {found:?}"
+            "{tip}: {verdict:?}"
         );
-        let path = Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("one way");
-        let found = certifier.check_motion(&path, 0.0);
-        assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
+        let path =
+            Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("an unambiguous rotation");
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
     }
 }
 
@@ -436,13 +440,18 @@ fn allowances_of_all_surfaces_permit_depth_or_require_a_margin() {
         let allowances: Vec<_> =
             allowances.iter().map(|(name, allowed)| (name.as_str(), *allowed)).collect();
         let mut certifier = certifier_with(&bvh, "Flat", &allowances);
-        let found = certifier.check_pose(&deep);
-        assert_eq!(matches!(found, PoseVerdict::Touching(_)), !clear, "{allowed}: {found:?}");
+        let verdict = certifier.check_pose(&deep);
+        assert_eq!(matches!(verdict, PoseVerdict::Touching(_)), !clear, "{allowed}: {verdict:?}");
         let high = certifier.check_pose(&pose([0.0, 0.0, 1.0 + 1e-6], UP));
         assert_eq!(high, PoseVerdict::Clear, "{allowed}");
-        let path = Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("one way");
-        let found = certifier.check_motion(&path, 0.0);
-        assert_eq!(matches!(found, MotionVerdict::Touching(..)), !clear, "{allowed}: {found:?}");
+        let path =
+            Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("an unambiguous rotation");
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(
+            matches!(verdict, MotionVerdict::Touching(..)),
+            !clear,
+            "{allowed}: {verdict:?}"
+        );
     }
 }
 

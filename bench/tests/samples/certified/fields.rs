@@ -195,11 +195,12 @@ fn allowances_apply_to_each_surface_of_a_field() {
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
     let slide = Motion::new(&at(-1.0, 0.0), &at(1.0, 0.0)).expect("upright");
     assert_eq!(side.check_motion(&slide, 1e-6), MotionVerdict::Clear);
-    let found = certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
-    let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = found else {
-        panic!("{found:?}")
+    let motion_depth =
+        certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
+    let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = motion_depth else {
+        panic!("{motion_depth:?}")
     };
-    assert!(low <= 0.5 && 0.5 <= high + 1e-9 && max_depth < 0.52, "{found:?}");
+    assert!(low <= 0.5 && 0.5 <= high + 1e-9 && max_depth < 0.52, "{motion_depth:?}");
     assert_eq!(
         certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6).expect("a surface"),
         MotionDepth::Within

@@ -173,9 +173,9 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
         let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
         let single = soup(&[corners]);
         let brute = BruteForce::new(&single, &oracle, 1.0);
-        let found = brute.deepest(&brute.tool_frame(&above), &mut rng, &mut samples);
-        if found > high + 1e-9 {
-            deeper.push((id, corners, found, depth(&single, "BullNose", &above, 1e-6)));
+        let sampled_depth = brute.deepest(&brute.tool_frame(&above), &mut rng, &mut samples);
+        if sampled_depth > high + 1e-9 {
+            deeper.push((id, corners, sampled_depth, depth(&single, "BullNose", &above, 1e-6)));
         }
     }
     assert!(deeper.is_empty(), "{high}, but {deeper:?}");

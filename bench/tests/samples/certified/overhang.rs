@@ -201,7 +201,7 @@ fn a_zone_of_a_corner_on_the_axis_is_found_inside() {
         for (surface, limit) in [("dimple", limit), ("flute", unlimited), ("top", unlimited)] {
             certifier = certifier.with_allowance(surface, limit).expect("a surface");
         }
-        let found = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
-        assert_eq!(found, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
+        let verdict = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
+        assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
     }
 }
