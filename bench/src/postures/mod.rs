@@ -170,7 +170,7 @@ pub fn measure(settings: &ComparisonSettings<'_>) -> Result<ComparisonResults, B
         reached,
         reach,
         accessible,
-        inaccessible: inaccessible,
+        inaccessible,
         rounding: validation.rounding,
     })
 }
@@ -210,9 +210,9 @@ fn sort_results(results: Vec<Result<(), (bool, Discrepancy)>>) -> ValidatedPostu
     let mut validated = ValidatedPostures { count: results.len(), ..ValidatedPostures::default() };
     for (is_open, finding) in results.into_iter().filter_map(Result::err) {
         if is_open {
-            validated.undecided.push(finding)
+            validated.undecided.push(finding);
         } else {
-            validated.contradicted.push(finding)
+            validated.contradicted.push(finding);
         }
     }
     validated

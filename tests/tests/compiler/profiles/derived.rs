@@ -38,15 +38,15 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
     let tool = tool(text).expect("a good profile");
     assert_eq!(tool.model.regions.len(), order.len());
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Rng::new(3);
+    let mut rng = Rng::new(3);
     let [radius, height] = oracle.extent();
     let scale = radius.max(height);
     let mut evaluation = 0;
     for _ in 0..60_000 {
         let p = [
-            draw.between(-1.1 * radius, 1.1 * radius),
-            draw.between(-1.1 * radius, 1.1 * radius),
-            draw.between(-0.05 * height, 1.05 * height),
+            rng.between(-1.1 * radius, 1.1 * radius),
+            rng.between(-1.1 * radius, 1.1 * radius),
+            rng.between(-0.05 * height, 1.05 * height),
         ];
         if oracle.border_distance(p) < 1e-9 * scale {
             continue;

@@ -3,7 +3,7 @@
 //! largest coordinate, and ρ the distance to the nearest point at which the direction does not exist.
 
 use super::LENGTHS;
-use super::points::{scale, shown};
+use super::points::{format_point, scale};
 use touchoff::tool::Evaluators;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
@@ -24,7 +24,7 @@ struct Worst {
 impl Worst {
     fn see(&mut self, error: f64, p: [f64; 3], more: impl FnOnce() -> String) {
         if error.is_nan() || error > self.error {
-            *self = Worst { error, place: format!("{}; {}", shown(p), more()) };
+            *self = Worst { error, place: format!("{}; {}", format_point(p), more()) };
         }
     }
 
@@ -64,16 +64,17 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
         let distance = oracle.signed_distance(p);
         let contained = T::contains(p);
         if distance.abs() > 2.0 * ulp && contained != (distance < 0.0) {
-            found
-                .sides
-                .push(format!("contains = {contained}, distance {distance:e}: {}", shown(p)));
+            found.sides.push(format!(
+                "contains = {contained}, distance {distance:e}: {}",
+                format_point(p)
+            ));
         }
         let owner = T::owner(p);
         let expected = oracle.evaluate(p);
         if oracle.border_distance(p) > BORDER_DISTANCE_FRACTION * s
             && owner != expected.map(|expected| expected.owner)
         {
-            found.owners.push(format!("{owner:?}, not {expected:?}: {}", shown(p)));
+            found.owners.push(format!("{owner:?}, not {expected:?}: {}", format_point(p)));
         }
         if let Some(owner) = owner.filter(|_| contained) {
             inside += 1;
@@ -120,8 +121,13 @@ fn evaluation<T: Evaluators>(
 ) {
     let (depth, niceness, direction) = (T::depth(p), T::niceness(p), T::direction(p));
     let whole = [depth, niceness].into_iter().chain(direction);
-    assert!(whole.clone().all(f64::is_finite), "{:?} at {}", whole.collect::<Vec<_>>(), shown(p));
-    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
+    assert!(
+        whole.clone().all(f64::is_finite),
+        "{:?} at {}",
+        whole.collect::<Vec<_>>(),
+        format_point(p)
+    );
+    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", format_point(p));
     // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
     let mut deep = expected.map_or(0.0, |expected| expected.depth);
     if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
@@ -138,7 +144,7 @@ fn evaluation<T: Evaluators>(
         let error = (magnitude / unit - hard).abs() / ulp;
         found.magnitude.see(error, p, || format!("{magnitude:e} at length {length}"));
         let gradient = T::gradient(p, length);
-        assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", shown(p));
+        assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", format_point(p));
     }
     let size = norm(direction);
     found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));

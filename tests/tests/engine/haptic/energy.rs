@@ -109,9 +109,9 @@ fn generated_energy_is_dissipated_up_to_the_damper_limit() {
             *tapping_energy_at_stiffness(&part, stiffness, direct, passive).last().expect("states")
         });
         assert!(free.input < 0.0 && free.dissipated == 0.0, "{free:?}");
-        let beyond = free.generated > limit;
-        reached[usize::from(beyond)] = true;
-        if beyond {
+        let exceeds_limit = free.generated > limit;
+        reached[usize::from(exceeds_limit)] = true;
+        if exceeds_limit {
             // The controller takes out all that it may; the rest stays.
             assert!(passive.dissipated > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
             let remaining = free.generated - passive.dissipated;

@@ -10,9 +10,9 @@ use touchoff_tests::haptics::sheet::{press_on_sheet, sheet_part};
 #[test]
 fn a_coupled_tool_stays_on_its_side_of_the_sheet() {
     let all = press_on_sheet(&sheet_part(), Law::Gradient, None);
-    for [wanted, tip, force] in &all {
-        assert!(*tip > -0.25, "{wanted}: {tip}");
-        assert!(*wanted < 4.0 || *force > 0.6, "{wanted}: {force}");
+    for [hand_depth, tip, force] in &all {
+        assert!(*tip > -0.25, "{hand_depth}: {tip}");
+        assert!(*hand_depth < 4.0 || *force > 0.6, "{hand_depth}: {force}");
     }
     let [wanted, tip, force] = all.last().expect("two seconds");
     let springs = (wanted - 0.2 + tip) * 0.2 / (0.2 + 1.0);

@@ -10,7 +10,7 @@ use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn depths_keep_the_stated_error_bound() {
-    let mut draw = Rng::new(3);
+    let mut rng = Rng::new(3);
     let mut tightest = f64::INFINITY;
     for (tool, restated) in tools() {
         let info = tool.info();
@@ -23,11 +23,11 @@ fn depths_keep_the_stated_error_bound() {
         // A box of points about the tool, each with a triangle id of its own, far from the world's origin.
         let far = Vector3::new(700.0, -300.0, 55.0);
         let count = 4_000;
-        let within = |draw: &mut Rng| {
-            let across = |draw: &mut Rng| draw.between(-info.radius(), info.radius());
-            Point3::new(across(draw), across(draw), draw.between(low, high)) + far
+        let within = |rng: &mut Rng| {
+            let across = |rng: &mut Rng| rng.between(-info.radius(), info.radius());
+            Point3::new(across(rng), across(rng), rng.between(low, high)) + far
         };
-        let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut draw)).collect();
+        let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut rng)).collect();
         let cloud = Cloud::new(
             points.clone(),
             vec![Vector3::z(); count],
