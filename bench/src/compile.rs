@@ -8,7 +8,7 @@ use tool_dsl::plan::Tree;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 use touchoff_tests::library::{folder, library};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points at which splits are counted.
 const SPLIT_SAMPLES: usize = 100_000;
@@ -36,7 +36,7 @@ pub fn sources() -> Vec<Source> {
 
 /// Times from source text to tokens, s, over several runs.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Times {
+pub struct CompileTimes {
     /// The shortest, which other load on the machine disturbs least.
     pub best: f64,
     /// The median.
@@ -49,7 +49,7 @@ pub struct Times {
 ///
 /// # Panics
 /// If the tool has an error.
-pub fn times(source: &Source, count: usize) -> Times {
+pub fn compile_times(source: &Source, count: usize) -> CompileTimes {
     let mut seconds: Vec<f64> = (0..count.max(1))
         .map(|_| {
             let start = Instant::now();
@@ -61,7 +61,7 @@ pub fn times(source: &Source, count: usize) -> Times {
         })
         .collect();
     seconds.sort_by(f64::total_cmp);
-    Times {
+    CompileTimes {
         best: seconds[0],
         median: seconds[seconds.len() / 2],
         worst: seconds[seconds.len() - 1],
@@ -70,7 +70,7 @@ pub fn times(source: &Source, count: usize) -> Times {
 
 /// Size statistics of a compiled tool.
 #[derive(Clone, Debug)]
-pub struct Parts {
+pub struct ToolStats {
     /// The tool's name.
     pub name: String,
     /// Number of regions.
@@ -91,11 +91,11 @@ pub struct Parts {
 ///
 /// # Panics
 /// If the tool has an error.
-pub fn parts(source: &Source) -> Parts {
+pub fn tool_stats(source: &Source) -> ToolStats {
     let tool = compile(source).into_tool().expect("a tool of the library");
     let regions = &tool.model.regions;
     let segments = regions.iter().filter(|region| !region.name.contains('/')).count();
-    Parts {
+    ToolStats {
         name: tool.model.name.clone(),
         regions: regions.len(),
         segments: tool.model.is_exact().then_some(segments),

@@ -6,7 +6,7 @@ use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::number::Number;
 use tool_dsl::plan::{PlannedTool, Tree};
 use tool_dsl::prove::Certificate;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points at which a mutant is compared with the original tool.
 const POINTS: usize = 20_000;
@@ -32,24 +32,24 @@ pub struct Mutant {
     /// Index into [`KINDS`].
     pub kind: usize,
     /// Description of the location of the defect.
-    pub place: String,
+    pub location: String,
     /// The defective tool.
     pub tool: PlannedTool,
 }
 
 /// The evidence that a mutant is defective.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Caught {
+pub enum Detection {
     /// An error.
     Error,
     /// A warning, while some part of the proof is undecided.
-    Open,
+    Undecided,
     /// A warning, with no part of the proof undecided.
     Warning,
     /// Only a difference from the certificate of the original tool, which no user has.
-    Compared,
+    ByComparison,
     /// No evidence.
-    Not,
+    Undetected,
 }
 
 /// Returns up to `count` mutants of a tool. The kinds of defects take turns, and each defect has a random location. A
@@ -64,7 +64,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
     let size = tool.extent.scale();
     let mut pick = |count: usize| (rng.bits() % count.max(1) as u64) as usize;
     let region = pick(tool.model.regions.len());
-    let mut place = tool.model.regions[region].name.clone();
+    let mut location = tool.model.regions[region].name.clone();
     let graph = &mut tool.model.graph;
     let changed = &mut tool.model.regions[region];
     let number = |value: f64| Number::from_f64(value).expect("a finite number");
@@ -91,19 +91,19 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             let other = (region + 1 + pick(tool.model.regions.len().max(2) - 1))
                 .checked_rem(tool.model.regions.len())
                 .filter(|other| *other != region)?;
-            place = format!("{place} as {}", tool.model.regions[other].name);
+            location = format!("{location} as {}", tool.model.regions[other].name);
             let new_owner =
                 |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
             tool.plan.owner = leaves(&tool.plan.owner, &new_owner);
         }
         7 => {
             let mut split = pick(tool.plan.owner.tests());
-            place = format!("split {split}");
+            location = format!("split {split}");
             tool.plan.owner = with_split_exchanged(&tool.plan.owner, &mut split);
         }
         _ => {
             let curve = pick(tool.model.curves.len());
-            place = format!("curve {curve}");
+            location = format!("curve {curve}");
             let value = tool.model.curves[curve].value;
             let change = match kind {
                 8 => graph.number(number(0.01 * size)),
@@ -116,7 +116,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             tool.model.curves[curve].value = graph.add(value, change);
         }
     }
-    Some(Mutant { kind, place, tool })
+    Some(Mutant { kind, location, tool })
 }
 
 /// Returns the tree with the owner of each leaf mapped.
@@ -173,7 +173,7 @@ fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
 }
 
 /// Returns whether a mutant differs from the original in solid, depth or direction at any of `POINTS` random points.
-pub fn changes(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool {
+pub fn differs(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool {
     let mut rng = Rng::new(seed);
     let (mut original_values, mut mutant_values) = (evaluator(original), evaluator(mutant));
     let sides = original.extent.cell().sides;
@@ -198,7 +198,7 @@ pub fn changes(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool 
 
 /// Returns the evidence that a tool is defective: the diagnostics of its own certificate, or else a difference from the
 /// certificate of the original tool. The original must have no diagnostics.
-pub fn caught(original: &Certificate, mutant: &PlannedTool) -> Caught {
+pub fn detect(original: &Certificate, mutant: &PlannedTool) -> Detection {
     let certificate = Certificate::of(mutant);
     let diagnostics = certificate.diagnostics(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
@@ -219,12 +219,16 @@ pub fn caught(original: &Certificate, mutant: &PlannedTool) -> Caught {
     let has_same_bounds = same(original.lower_slope(), certificate.lower_slope())
         && same(original.lipschitz(), certificate.lipschitz());
     if any_error(&diagnostics) {
-        Caught::Error
+        Detection::Error
     } else if diagnostics.is_empty() {
-        if has_larger_error || !has_same_bounds { Caught::Compared } else { Caught::Not }
+        if has_larger_error || !has_same_bounds {
+            Detection::ByComparison
+        } else {
+            Detection::Undetected
+        }
     } else if certificate.undecided.is_empty() {
-        Caught::Warning
+        Detection::Warning
     } else {
-        Caught::Open
+        Detection::Undecided
     }
 }

@@ -28,7 +28,7 @@ pub struct Section {
     /// The Markdown below the heading.
     pub body: String,
     /// One line of text per missed threshold or violated contract.
-    pub missed: Vec<String>,
+    pub missed_limits: Vec<String>,
 }
 
 impl Page {
@@ -39,7 +39,7 @@ impl Page {
 
     /// Returns the missed thresholds and violated contracts of all sections.
     pub fn missed(&self) -> impl Iterator<Item = &String> {
-        self.sections.iter().flat_map(|section| &section.missed)
+        self.sections.iter().flat_map(|section| &section.missed_limits)
     }
 
     /// Writes the page and its figures into a folder, which is created if it does not exist. `command` is the command
@@ -119,7 +119,7 @@ mod tests {
         let section = |(title, body): (&'static str, &str)| Section {
             title,
             body: body.to_owned(),
-            missed: Vec::new(),
+            missed_limits: Vec::new(),
         };
         let page = Page {
             name: "sums",

@@ -105,7 +105,7 @@ impl Series {
     /// Returns the series with this colour number instead of the colour of its index in the plot. A method can
     /// thus have the same colour in every plot.
     #[must_use]
-    pub fn look(self, colour_number: usize) -> Series {
+    pub fn with_colour(self, colour_number: usize) -> Series {
         Series { colour_number: Some(colour_number), ..self }
     }
 
@@ -124,7 +124,7 @@ impl Plot {
 
     /// Returns the plot with one more series, drawn over the existing ones.
     #[must_use]
-    pub fn with(mut self, series: Series) -> Plot {
+    pub fn with_series(mut self, series: Series) -> Plot {
         self.series.push(series);
         self
     }
@@ -280,8 +280,8 @@ mod tests {
             (Axis::linear("x"), Axis::linear("y"), 4),
         ] {
             let plot = Plot::new("a < b", x, y)
-                .with(Series::line("line", points.clone()))
-                .with(Series::dashes("", vec![[1.0, 1.0], [4.0, 1.0]]));
+                .with_series(Series::line("line", points.clone()))
+                .with_series(Series::dashes("", vec![[1.0, 1.0], [4.0, 1.0]]));
             let svg = plot.svg();
             assert_eq!(svg, plot.svg());
             // The legend has one more circle.
@@ -294,7 +294,8 @@ mod tests {
     fn draws_empty_plots_and_single_points() {
         for axis in [Axis::log, Axis::linear] {
             for points in [vec![], vec![[5.0, 5.0]]] {
-                let plot = Plot::new("", axis("x"), axis("y")).with(Series::points("p", points));
+                let plot =
+                    Plot::new("", axis("x"), axis("y")).with_series(Series::points("p", points));
                 assert!(plot.svg().ends_with("</svg>\n"));
             }
         }

@@ -1,6 +1,6 @@
 //! Inputs for the benches of single calls: many points near a tool, and poses along the tube.
 
-use crate::oracle::draw::Rng;
+use crate::oracle::rng::Rng;
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::{PointBatch, Tool};
 use touchoff::{Cloud, Interval, Part, Pose, Sampling};
@@ -19,17 +19,17 @@ pub fn tool(name: &str) -> &'static dyn Tool {
 
 /// Returns points within 5 % of the tool's radius of its outline, inside or not, such as the tree leaves of a
 /// cloud. If there are more than some 16,000, a processor cannot learn which branches they take.
-pub fn near(tool: &dyn Tool, count: usize) -> PointBatch {
+pub fn points_near_surface(tool: &dyn Tool, count: usize) -> PointBatch {
     let info = tool.info();
     let (Interval { low, high }, radius) = (info.reach(), info.radius());
-    let mut draw = Rng::new(1);
+    let mut rng = Rng::new(1);
     let mut points = PointBatch::default();
     while points.len() < count {
-        let z = draw.between(low, high);
+        let z = rng.between(low, high);
         let slabs = info.envelope.iter().filter(|slab| (slab.low..=slab.high).contains(&z));
-        let outline = slabs.fold(0.0, |most, slab| slab.radius.max(most));
-        let d = outline + draw.between(-0.05, 0.05) * radius;
-        let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+        let outline = slabs.fold(0.0, |max_radius, slab| slab.radius.max(max_radius));
+        let d = outline + rng.between(-0.05, 0.05) * radius;
+        let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
         points.push([d * cos, d * sin, z]);
     }
     points

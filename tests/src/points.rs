@@ -1,6 +1,6 @@
 //! Test points that are hard for an evaluator of a profile, and as many ordinary ones.
 
-use crate::oracle::draw::Rng;
+use crate::oracle::rng::Rng;
 use crate::oracle::{Nearest, Oracle};
 
 /// Number of points beside each border point that is found.
@@ -13,13 +13,18 @@ const HARD_POINTS: &str = include_str!("hard_points.tsv");
 /// surface or of a splitting curve. Adds every vertex, every centre, points on the axis, and the points with the
 /// largest errors that are known.
 pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
-    let mut draw = Rng::new(seed);
+    let mut rng = Rng::new(seed);
     let mut points = Vec::new();
-    anywhere(oracle, count / 2, &mut draw, &mut points);
-    beside_borders(oracle, count.div_ceil(2 * POINTS_PER_BORDER_POINT), &mut draw, &mut points);
-    at_corners(oracle, &mut draw, &mut points);
-    on_the_axis(oracle, &mut points);
-    points.extend(hard(oracle.name()));
+    add_random_points(oracle, count / 2, &mut rng, &mut points);
+    add_points_near_borders(
+        oracle,
+        count.div_ceil(2 * POINTS_PER_BORDER_POINT),
+        &mut rng,
+        &mut points,
+    );
+    add_points_at_corners(oracle, &mut rng, &mut points);
+    add_points_on_axis(oracle, &mut points);
+    points.extend(hard_points(oracle.name()));
     points
 }
 
@@ -27,7 +32,7 @@ pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
 ///
 /// # Panics
 /// If a line of the list is not a name and three numbers.
-fn hard(tool: &str) -> impl Iterator<Item = [f64; 3]> {
+fn hard_points(tool: &str) -> impl Iterator<Item = [f64; 3]> {
     let coordinate = |word: &str| word.parse().expect("a coordinate");
     let line = move |line: &str| {
         let words: Vec<&str> = line.split('\t').collect();
@@ -37,88 +42,93 @@ fn hard(tool: &str) -> impl Iterator<Item = [f64; 3]> {
     HARD_POINTS.lines().filter_map(line)
 }
 
-fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
+fn to_space([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
     [d * cos, d * sin, z]
 }
 
-fn any_azimuth(draw: &mut Rng) -> [f64; 2] {
-    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+fn random_azimuth(rng: &mut Rng) -> [f64; 2] {
+    let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
     [cos, sin]
 }
 
 /// Returns a unit vector across the axis: exactly along x or y, or in a random direction.
-fn azimuth(draw: &mut Rng) -> [f64; 2] {
-    match draw.bits() % 6 {
+fn azimuth(rng: &mut Rng) -> [f64; 2] {
+    match rng.bits() % 6 {
         0 => [1.0, 0.0],
         1 => [0.0, 1.0],
         2 => [-1.0, -0.0],
         3 => [0.0, -1.0],
-        _ => any_azimuth(draw),
+        _ => random_azimuth(rng),
     }
 }
 
-fn anywhere(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn add_random_points(oracle: &Nearest, count: usize, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
     for _ in 0..count {
-        let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-        points.push([across[0], across[1], draw.between(-0.05 * height, 1.05 * height)]);
+        let xy = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+        points.push([xy[0], xy[1], rng.between(-0.05 * height, 1.05 * height)]);
     }
 }
 
 /// Finds border points by bisection of a line segment on whose ends the oracle disagrees.
-fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn add_points_near_borders(
+    oracle: &Nearest,
+    count: usize,
+    rng: &mut Rng,
+    points: &mut Vec<[f64; 3]>,
+) {
     let curves = oracle.curves();
-    let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
-    let mut found = 0;
-    while found < count {
+    let owner = |[d, z]: [f64; 2]| oracle.evaluate([d, 0.0, z]).map(|evaluation| evaluation.owner);
+    let mut border_points = 0;
+    while border_points < count {
         // Short curves as often as long ones.
-        let curve = &curves[draw.bits() as usize % curves.len()];
-        let sample = curve[draw.bits() as usize % curve.len()];
+        let curve = &curves[rng.bits() as usize % curves.len()];
+        let sample = curve[rng.bits() as usize % curve.len()];
         let reach = 0.1 * oracle.extent()[0];
-        let mut near = || {
-            let mut step = || draw.between(-reach, reach);
+        let mut random_point_nearby = || {
+            let mut step = || rng.between(-reach, reach);
             [(sample[0] + step()).abs(), sample[1] + step()]
         };
-        let (mut a, mut b) = (near(), near());
+        let (mut a, mut b) = (random_point_nearby(), random_point_nearby());
         let first = owner(a);
         if first == owner(b) {
             continue;
         }
-        found += 1;
+        border_points += 1;
         for _ in 0..45 {
             let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
             if owner(middle) == first { a = middle } else { b = middle }
         }
         for _ in 0..POINTS_PER_BORDER_POINT {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
-            let size = 10f64.powf(draw.between(-16.0, -6.0));
-            let [cos, sin] = any_azimuth(draw);
-            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth(draw)));
+            let size = 10f64.powf(rng.between(-16.0, -6.0));
+            let [cos, sin] = random_azimuth(rng);
+            points.push(to_space([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth(rng)));
         }
     }
 }
 
 /// Adds vertices, centres and ends of known curves, and points one ulp to either side in `d` and in `z`.
-fn at_corners(oracle: &Nearest, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
+fn add_points_at_corners(oracle: &Nearest, rng: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     for [d, z] in oracle.corners() {
         for d in neighbours(d) {
             for z in neighbours(z) {
-                let straight = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([any_azimuth(draw)]);
-                points.extend(straight.map(|azimuth| over([d.abs(), z], azimuth)));
+                let azimuths = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([random_azimuth(rng)]);
+                points.extend(azimuths.map(|azimuth| to_space([d.abs(), z], azimuth)));
             }
         }
     }
 }
 
 /// Adds points on the axis and as close to it as numbers go, at every height that a corner has and at others.
-fn on_the_axis(oracle: &Nearest, points: &mut Vec<[f64; 3]>) {
+fn add_points_on_axis(oracle: &Nearest, points: &mut Vec<[f64; 3]>) {
     let height = oracle.extent()[1];
     let corners = oracle.corners().into_iter().flat_map(|[_, z]| [z, z.next_up(), z.next_down()]);
     let others = (0..=100).map(|k| height * f64::from(k) / 100.0);
     for z in corners.chain(others).chain([-0.0, 5e-324, -5e-324]) {
-        for close in [0.0, -0.0, 5e-324, 2f64.powi(-540)] {
-            points.extend([[close, 0.0, z], [-0.0, close, z], [-close, close, z]]);
+        for offset in [0.0, -0.0, 5e-324, 2f64.powi(-540)] {
+            points.extend([[offset, 0.0, z], [-0.0, offset, z], [-offset, offset, z]]);
         }
     }
 }

@@ -4,11 +4,11 @@
 //! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
 //! once.
 
-use super::brute::{Brute, GROUP, Point, Seen, nearest};
+use super::brute::{BruteForce, Point, TRIANGLES_PER_GROUP, ToolFrame, nearest};
 use nalgebra::Point3;
 use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Maximum number of triangles sampled per pose, and number of samples per triangle.
 const MAX_TRIANGLES: usize = 40;
@@ -22,14 +22,14 @@ const STEPS_PER_CLIMB: usize = 700;
 
 /// A tool's motion, as it is specified.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct ReferenceMotion {
     /// The first pose.
     pub from: Pose,
     /// The last pose.
     pub to: Pose,
 }
 
-impl Way {
+impl ReferenceMotion {
     /// Returns the pose at parameter `t` in 0 to 1, with the axis by Shoemake's formula.
     ///
     /// # Panics
@@ -55,7 +55,7 @@ impl Way {
 
 /// A sample of a motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Closest {
+pub struct MotionSample {
     /// The time, 0 to 1.
     pub t: f64,
     /// The index of the triangle.
@@ -70,24 +70,25 @@ fn point(p: Point3<f64>) -> Point {
     [p.x, p.y, p.z]
 }
 
-impl Brute<'_> {
-    fn evaluation(&self, frame: &Seen, p: Point) -> f64 {
-        self.depth(self.to_tool(frame, Point3::from(p))) * self.length
+impl BruteForce<'_> {
+    fn evaluation(&self, frame: &ToolFrame, p: Point) -> f64 {
+        self.depth(self.to_tool_frame(frame, Point3::from(p))) * self.length
     }
 
     /// Returns the deepest sample at a time.
-    pub fn at(&self, motion: &Way, t: f64, rng: &mut Rng) -> Closest {
-        let frame = self.seen(&motion.pose(t));
+    pub fn deepest_at(&self, motion: &ReferenceMotion, t: f64, rng: &mut Rng) -> MotionSample {
+        let frame = self.tool_frame(&motion.pose(t));
         let [radius, height] = self.oracle.extent();
-        let mut best = Closest { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
+        let mut best =
+            MotionSample { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
         // Upper bound of the depth in a ball, from its distance to the tool's bounding cylinder.
         let depth_bound = |(centroid, reach): &(Point3<f64>, f64)| {
-            let p = self.to_tool(&frame, *centroid);
+            let p = self.to_tool_frame(&frame, *centroid);
             let radial_gap = (p[0].hypot(p[1]) - radius).max(0.0);
             let axial_gap = (p[2] - height).max(-p[2]).max(0.0);
             reach - (radial_gap * radial_gap + axial_gap * axial_gap).sqrt() * self.length
         };
-        let bounds = self.groups.iter().map(depth_bound).enumerate();
+        let bounds = self.group_balls.iter().map(depth_bound).enumerate();
         let mut groups: Vec<(usize, f64)> = bounds.collect();
         groups.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut candidates = Vec::new();
@@ -95,15 +96,17 @@ impl Brute<'_> {
             if bound < best.depth {
                 break;
             }
-            for id in GROUP * group..(GROUP * (group + 1)).min(self.balls.len()) {
-                let (centroid, reach) = &self.balls[id];
-                if depth_bound(&self.balls[id]) < best.depth {
+            for id in TRIANGLES_PER_GROUP * group
+                ..(TRIANGLES_PER_GROUP * (group + 1)).min(self.bounding_balls.len())
+            {
+                let (centroid, reach) = &self.bounding_balls[id];
+                if depth_bound(&self.bounding_balls[id]) < best.depth {
                     continue;
                 }
                 let depth = self.evaluation(&frame, point(*centroid));
                 candidates.push((depth + reach, id));
                 if depth > best.depth {
-                    best = Closest { t, triangle: id, point: point(*centroid), depth };
+                    best = MotionSample { t, triangle: id, point: point(*centroid), depth };
                 }
             }
         }
@@ -125,7 +128,7 @@ impl Brute<'_> {
             for p in points {
                 let depth = self.evaluation(&frame, p);
                 if depth > best.depth {
-                    best = Closest { t, triangle: id, point: p, depth };
+                    best = MotionSample { t, triangle: id, point: p, depth };
                 }
             }
         }
@@ -134,20 +137,26 @@ impl Brute<'_> {
 
     /// Returns the deepest sample of a whole motion, at `times` random times and at both ends. If `closely`, also
     /// refines around the best of them.
-    pub fn closest(&self, motion: &Way, times: u32, closely: bool, rng: &mut Rng) -> Closest {
+    pub fn deepest_in_motion(
+        &self,
+        motion: &ReferenceMotion,
+        times: u32,
+        closely: bool,
+        rng: &mut Rng,
+    ) -> MotionSample {
         let step = 1.0 / f64::from(times);
         let random_time = |k| (f64::from(k) + rng.between(0.0, 1.0)) * step;
         let mut sampled_times: Vec<f64> = (0..times).map(random_time).collect();
         sampled_times.extend([0.0, 1.0]);
-        let mut samples: Vec<Closest> =
-            sampled_times.into_iter().map(|t| self.at(motion, t, rng)).collect();
+        let mut samples: Vec<MotionSample> =
+            sampled_times.into_iter().map(|t| self.deepest_at(motion, t, rng)).collect();
         let sort_deepest_first =
-            |samples: &mut Vec<Closest>| samples.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+            |samples: &mut Vec<MotionSample>| samples.sort_by(|a, b| b.depth.total_cmp(&a.depth));
         sort_deepest_first(&mut samples);
         for k in 0..if closely { REFINED_TIMES.min(samples.len()) } else { 0 } {
             for _ in 0..REFINEMENTS_PER_TIME {
                 let t = (samples[k].t + rng.between(-step, step)).clamp(0.0, 1.0);
-                samples.push(self.at(motion, t, rng));
+                samples.push(self.deepest_at(motion, t, rng));
             }
         }
         sort_deepest_first(&mut samples);
@@ -160,11 +169,19 @@ impl Brute<'_> {
     }
 
     /// Climbs in time and position from a sample, and returns the deepest sample reached.
-    fn climb_in_time(&self, motion: &Way, start: Closest, step: f64, rng: &mut Rng) -> Closest {
+    fn climb_in_time(
+        &self,
+        motion: &ReferenceMotion,
+        start: MotionSample,
+        step: f64,
+        rng: &mut Rng,
+    ) -> MotionSample {
         let corners = self.mesh.triangle(TriangleId(start.triangle as u32)).map(point);
         let mut best = start;
-        let (mut time_step, mut distance) =
-            (step, self.balls[start.triangle].1.min(self.length * self.oracle.extent()[0]));
+        let (mut time_step, mut distance) = (
+            step,
+            self.bounding_balls[start.triangle].1.min(self.length * self.oracle.extent()[0]),
+        );
         let mut failed = 0;
         for k in 0..STEPS_PER_CLIMB {
             if time_step < 1e-17 && distance < 1e-14 {
@@ -178,9 +195,9 @@ impl Brute<'_> {
                 [0, 1, 2].map(|axis| best.point[axis] + offset * direction[axis]),
                 &corners,
             );
-            let depth = self.evaluation(&self.seen(&motion.pose(t)), p);
+            let depth = self.evaluation(&self.tool_frame(&motion.pose(t)), p);
             if depth > best.depth {
-                best = Closest { t, point: p, depth, ..best };
+                best = MotionSample { t, point: p, depth, ..best };
                 failed = 0;
                 (time_step, distance) = ((1.3 * time_step).min(step), 1.3 * distance);
             } else {

@@ -6,7 +6,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, Pose, TriangleId};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 
 /// A point or vector in the tool's frame and unit.
@@ -24,7 +24,7 @@ const MAX_CLIMBS_PER_TRIANGLE: usize = 3;
 const STEPS_PER_CLIMB: usize = 500;
 
 /// A part's triangles and a tool.
-pub struct Brute<'a> {
+pub struct BruteForce<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) oracle: &'a Nearest,
     /// The tool's unit of length, in the part's unit.
@@ -32,16 +32,16 @@ pub struct Brute<'a> {
     /// The sum of the tool's size, the part's size and the part's distance from the origin, in the part's unit.
     pub size: f64,
     /// Bounding ball of each triangle: centroid and radius.
-    pub(super) balls: Vec<(Point3<f64>, f64)>,
+    pub(super) bounding_balls: Vec<(Point3<f64>, f64)>,
     /// Bounding balls of groups of consecutive triangles.
-    pub(super) groups: Vec<(Point3<f64>, f64)>,
+    pub(super) group_balls: Vec<(Point3<f64>, f64)>,
 }
 
 /// Number of triangles per group.
-pub(super) const GROUP: usize = 32;
+pub(super) const TRIANGLES_PER_GROUP: usize = 32;
 
 /// A pose: its tip, and the tool's axes in the world frame.
-pub struct Seen {
+pub struct ToolFrame {
     tip: Point3<f64>,
     axes: [[f64; 3]; 3],
 }
@@ -100,9 +100,9 @@ fn bounding_ball(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
     (centre, reach.fold(0.0, f64::max) * (1.0 + 1e-12))
 }
 
-impl<'a> Brute<'a> {
+impl<'a> BruteForce<'a> {
     /// Prepares the triangles of a mesh. `length` is the tool's unit of length in the mesh's unit.
-    pub fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> Brute<'a> {
+    pub fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> BruteForce<'a> {
         let [low, high] = mesh.bounds();
         let [radius, height] = oracle.extent();
         let max_coordinate = low.coords.amax().max(high.coords.amax());
@@ -115,38 +115,38 @@ impl<'a> Brute<'a> {
             (centroid, reach[0].max(reach[1]).max(reach[2]))
         });
         let balls: Vec<_> = balls.collect();
-        Brute {
+        BruteForce {
             length,
-            groups: balls.chunks(GROUP).map(bounding_ball).collect(),
+            group_balls: balls.chunks(TRIANGLES_PER_GROUP).map(bounding_ball).collect(),
             size: (high - low).norm() + max_coordinate + (radius + height) * length,
-            balls,
+            bounding_balls: balls,
             mesh,
             oracle,
         }
     }
 
     /// Converts a pose.
-    pub fn seen(&self, pose: &Pose) -> Seen {
+    pub fn tool_frame(&self, pose: &Pose) -> ToolFrame {
         let rotation = pose.rotation();
-        Seen {
+        ToolFrame {
             tip: pose.tip(),
             axes: [0, 1, 2].map(|k| [rotation[(0, k)], rotation[(1, k)], rotation[(2, k)]]),
         }
     }
 
-    pub(super) fn to_tool(&self, frame: &Seen, point: Point3<f64>) -> Point {
+    pub(super) fn to_tool_frame(&self, frame: &ToolFrame, point: Point3<f64>) -> Point {
         let offset = point - frame.tip;
         frame.axes.map(|axis| dot(axis, [offset.x, offset.y, offset.z]) / self.length)
     }
 
     /// Returns a point of the world in the tool's frame and unit.
-    pub fn inside(&self, pose: &Pose, point: Point3<f64>) -> Point {
-        self.to_tool(&self.seen(pose), point)
+    pub fn point_in_tool_frame(&self, pose: &Pose, point: Point3<f64>) -> Point {
+        self.to_tool_frame(&self.tool_frame(pose), point)
     }
 
     /// Returns a triangle in the tool's frame and unit.
-    pub fn triangle(&self, frame: &Seen, id: usize) -> [Point; 3] {
-        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool(frame, corner))
+    pub fn triangle(&self, frame: &ToolFrame, id: usize) -> [Point; 3] {
+        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool_frame(frame, corner))
     }
 
     /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
@@ -156,11 +156,11 @@ impl<'a> Brute<'a> {
 
     /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
     /// infinity if no triangle is near.
-    pub fn deepest(&self, frame: &Seen, rng: &mut Rng, samples: &mut u64) -> f64 {
+    pub fn deepest(&self, frame: &ToolFrame, rng: &mut Rng, samples: &mut u64) -> f64 {
         let [radius, height] = self.oracle.extent();
         let mut candidates = Vec::new();
-        for (id, (centroid, reach)) in self.balls.iter().enumerate() {
-            let p = self.to_tool(frame, *centroid);
+        for (id, (centroid, reach)) in self.bounding_balls.iter().enumerate() {
+            let p = self.to_tool_frame(frame, *centroid);
             let reach = reach / self.length * (1.0 + 1e-9);
             if p[2] + reach < 0.0 || p[2] - reach > height || p[0].hypot(p[1]) > radius + reach {
                 continue;
@@ -216,7 +216,7 @@ impl<'a> Brute<'a> {
     /// Climbs from a point of a triangle and returns the greatest depth reached, in the part's unit.
     pub fn climb(
         &self,
-        frame: &Seen,
+        frame: &ToolFrame,
         triangle: usize,
         start: Point,
         rng: &mut Rng,

@@ -4,23 +4,23 @@
 //! restatement, samples triangles and climbs from the deepest samples. Its result must not exceed the upper bound. The
 //! lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
+pub mod allowances;
 pub mod approach;
 pub mod brute;
-pub mod buried;
-pub mod owned;
+pub mod depth_oracle;
+pub mod enclosed;
+pub mod motions;
 pub mod poses;
-pub mod subject;
 pub mod sweeps;
-pub mod ways;
 pub mod zoomed;
 
-use brute::{Brute, Seen};
+use brute::{BruteForce, ToolFrame};
 use nalgebra::Point3;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh, Witness};
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Tool};
 use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The tolerances used, in the part's unit.
 pub const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
@@ -29,15 +29,15 @@ pub const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
 #[derive(Clone, Debug, Default)]
 pub struct Worst {
     /// The value, in the part's unit.
-    pub by: f64,
+    pub value: f64,
     /// Tool, part and pose, to the last bit.
-    pub at: String,
+    pub case: String,
 }
 
 impl Worst {
     fn update(&mut self, value: f64, case: impl FnOnce() -> String) {
-        if value.is_nan() || value > self.by {
-            *self = Worst { by: value, at: case() };
+        if value.is_nan() || value > self.value {
+            *self = Worst { value, case: case() };
         }
     }
 }
@@ -56,17 +56,17 @@ pub struct Row {
     /// Number of points that brute force evaluated with the oracle.
     pub samples: u64,
     /// Excess of brute force over the upper bound. More than rounding is a violation.
-    pub over: Worst,
+    pub upper_excess: Worst,
     /// Excess of the lower bound over the witness's depth. More than rounding is a violation.
-    pub under: Worst,
+    pub witness_deficit: Worst,
     /// Excess of the lower bound over the result of brute force without the witness: a measure of its strength.
-    pub behind: Worst,
+    pub sample_deficit: Worst,
     /// Number of poses at which that excess is at most 1e-6.
     pub reached: usize,
     /// Excess of an interval's width over the tolerance.
-    pub wide: Worst,
+    pub excess_width: Worst,
     /// Number of intervals wider than tolerance and rounding together.
-    pub wider: usize,
+    pub too_wide: usize,
     /// Number of verdicts of [`Certifier::check_pose`] that are undecided.
     pub undecided: usize,
     /// All violations.
@@ -96,7 +96,7 @@ impl Pair<'_> {
         let mut rng = Rng::new(seed);
         let info = self.tool.info();
         let length = info.unit.factor_to(self.mesh.unit());
-        let brute = Brute::new(self.mesh, self.oracle, length);
+        let brute = BruteForce::new(self.mesh, self.oracle, length);
         let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool with a profile");
         let mut row = Row {
             tool: info.name.to_string(),
@@ -104,12 +104,12 @@ impl Pair<'_> {
             poses: count,
             touching: 0,
             samples: 0,
-            over: Worst::default(),
-            under: Worst::default(),
-            behind: Worst::default(),
+            upper_excess: Worst::default(),
+            witness_deficit: Worst::default(),
+            sample_deficit: Worst::default(),
             reached: 0,
-            wide: Worst::default(),
-            wider: 0,
+            excess_width: Worst::default(),
+            too_wide: 0,
             undecided: 0,
             violations: Vec::new(),
         };
@@ -119,7 +119,7 @@ impl Pair<'_> {
             let mut validation = Validation {
                 pair: self,
                 brute: &brute,
-                frame: brute.seen(&pose),
+                frame: brute.tool_frame(&pose),
                 // Error bound of the oracle and of the coordinates of a sample.
                 rounding: 64.0 * f64::EPSILON * brute.size,
                 pose,
@@ -135,8 +135,8 @@ impl Pair<'_> {
 /// A pose under validation.
 struct Validation<'a> {
     pair: &'a Pair<'a>,
-    brute: &'a Brute<'a>,
-    frame: Seen,
+    brute: &'a BruteForce<'a>,
+    frame: ToolFrame,
     rounding: f64,
     pose: Pose,
     tolerance: f64,
@@ -145,8 +145,8 @@ struct Validation<'a> {
 
 impl Validation<'_> {
     fn validate(&mut self, certifier: &mut Certifier<'_>, rng: &mut Rng) {
-        let found = certifier.deepest(&self.pose, self.tolerance);
-        let Interval { low, high } = found.depth;
+        let penetration = certifier.deepest(&self.pose, self.tolerance);
+        let Interval { low, high } = penetration.depth;
         let sampled_depth = self.brute.deepest(&self.frame, rng, &mut self.row.samples);
         let case = format!(
             "{} in {} at tip {:?} axis {:?}, tolerance {:e}: {:?}, brute force {sampled_depth:?}",
@@ -155,16 +155,16 @@ impl Validation<'_> {
             self.pose.tip().coords.as_slice(),
             self.pose.axis().as_slice(),
             self.tolerance,
-            found
+            penetration
         );
         self.row.touching += usize::from(sampled_depth > 0.0);
-        self.row.behind.update(low - sampled_depth.max(0.0), || case.clone());
+        self.row.sample_deficit.update(low - sampled_depth.max(0.0), || case.clone());
         self.row.reached += usize::from(low - sampled_depth.max(0.0) <= 1e-6);
         let mut max_depth = sampled_depth;
-        match found.witness {
+        match penetration.witness {
             Some(witness) => {
                 let depth = self.witness_depth(&witness, &case);
-                self.row.under.update(low - depth, || case.clone());
+                self.row.witness_deficit.update(low - depth, || case.clone());
                 if low - depth > self.rounding {
                     self.add_violation("the witness is not as deep as the lower bound", &case);
                 }
@@ -173,7 +173,7 @@ impl Validation<'_> {
             None if low > 0.0 => self.add_violation("a lower bound without a witness", &case),
             None => (),
         }
-        self.row.over.update(max_depth - high, || case.clone());
+        self.row.upper_excess.update(max_depth - high, || case.clone());
         if max_depth > high + self.rounding {
             self.add_violation(
                 &format!("a sample is {max_depth:e} deep, above the upper bound"),
@@ -185,9 +185,9 @@ impl Validation<'_> {
             self.add_violation("no interval", &case);
         }
         let excess_width = high - low - self.tolerance;
-        self.row.wide.update(excess_width, || case.clone());
+        self.row.excess_width.update(excess_width, || case.clone());
         // The rounding error counts twice at either end and four times in the tolerance.
-        self.row.wider += usize::from(excess_width > 8.0 * self.rounding);
+        self.row.too_wide += usize::from(excess_width > 8.0 * self.rounding);
         let verdict = certifier.check_pose(&self.pose);
         self.validate_verdict(verdict, max_depth, low, &format!("{case}, {verdict:?}"));
     }
@@ -216,10 +216,14 @@ impl Validation<'_> {
     /// Returns the depth of a witness, and checks that it lies on its triangle.
     fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
         let triangle = self.brute.triangle(&self.frame, witness.triangle.index());
-        let point = self.brute.inside(&self.pose, witness.point);
-        let off = brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
-        if off > self.rounding {
-            self.add_violation(&format!("the witness is {off:e} from its triangle"), case);
+        let point = self.brute.point_in_tool_frame(&self.pose, witness.point);
+        let triangle_distance =
+            brute::distance(point, brute::nearest(point, &triangle)) * self.brute.length;
+        if triangle_distance > self.rounding {
+            self.add_violation(
+                &format!("the witness is {triangle_distance:e} from its triangle"),
+                case,
+            );
         }
         if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
             self.add_violation("the witness is at no surface", case);
@@ -229,7 +233,7 @@ impl Validation<'_> {
 
     /// Returns the greatest depth that a climb from a witness reaches.
     fn climb_from(&mut self, witness: &Witness, rng: &mut Rng) -> f64 {
-        let start = self.brute.inside(&self.pose, Point3::from(witness.point.coords));
+        let start = self.brute.point_in_tool_frame(&self.pose, Point3::from(witness.point.coords));
         let triangle = witness.triangle.index();
         self.brute.climb(&self.frame, triangle, start, rng, &mut self.row.samples)
     }
@@ -248,17 +252,18 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
                     | undecided | violations |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
     for row in rows {
-        let [over, under, behind, wide] =
-            [&row.over, &row.under, &row.behind, &row.wide].map(|worst| worst.by);
+        let [upper_excess, witness_deficit, sample_deficit, excess_width] =
+            [&row.upper_excess, &row.witness_deficit, &row.sample_deficit, &row.excess_width]
+                .map(|worst| worst.value);
         writeln!(
             page,
-            "| {} | {} | {} | {} | {over:.1e} | {under:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {upper_excess:.1e} | {witness_deficit:.1e} | {sample_deficit:.1e} | {} | {excess_width:.1e} | {} | {} | {} |",
             row.tool,
             row.part,
             row.poses,
             row.touching,
             row.reached,
-            row.wider,
+            row.too_wide,
             row.undecided,
             row.violations.len()
         )?;

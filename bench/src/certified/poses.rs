@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, MeshError, Pose, TriangleId, Unit, scenes};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Returns the generated parts, in mm, with their names.

@@ -3,15 +3,15 @@
 //! The proved statement is that no triangle comes deeper into a tool than the tolerance. The samples
 //! ([`super::approach`]) know the tool from its restatement, and the motion from a separate formula.
 
-use super::approach::{Closest, Way};
-use super::brute::{Brute, distance, nearest};
-use super::{Pair, Worst, ways};
+use super::approach::{MotionSample, ReferenceMotion};
+use super::brute::{BruteForce, distance, nearest};
+use super::{Pair, Worst, motions};
 use nalgebra::Point3;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, MotionVerdict, Witness};
 use touchoff::{Mesh, Motion, TriangleId};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];
@@ -41,11 +41,11 @@ pub struct Row {
     /// Undecided motions, with the data to reproduce them.
     pub undecided: Vec<String>,
     /// Number of motions proved clear that come nearer than 0.001.
-    pub near: usize,
+    pub near_misses: usize,
     /// Excess of a sample's depth over tolerance and rounding. A positive value is a violation.
-    pub over: Worst,
+    pub depth_excess: Worst,
     /// Deviation of tip and axis from those of the other formula, beyond rounding. A positive value is a violation.
-    pub off: Worst,
+    pub pose_deviation: Worst,
     /// All violations.
     pub violations: Vec<String>,
 }
@@ -58,7 +58,7 @@ impl Pair<'_> {
     pub fn sweeps(&self, count: usize, seed: u64) -> Row {
         let mut rng = Rng::new(seed);
         let info = self.tool.info();
-        let brute = Brute::new(self.mesh, self.oracle, info.unit.factor_to(self.mesh.unit()));
+        let brute = BruteForce::new(self.mesh, self.oracle, info.unit.factor_to(self.mesh.unit()));
         let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool with a profile");
         let mut row = Row {
             tool: info.name.to_string(),
@@ -67,15 +67,15 @@ impl Pair<'_> {
             proved: 0,
             touching: 0,
             undecided: Vec::new(),
-            near: 0,
-            over: Worst { by: f64::NEG_INFINITY, at: String::new() },
-            off: Worst::default(),
+            near_misses: 0,
+            depth_excess: Worst { value: f64::NEG_INFINITY, case: String::new() },
+            pose_deviation: Worst::default(),
             violations: Vec::new(),
         };
         while row.proved < count && row.motions < MAX_DRAWS_PER_PROVED * count {
-            let kind = ways::KINDS[row.motions % ways::KINDS.len()];
+            let kind = motions::MOTION_KINDS[row.motions % motions::MOTION_KINDS.len()];
             let tolerance = TOLERANCES[row.motions % TOLERANCES.len()];
-            let reference = ways::way(&brute, kind, &mut rng);
+            let reference = motions::random_motion(&brute, kind, &mut rng);
             let motion =
                 Motion::new(&reference.from, &reference.to).expect("axes that are not opposite");
             let verdict = certifier.check_motion(&motion, tolerance);
@@ -110,8 +110,8 @@ fn format_pose(pose: &touchoff::Pose) -> String {
 
 struct Validation<'a> {
     pair: &'a Pair<'a>,
-    brute: &'a Brute<'a>,
-    reference: Way,
+    brute: &'a BruteForce<'a>,
+    reference: ReferenceMotion,
     motion: Motion,
     rounding: f64,
     tolerance: f64,
@@ -127,8 +127,9 @@ impl Validation<'_> {
         match verdict {
             MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
                 self.row.proved += 1;
-                let closest = self.brute.closest(&self.reference, TIME_SAMPLES, true, rng);
-                self.check_proved(&closest);
+                let deepest =
+                    self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
+                self.check_proved(&deepest);
                 self.check_side(verdict);
             }
             MotionVerdict::Touching(t, witness) => {
@@ -142,24 +143,25 @@ impl Validation<'_> {
 
     /// Validates an undecided motion: the part before time `t` must be clear.
     fn check_undecided(&mut self, t: f64, rng: &mut Rng) {
-        let closest = self.brute.closest(&self.reference, TIME_SAMPLES, true, rng);
-        self.row.undecided.push(format!("{}, {closest:?}", self.case));
+        let deepest = self.brute.deepest_in_motion(&self.reference, TIME_SAMPLES, true, rng);
+        self.row.undecided.push(format!("{}, {deepest:?}", self.case));
         if !(0.0..=1.0).contains(&t) {
             self.add_violation("undecided at no time");
         } else if t > 0.0 {
-            let clear_part = Way { from: self.reference.from, to: self.reference.pose(t) };
-            let closest = self.brute.closest(&clear_part, TIME_SAMPLES, true, rng);
+            let clear_part =
+                ReferenceMotion { from: self.reference.from, to: self.reference.pose(t) };
+            let closest = self.brute.deepest_in_motion(&clear_part, TIME_SAMPLES, true, rng);
             self.check_proved(&closest);
         }
     }
 
-    fn check_proved(&mut self, closest: &Closest) {
+    fn check_proved(&mut self, deepest: &MotionSample) {
         let allowed = self.tolerance.max(16.0 * self.rounding) + self.rounding;
-        let over = closest.depth - allowed;
-        self.row.near += usize::from(closest.depth > -1e-3);
-        self.row.over.update(over, || format!("{}, {closest:?}", self.case));
-        if over > 0.0 {
-            self.add_violation(&format!("it is proved, but {closest:?}"));
+        let excess = deepest.depth - allowed;
+        self.row.near_misses += usize::from(deepest.depth > -1e-3);
+        self.row.depth_excess.update(excess, || format!("{}, {deepest:?}", self.case));
+        if excess > 0.0 {
+            self.add_violation(&format!("it is proved, but {deepest:?}"));
         }
     }
 
@@ -173,7 +175,7 @@ impl Validation<'_> {
         let deviation =
             tip.max((pose.axis() - reference_pose.axis()).norm() - axis_tolerance.min(1e-13));
         let describe = || format!("{}, at {t:?}", self.case);
-        self.row.off.update(deviation, describe);
+        self.row.pose_deviation.update(deviation, describe);
         if deviation > 0.0 || !(0.0..=1.0).contains(&t) {
             self.add_violation(&format!("the pose is off by {deviation:e} at {t:?}"));
         }
@@ -181,18 +183,19 @@ impl Validation<'_> {
 
     fn check_witness(&mut self, t: f64, witness: &Witness) {
         let (brute, pose) = (self.brute, self.motion.pose(t));
-        let point = brute.inside(&pose, witness.point);
+        let point = brute.point_in_tool_frame(&pose, witness.point);
         let depth = brute.depth(point) * brute.length;
         if depth < -self.rounding {
             self.add_violation(&format!("the witness is {depth:e} deep"));
         }
-        let triangle = brute.triangle(&brute.seen(&pose), witness.triangle.index());
-        let off = distance(point, nearest(point, &triangle)) * brute.length;
-        if off > self.rounding {
-            self.add_violation(&format!("the witness is {off:e} from its triangle"));
+        let triangle = brute.triangle(&brute.tool_frame(&pose), witness.triangle.index());
+        let triangle_distance = distance(point, nearest(point, &triangle)) * brute.length;
+        if triangle_distance > self.rounding {
+            self.add_violation(&format!("the witness is {triangle_distance:e} from its triangle"));
         }
         let surface = self.pair.tool.info().surface(witness.surface);
-        let surface_distance = self.pair.oracle.away(&surface.name, point) * brute.length;
+        let surface_distance =
+            self.pair.oracle.distance_to_surface(&surface.name, point) * brute.length;
         if surface_distance > depth.abs() + self.rounding {
             self.add_violation(&format!(
                 "its surface is {surface_distance:e} away, but it is {depth:e} deep"
@@ -248,10 +251,10 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
             row.part,
             row.motions,
             row.proved,
-            row.near,
+            row.near_misses,
             row.touching,
             row.undecided.len(),
-            row.over.by,
+            row.depth_excess.value,
             row.violations.len()
         )?;
     }

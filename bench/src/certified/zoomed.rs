@@ -5,15 +5,15 @@
 //! these. Their neighbourhoods shrink from round to round until they are as small as rounding. The greatest depth must
 //! not exceed the upper bound, and should reach the lower bound, which the search does not know.
 
-use super::subject::Subject;
-use super::{Worst, buried, poses};
+use super::depth_oracle::DepthOracle;
+use super::{Worst, enclosed, poses};
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt::Write;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Interval, Mesh, Pose, Tool, TriangleId};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// A point of the tool's frame.
 type Point = [f64; 3];
@@ -33,7 +33,7 @@ pub struct Zoomed<'a> {
     /// The tool.
     pub tool: &'a dyn Tool,
     /// The oracle of the tool.
-    pub subject: &'a Subject,
+    pub depth_oracle: &'a DepthOracle,
 }
 
 /// The results for a tool and a part. Lengths are shares of the tool's size.
@@ -50,15 +50,15 @@ pub struct Row {
     /// Number of samples.
     pub samples: u64,
     /// Excess of a sample's depth over the upper bound. More than rounding is a violation.
-    pub over: Worst,
+    pub upper_excess: Worst,
     /// Excess of the lower bound over the samples' greatest depth.
-    pub behind: Worst,
+    pub sample_deficit: Worst,
     /// Number of poses at which the samples come near enough to the lower bound.
     pub reached: usize,
     /// The width of the widest interval.
-    pub wide: Worst,
+    pub max_width: Worst,
     /// Number of intervals wider than tolerance and rounding together.
-    pub wider: usize,
+    pub too_wide: usize,
     /// Poses at which a sample exceeds the upper bound.
     pub violations: Vec<String>,
 }
@@ -108,9 +108,9 @@ impl Zoomed<'_> {
         let mut rng = Rng::new(seed);
         let info = self.tool.info();
         let length = info.unit.factor_to(self.mesh.unit());
-        let [radius, height] = self.subject.oracle().extent();
+        let [radius, height] = self.depth_oracle.oracle().extent();
         let size = radius.max(height) * length;
-        let [tolerance, margin] = self.subject.tolerance(size);
+        let [tolerance, margin] = self.depth_oracle.tolerance(size);
         let [low, high] = self.mesh.bounds();
         let part = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part);
@@ -129,10 +129,10 @@ impl Zoomed<'_> {
                 "{} in {}: [{low:e}, {high:e}], {max_depth:e} at {pose:?}",
                 row.tool, row.part
             );
-            row.over.update((max_depth - high) / size, || case.clone());
-            row.behind.update((low - max_depth) / size, || case.clone());
-            row.wide.update((high - low) / size, || case.clone());
-            row.wider += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
+            row.upper_excess.update((max_depth - high) / size, || case.clone());
+            row.sample_deficit.update((low - max_depth) / size, || case.clone());
+            row.max_width.update((high - low) / size, || case.clone());
+            row.too_wide += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
             if max_depth > high + rounding {
                 row.violations.push(case);
             }
@@ -142,7 +142,7 @@ impl Zoomed<'_> {
 
     /// Returns a pose at which the tool is likely to touch the part.
     fn pose(&self, length: f64, rng: &mut Rng) -> Pose {
-        if let Subject::Profile(nearest, _) = self.subject {
+        if let DepthOracle::Profile(nearest, _) = self.depth_oracle {
             return poses::pose(self.mesh, nearest, length, rng);
         }
         // A random point inside the tool's extent is placed at a random point of the part.
@@ -151,7 +151,7 @@ impl Zoomed<'_> {
             .triangle(TriangleId((rng.bits() as usize % self.mesh.triangles().len()) as u32));
         let (v, w) = (rng.between(0.0, 0.5), rng.between(0.0, 0.5));
         let target = a + v * (b - a) + w * (c - a);
-        let [radius, height] = self.subject.oracle().extent();
+        let [radius, height] = self.depth_oracle.oracle().extent();
         let (d, direction) = (rng.between(0.0, radius), rng.direction());
         let inside =
             Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
@@ -177,7 +177,7 @@ impl Zoomed<'_> {
         }
         let mut evaluations = 0;
         let (mut best, mut reach) = self.bisect(&triangles, samples / 2, &mut evaluations);
-        let [radius, height] = self.subject.oracle().extent();
+        let [radius, height] = self.depth_oracle.oracle().extent();
         let size = radius.max(height);
         let rounds = ((1e-15 * size / reach).ln() / SHRINK_FACTOR.ln()).ceil().max(1.0) as u64;
         for round in 0..rounds {
@@ -208,7 +208,7 @@ impl Zoomed<'_> {
         for triangle in 0..triangles.len() {
             let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
             for weights in corners {
-                let depth = self.subject.depth(point(&triangles[triangle], weights));
+                let depth = self.depth_oracle.depth(point(&triangles[triangle], weights));
                 insert_sorted(&mut best, Sample { depth, triangle, weights });
             }
             pieces.push(self.piece(triangles, triangle, corners, &mut best).0);
@@ -229,7 +229,7 @@ impl Zoomed<'_> {
             }
             *evaluations += 2;
         }
-        let extent = self.subject.oracle().extent();
+        let extent = self.depth_oracle.oracle().extent();
         (best, (4.0 * reach).min(extent[0].max(extent[1])))
     }
 
@@ -243,11 +243,11 @@ impl Zoomed<'_> {
     ) -> (Piece, f64) {
         let weights = [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
         let centroid = point(&triangles[triangle], weights);
-        let depth = self.subject.depth(centroid);
+        let depth = self.depth_oracle.depth(centroid);
         insert_sorted(best, Sample { depth, triangle, weights });
         let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
         let reach = radii[0].max(radii[1]).max(radii[2]);
-        let lipschitz = self.subject.lipschitz_bound();
+        let lipschitz = self.depth_oracle.lipschitz_bound();
         // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
         let bound =
             if depth < 0.0 { lipschitz * (depth + reach) } else { depth + lipschitz * reach };
@@ -257,7 +257,7 @@ impl Zoomed<'_> {
     /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
     fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
         let length = self.tool.info().unit.factor_to(self.mesh.unit());
-        let [radius, height] = self.subject.oracle().extent();
+        let [radius, height] = self.depth_oracle.oracle().extent();
         let to_tool = pose.rotation().transpose();
         let to_tool_frame =
             |p: Point3<f64>| -> Point { (to_tool * (p - pose.tip()) / length).into() };
@@ -293,7 +293,7 @@ impl Zoomed<'_> {
         if sum > 1.0 {
             weights = weights.map(|component| component / sum);
         }
-        let depth = self.subject.depth(point(corners, weights));
+        let depth = self.depth_oracle.depth(point(corners, weights));
         if depth > best.depth {
             *best = Sample { depth, weights, ..*best };
         }
@@ -303,7 +303,7 @@ impl Zoomed<'_> {
 /// Inserts a sample into the sorted list of the deepest.
 fn insert_sorted(best: &mut Vec<Sample>, sample: Sample) {
     if best.len() < POINT_COUNTS[0] || sample.depth > best[POINT_COUNTS[0] - 1].depth {
-        let index = best.partition_point(|kept_sample| kept_sample.depth >= sample.depth);
+        let index = best.partition_point(|other| other.depth >= sample.depth);
         best.insert(index, sample);
         best.truncate(POINT_COUNTS[0]);
     }
@@ -333,22 +333,23 @@ fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
 ///
 /// # Errors
 /// Never in practice: writing to a string cannot fail.
-pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::Error> {
+pub fn table(rows: &[Row], blocks: &[enclosed::Row]) -> Result<String, std::fmt::Error> {
     let mut page =
         "| tool | part | poses | in contact | worst over | worst behind | reached | widest | wider | violations |\n\
                     |---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
             .to_owned();
     for row in rows {
-        let [over, behind, wide] = [&row.over, &row.behind, &row.wide].map(|worst| worst.by);
+        let [upper_excess, sample_deficit, max_width] =
+            [&row.upper_excess, &row.sample_deficit, &row.max_width].map(|worst| worst.value);
         writeln!(
             page,
-            "| {} | {} | {} | {} | {over:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} |",
+            "| {} | {} | {} | {} | {upper_excess:.1e} | {sample_deficit:.1e} | {} | {max_width:.1e} | {} | {} |",
             row.tool,
             row.part,
             row.poses,
             row.touching,
             row.reached,
-            row.wider,
+            row.too_wide,
             row.violations.len()
         )?;
     }
@@ -361,11 +362,11 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
         sum(|row| row.touching as u64),
         sum(|row| row.samples),
         100.0 * reached as f64 / poses.max(1) as f64,
-        sum(|row| row.wider as u64)
+        sum(|row| row.too_wide as u64)
     )?;
     page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
              | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
-    for buried::Row { tool, inside, cut, violations } in blocks {
+    for enclosed::Row { tool, inside, cut, violations } in blocks {
         let [[a, b], [c, d]] = [inside, cut];
         writeln!(page, "| {tool} | {a} | {b} | {c} | {d} | {} |", violations.len())?;
     }

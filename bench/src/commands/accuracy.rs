@@ -21,21 +21,25 @@ impl Accuracy {
         let mut rows = parallel::rows(tools.len(), |k| {
             let (tool, restated) = &tools[k];
             let row = measure(*tool, restated, self.points, 1);
-            eprintln!("{}: {:?}", row.name, row.missed());
+            eprintln!("{}: {:?}", row.name, row.violations());
             row
         });
         rows.sort_by(|a, b| a.name.cmp(&b.name));
-        let missed: Vec<String> = rows
+        let missed_limits: Vec<String> = rows
             .iter()
             .flat_map(|row| {
-                row.missed().into_iter().map(|violation| format!("{}: {violation}", row.name))
+                row.violations().into_iter().map(|violation| format!("{}: {violation}", row.name))
             })
             .collect();
         Ok(Some(Page {
             name: "accuracy",
             title: "Rounding of the compiled tools",
             covers: &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"],
-            sections: vec![Section { title: "", body: body(&rows, &missed, self.points)?, missed }],
+            sections: vec![Section {
+                title: "",
+                body: body(&rows, &missed_limits, self.points)?,
+                missed_limits,
+            }],
             figures: Vec::new(),
         }))
     }
@@ -59,7 +63,7 @@ distances.
 "
     );
     for row in rows {
-        let clearance = match &row.clearance.place {
+        let clearance = match &row.clearance.location {
             Some(_) => format!("{:.3}", row.clearance.error),
             None => "bound only".to_owned(),
         };
@@ -72,12 +76,12 @@ distances.
             row.points,
             row.inside,
             row.depth.error,
-            row.depth.shown(),
-            row.sides.count,
-            row.owners.count,
+            row.depth.location_rounded(),
+            row.wrong_sides.count,
+            row.wrong_owners.count,
             row.length.error,
             row.direction.error,
-            row.unlike,
+            row.different_bits,
         )?;
     }
     page += "\n## Missed\n\n";

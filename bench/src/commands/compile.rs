@@ -5,7 +5,7 @@ use clap::Args;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::process::Command;
-use touchoff_bench::compile::{Parts, Times, parts, sources, times};
+use touchoff_bench::compile::{CompileTimes, ToolStats, compile_times, sources, tool_stats};
 use touchoff_bench::page::{Page, Section};
 
 /// Number of compilations of each tool: in the release build, and in the unoptimised build.
@@ -23,7 +23,7 @@ impl Compile {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         if self.times {
             for source in sources() {
-                let measured = times(&source, COUNTS[1]);
+                let measured = compile_times(&source, COUNTS[1]);
                 println!(
                     "{}\t{}\t{}\t{}",
                     tool_file_name(&source.name),
@@ -37,16 +37,16 @@ impl Compile {
         let unoptimised = unoptimised()?;
         let mut rows = String::new();
         for source in sources() {
-            let release = times(&source, COUNTS[0]);
+            let release = compile_times(&source, COUNTS[0]);
             let debug = unoptimised.get(tool_file_name(&source.name)).copied().unwrap_or_default();
-            rows += &row(&parts(&source), release, debug);
+            rows += &row(&tool_stats(&source), release, debug);
         }
         Ok(Some(Page {
             name: "compile",
             title: "What compiling a tool costs, and what loading it costs",
             covers: &["tool-dsl/src", "tools-library/tools", "runtime/src"],
             sections: vec![
-                Section { title: "Compiled", body: body(&rows), missed: Vec::new() },
+                Section { title: "Compiled", body: body(&rows), missed_limits: Vec::new() },
                 interpreter::section()?,
             ],
             figures: Vec::new(),
@@ -60,7 +60,7 @@ fn tool_file_name(name: &str) -> &str {
 }
 
 /// Returns the compile times in an unoptimised build, as a user's `cargo build` runs the macros.
-fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
+fn unoptimised() -> Result<BTreeMap<String, CompileTimes>, Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
         .args(["run", "--quiet", "--profile", "user", "-p", "touchoff-bench"])
@@ -71,7 +71,7 @@ fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
     for line in String::from_utf8(output.stdout)?.lines() {
         if let [name, best, median, worst] = line.split('\t').collect::<Vec<_>>()[..] {
             let [best, median, worst] = [best.parse()?, median.parse()?, worst.parse()?];
-            times_by_tool.insert(name.to_owned(), Times { best, median, worst });
+            times_by_tool.insert(name.to_owned(), CompileTimes { best, median, worst });
         }
     }
     if times_by_tool.is_empty() {
@@ -80,12 +80,12 @@ fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
     Ok(times_by_tool)
 }
 
-fn row(parts: &Parts, release: Times, debug: Times) -> String {
-    let segments = parts.segments.map_or_else(|| "by hand".to_owned(), |n| n.to_string());
-    let operations = |name: &str| parts.operations.get(name).copied().unwrap_or(0);
+fn row(stats: &ToolStats, release: CompileTimes, debug: CompileTimes) -> String {
+    let segments = stats.segments.map_or_else(|| "by hand".to_owned(), |n| n.to_string());
+    let operations = |name: &str| stats.operations.get(name).copied().unwrap_or(0);
     let mut row = format!(
         "| {} | {segments} | {} | {} | {} | {:.1} | {:.1} |",
-        parts.name, parts.regions, parts.curves, parts.tests, parts.splits[0], parts.splits[1],
+        stats.name, stats.regions, stats.curves, stats.tests, stats.splits[0], stats.splits[1],
     );
     row += &format!(" {} |", operations("evaluate_lanes"));
     for times in [release, debug] {

@@ -6,8 +6,8 @@ use touchoff::haptic::{EnergyBalance, Rendering};
 use touchoff::scenes::tube;
 use touchoff::{Law, Part, Sampling};
 use touchoff_bench::haptics::latency;
-use touchoff_bench::haptics::page::{Measured, page, plots};
-use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
+use touchoff_bench::haptics::page::{Measurements, page, plots};
+use touchoff_bench::haptics::roughness::{Case, ForceStats, HandPath, force_stats, tools};
 use touchoff_bench::page::{Page, Section};
 use touchoff_tests::haptics::{energy, sheet, wall};
 
@@ -28,17 +28,17 @@ impl Haptics {
             true => &[1000.0],
             false => &[250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 40_000.0],
         };
-        let measured = Measured {
+        let measured = Measurements {
             walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
-            shaking: shaking_rows(self.quick)?,
-            sheet: pressing_rows(),
+            roughness: roughness_rows(self.quick)?,
+            pressing: pressing_rows(),
             tapping: tapping_rows(),
             latency: {
                 // At five times the rate, a tenth of the time.
                 let rates: &[f64] = if self.quick { &[1.0] } else { &[1.0, 5.0] };
                 let run = |factor: &f64| {
                     let seconds = if *factor > 1.0 { self.latency / 10.0 } else { self.latency };
-                    (1000.0 * factor, seconds, latency::both(1000.0 * factor, seconds))
+                    (1000.0 * factor, seconds, latency::measure(1000.0 * factor, seconds))
                 };
                 rates.iter().map(run).collect()
             },
@@ -48,33 +48,37 @@ impl Haptics {
             name: "haptics",
             title: "The haptic loop",
             covers: &["runtime/src"],
-            sections: vec![Section { title: "", body: page(&measured)?, missed: Vec::new() }],
+            sections: vec![Section {
+                title: "",
+                body: page(&measured)?,
+                missed_limits: Vec::new(),
+            }],
             figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
         }))
     }
 }
 
-type ShakingRow = (usize, Case<'static>, Shaking);
+type RoughnessRow = (usize, Case<'static>, ForceStats);
 
-fn shaking_rows(quick: bool) -> Result<Vec<ShakingRow>, Box<dyn Error>> {
+fn roughness_rows(quick: bool) -> Result<Vec<RoughnessRow>, Box<dyn Error>> {
     let mut rows = Vec::new();
     let [fig73, exact, smooth] = tools();
     let points: &[usize] = if quick { &[20_000] } else { &[1_000, 20_000, 400_000] };
     for count in points {
         let part = Part::from_mesh(&tube(), Sampling::new(*count))?;
         let mut add = |movement, tool, law, rendering, stiffness| {
-            let case = Case { way: movement, tool, law, how: rendering, stiffness };
-            rows.push((*count, case, shaking(&part, &case)));
+            let case = Case { path: movement, tool, law, rendering, stiffness };
+            rows.push((*count, case, force_stats(&part, &case)));
         };
         for law in [Law::Thesis, Law::Gradient] {
             for rendering in ["direct", "coupled"] {
-                add(Way::Wall, exact, law, rendering, 3.0);
+                add(HandPath::Wall, exact, law, rendering, 3.0);
                 for tool in [fig73, exact, smooth] {
-                    add(Way::Edge, tool, law, rendering, 3.0);
+                    add(HandPath::Edge, tool, law, rendering, 3.0);
                 }
             }
             for rendering in ["direct", "scaled", "coupled"] {
-                add(Way::Wall, exact, law, rendering, 300.0);
+                add(HandPath::Wall, exact, law, rendering, 300.0);
             }
         }
     }
@@ -82,22 +86,22 @@ fn shaking_rows(quick: bool) -> Result<Vec<ShakingRow>, Box<dyn Error>> {
 }
 
 fn tapping_rows() -> Vec<(&'static str, Vec<EnergyBalance>)> {
-    let part = energy::plane();
+    let part = energy::plane_part();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     vec![
-        ("direct", energy::tapping(&part, direct, false)),
-        ("direct, controlled", energy::tapping(&part, direct, true)),
-        ("coupled, controlled", energy::tapping(&part, None, true)),
+        ("direct", energy::tapping_energy(&part, direct, false)),
+        ("direct, controlled", energy::tapping_energy(&part, direct, true)),
+        ("coupled, controlled", energy::tapping_energy(&part, None, true)),
     ]
 }
 
 fn pressing_rows() -> Vec<(&'static str, Vec<[f64; 3]>)> {
-    let part = sheet::sheet();
+    let part = sheet::sheet_part();
     let direct = Some(Rendering::Direct { scaled: true, damping: 0.0 });
     vec![
-        ("thesis, direct", sheet::pressed(&part, Law::Thesis, direct)),
-        ("facing, direct", sheet::pressed(&part, Law::Facing, direct)),
-        ("gradient, direct", sheet::pressed(&part, Law::Gradient, direct)),
-        ("gradient, coupled", sheet::pressed(&part, Law::Gradient, None)),
+        ("thesis, direct", sheet::press_on_sheet(&part, Law::Thesis, direct)),
+        ("facing, direct", sheet::press_on_sheet(&part, Law::Facing, direct)),
+        ("gradient, direct", sheet::press_on_sheet(&part, Law::Gradient, direct)),
+        ("gradient, coupled", sheet::press_on_sheet(&part, Law::Gradient, None)),
     ]
 }

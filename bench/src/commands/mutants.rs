@@ -4,13 +4,13 @@ use std::error::Error;
 use std::fmt::Write;
 use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
-use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
+use touchoff_bench::mutants::{Detection, KINDS, detect, differs, mutants};
 use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
 /// Number of mutants per tool.
 const MUTANTS_PER_TOOL: usize = 20;
-/// Number of columns with counts: all mutants, equivalent mutants, and one per variant of [`Caught`].
+/// Number of columns with counts: all mutants, equivalent mutants, and one per variant of [`Detection`].
 const COLUMNS: usize = 7;
 
 /// Makes mutants of every library tool and returns the section that counts which of them the proofs detect.
@@ -43,16 +43,16 @@ anything reported.
         let mut counts = [0; COLUMNS];
         for mutant in mutants(&tool, MUTANTS_PER_TOOL, seed as u64) {
             counts[0] += 1;
-            if !changes(&tool, &mutant.tool, 1) {
+            if !differs(&tool, &mutant.tool, 1) {
                 counts[1] += 1;
                 continue;
             }
-            let (column, detection) = match caught(&proved, &mutant.tool) {
-                Caught::Error => (2, 0),
-                Caught::Open => (3, 0),
-                Caught::Warning => (4, 0),
-                Caught::Compared => (5, 1),
-                Caught::Not => (6, 2),
+            let (column, detection) = match detect(&proved, &mutant.tool) {
+                Detection::Error => (2, 0),
+                Detection::Undecided => (3, 0),
+                Detection::Warning => (4, 0),
+                Detection::ByComparison => (5, 1),
+                Detection::Undetected => (6, 2),
             };
             counts[column] += 1;
             by_kind[mutant.kind][detection] += 1;
@@ -61,7 +61,7 @@ anything reported.
                 undetected.push((
                     tool.model.name.clone(),
                     KINDS[mutant.kind],
-                    mutant.place,
+                    mutant.location,
                     detected_by,
                 ));
             }
@@ -98,7 +98,7 @@ anything reported.
             writeln!(body, "| {name} | {kind} | {place} | {detected_by} |")?;
         }
     }
-    Ok(Section { title: "Broken on purpose", body, missed: Vec::new() })
+    Ok(Section { title: "Broken on purpose", body, missed_limits: Vec::new() })
 }
 
 fn row(counts: &[usize]) -> String {

@@ -8,7 +8,7 @@ use touchoff::{Mesh, Unit};
 use touchoff_bench::page::{Page, Section};
 use touchoff_bench::postures::page::page;
 use touchoff_bench::postures::parts::relief;
-use touchoff_bench::postures::{Odd, Wanted, measure};
+use touchoff_bench::postures::{ComparisonSettings, Discrepancy, measure};
 
 /// Number of squares per side of the generated part.
 const SQUARES: u32 = 64;
@@ -57,7 +57,7 @@ impl Postures {
             }
             _ => ("A relief that is made here".to_owned(), relief(SQUARES)?),
         };
-        let task = Wanted {
+        let settings = ComparisonSettings {
             mesh: &mesh,
             tools: self.tools.iter().map(String::as_str).collect(),
             hemisphere: self.directions,
@@ -66,17 +66,20 @@ impl Postures {
             draws: self.draws,
             seed: self.seed,
         };
-        let results = measure(&task)?;
+        let results = measure(&settings)?;
         let introduction = "Postures of a sweep are drawn, rebuilt from the tools' restatements, and judged by cutting up all of the part's triangles.\n\n";
-        let wrong = results.accessible.wrong.iter().chain(&results.refused.wrong);
+        let contradicted =
+            results.accessible.contradicted.iter().chain(&results.inaccessible.contradicted);
         Ok(Some(Page {
             name: "postures",
             title: "Postures beside brute force",
             covers: &["runtime/src/postures", "runtime/src/certify", "tools-library/tools"],
             sections: vec![Section {
                 title: "",
-                body: introduction.to_owned() + &page(&name, &task, &results)?,
-                missed: wrong.map(|Odd { at, what }| format!("{at}: {what}")).collect(),
+                body: introduction.to_owned() + &page(&name, &settings, &results)?,
+                missed_limits: contradicted
+                    .map(|Discrepancy { posture, result }| format!("{posture}: {result}"))
+                    .collect(),
             }],
             figures: Vec::new(),
         }))

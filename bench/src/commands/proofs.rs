@@ -58,7 +58,7 @@ boxes where the proof did not come to an end. Times are those of the proof alone
             title: "What is proved about the library",
             covers: &["tool-dsl/src", "tools-library/tools"],
             sections: vec![
-                Section { title: "Bounds", body, missed: Vec::new() },
+                Section { title: "Bounds", body, missed_limits: Vec::new() },
                 mutants::section()?,
             ],
             figures: Vec::new(),

@@ -5,7 +5,7 @@ use clap::builder::RangedU64ValueParser;
 use std::error::Error;
 use touchoff_bench::page::{Page, Section};
 use touchoff_bench::stress::ledger::ITEMS;
-use touchoff_bench::stress::{Amount, measure, page};
+use touchoff_bench::stress::{StressSettings, measure, page};
 
 /// Compares every tool with a 256-bit reference at difficult points, poses and scenes.
 #[derive(Args)]
@@ -26,7 +26,11 @@ pub(crate) struct Stress {
 
 impl Stress {
     pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
-        let amount = if self.quick { Amount::sample(self.seed) } else { Amount::full(self.seed) };
+        let amount = if self.quick {
+            StressSettings::sample(self.seed)
+        } else {
+            StressSettings::full(self.seed)
+        };
         let rows = measure(
             amount,
             |item| self.item.is_none_or(|chosen| item.0 == chosen),
@@ -47,7 +51,11 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
             sections: vec![Section {
                 title: "",
                 body: introduction.to_owned() + &page::page(&rows)?,
-                missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
+                missed_limits: rows
+                    .iter()
+                    .filter(|row| row.exceeds_limit())
+                    .map(|row| row.describe())
+                    .collect(),
             }],
             figures: Vec::new(),
         }))

@@ -60,7 +60,7 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
             sections: vec![Section {
                 title: "",
                 body: introduction + &table(&rows)?,
-                missed: rows.into_iter().flat_map(|row| row.violations).collect(),
+                missed_limits: rows.into_iter().flat_map(|row| row.violations).collect(),
             }],
             figures: Vec::new(),
         }))

@@ -48,7 +48,7 @@ impl Triangles {
             name: "triangles",
             title: "How long proofs of depth take",
             covers: &["runtime/src"],
-            sections: vec![Section { title: "", body, missed: Vec::new() }],
+            sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
             figures: Vec::new(),
         }))
     }

@@ -10,7 +10,7 @@ use touchoff::mesh::Geometry;
 use touchoff::tool::Interpreted;
 use touchoff::{Program, Tool, Unit};
 use touchoff_bench::page::Page;
-use touchoff_bench::work_precision::{self, Own, Plan, Row};
+use touchoff_bench::work_precision::{self, Plan, Row, UserScene};
 
 /// The scene name that stands for all scenes.
 const ALL: &str = "all";
@@ -102,7 +102,7 @@ fn read_own<'t>(
     (part, unit): (&Path, Unit),
     tool: &'t dyn Tool,
     path: &Path,
-) -> Result<Own<'t>, Box<dyn Error>> {
+) -> Result<UserScene<'t>, Box<dyn Error>> {
     let program = Program::read(path)?;
     program.check_unit(unit)?;
     program.check_poses(tool.info())?;
@@ -119,5 +119,5 @@ fn read_own<'t>(
     }
     let name = part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned());
     let poses = program.locations.iter().map(|location| location.pose).collect();
-    Ok(Own { mesh, name, tool, poses })
+    Ok(UserScene { mesh, name, tool, poses })
 }

@@ -11,11 +11,11 @@ use touchoff_tests::haptics::wall::LIMITS;
 use touchoff_tests::haptics::{block, tool, upright};
 
 /// Time that a thread spins before each cycle instead of sleeping.
-pub const AWAKE: Duration = Duration::from_micros(60);
+pub const SPIN_TIME: Duration = Duration::from_micros(60);
 
 /// Runs two loops at once, each on a core of its own: a hand that presses on a block, and a tool far away from it.
 /// `rate` is in Hz. Returns the reports of the pressing loop and of the empty loop.
-pub fn both(rate: f64, seconds: f64) -> [LoopReport; 2] {
+pub fn measure(rate: f64, seconds: f64) -> [LoopReport; 2] {
     let part = block(100_000);
     let timing = (rate, (rate * seconds) as u64);
     std::thread::scope(|scope| {
@@ -32,7 +32,7 @@ fn run_loop(part: &Part, (rate, cycles): (f64, u64), pressed: bool) -> LoopRepor
     }
     let probe = Probe::new(part, tool("Ball")).with_law(Law::Gradient);
     let mut session = Session::new(probe, &SessionSettings::new(rate), LIMITS).expect("settings");
-    let clock = &mut MonotonicClock::new(AWAKE);
+    let clock = &mut MonotonicClock::new(SPIN_TIME);
     let (mut publisher, _latest, _samples) = state_channel(1);
     let stop = AtomicBool::new(false);
     if pressed {

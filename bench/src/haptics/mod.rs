@@ -2,5 +2,5 @@
 
 pub mod latency;
 pub mod page;
-pub mod shake;
+pub mod roughness;
 mod smooth;

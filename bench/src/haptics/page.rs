@@ -1,20 +1,20 @@
 //! The page `docs/measured/haptics.md`.
 
-use super::shake::{Case, Shaking};
+use super::roughness::{Case, ForceStats};
 use crate::plot::{Axis, Plot, Series};
 use std::fmt::{self, Write};
 use touchoff::haptic::{EnergyBalance, LoopReport};
-use touchoff_tests::haptics::wall::{Row, STEP};
+use touchoff_tests::haptics::wall::{ENCODER_STEP, Row};
 
 /// The measurements of the page.
-pub struct Measured {
+pub struct Measurements {
     /// Stability limits of a wall, one row per update rate.
     pub walls: Vec<Row>,
     /// Force roughness: number of points, case and result.
-    pub shaking: Vec<(usize, Case<'static>, Shaking)>,
+    pub roughness: Vec<(usize, Case<'static>, ForceStats)>,
     /// Description of each rendering with which the sheet was pressed, and the samples: wanted depth in mm, height of
     /// the tip in mm, force in N.
-    pub sheet: Vec<(&'static str, Vec<[f64; 3]>)>,
+    pub pressing: Vec<(&'static str, Vec<[f64; 3]>)>,
     /// Description of each rendering under a tapping hand, and the energy balance after each cycle.
     pub tapping: Vec<(&'static str, Vec<EnergyBalance>)>,
     /// Cycle rate in Hz, duration in s, and the reports of a pressing hand and of a loop that does nothing.
@@ -26,7 +26,7 @@ pub struct Measured {
 const CLEAN_WALLS: [[f64; 2]; 2] = [[250.0, 0.33], [40_000.0, 0.90]];
 
 /// Returns the plots: file names and SVG contents.
-pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
+pub fn plots(measured: &Measurements) -> Vec<(&'static str, String)> {
     let limits = |name: &str, value: &dyn Fn(&Row) -> f64| {
         let points = measured.walls.iter().map(|row| [row.rate, value(row)]).collect();
         Series::line(name, points)
@@ -37,17 +37,17 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
         Axis::log("cycles a second"),
         Axis::log("N/mm"),
     )
-    .with(Series::dashes("theory", theory))
-    .with(limits("direct", &|row| row.measured[0]))
-    .with(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
-    .with(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
-    .with(Series::points("felt as clean (Choi and Tan)", CLEAN_WALLS.to_vec()));
+    .with_series(Series::dashes("theory", theory))
+    .with_series(limits("direct", &|row| row.measured[0]))
+    .with_series(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
+    .with_series(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
+    .with_series(Series::points("felt as clean (Choi and Tan)", CLEAN_WALLS.to_vec()));
     let axes = |label: &str| (Axis::linear("how deep the hand wants it, mm"), Axis::linear(label));
     let sheet = |label: &str, title: &str, row: usize| {
         let (x, y) = axes(label);
-        measured.sheet.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
+        measured.pressing.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
             let points = points.iter().step_by(20).map(|point| [point[0], point[row]]).collect();
-            plot.with(Series::line(*name, points))
+            plot.with_series(Series::line(*name, points))
         })
     };
     let tapping = measured.tapping.iter().fold(
@@ -61,7 +61,7 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
                 [cycle as f64 / 1000.0, energy.input - energy.stored]
             };
             let points = energies.iter().enumerate().step_by(25).map(point).collect();
-            plot.with(Series::line(*name, points))
+            plot.with_series(Series::line(*name, points))
         },
     );
     vec![
@@ -76,10 +76,10 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
 ///
 /// # Errors
 /// Never in practice: writing to a string cannot fail.
-pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
+pub fn page(measured: &Measurements) -> Result<String, fmt::Error> {
     let mut page = String::new();
     write_walls(&mut page, measured)?;
-    write_shaking(&mut page, measured)?;
+    write_roughness(&mut page, measured)?;
     writeln!(page, "## Energy\n")?;
     writeln!(
         page,
@@ -114,12 +114,12 @@ fn format_limit(limit: f64) -> String {
     if limit.is_finite() { format!("{limit:.2}") } else { "none up to 10⁵".to_owned() }
 }
 
-fn write_walls(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_walls(page: &mut String, measured: &Measurements) -> fmt::Result {
     writeln!(page, "## How stiff a wall may be\n")?;
     writeln!(
         page,
         "A flat end on a plane, held by a hand of 0.1 kg, 5 N·s/m and 0.2 N/mm: the largest stiffness, N/mm, at which it comes to\n\
-         rest. *Theory* is the spectral radius of one cycle; *encoders* tell {STEP} mm apart; *scaled* is by the largest eigenvalue of the\n\
+         rest. *Theory* is the spectral radius of one cycle; *encoders* tell {ENCODER_STEP} mm apart; *scaled* is by the largest eigenvalue of the\n\
          contact's stiffness to 1 N/mm; *coupled* by a spring of 1 N/mm. The last column is how stiff a coupling may be at a wall of 10⁴ N/mm.\n"
     )?;
     writeln!(page, "![limits](haptics-walls.svg)\n")?;
@@ -137,7 +137,7 @@ fn write_walls(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page)
 }
 
-fn write_shaking(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_roughness(page: &mut String, measured: &Measurements) -> fmt::Result {
     writeln!(page, "## What shakes\n")?;
     writeln!(
         page,
@@ -149,19 +149,19 @@ fn write_shaking(page: &mut String, measured: &Measured) -> fmt::Result {
         "| along | tool | points | law | | N/mm³ | force, N | above 30 Hz, N | of it | step, N | N/mm |"
     )?;
     writeln!(page, "|---|---|--:|---|---|--:|--:|--:|--:|--:|--:|")?;
-    for (points, case, shaking) in &measured.shaking {
-        let Shaking { force, rough, step, stiffest } = shaking;
-        let Case { way, tool, law, how, stiffness } = case;
-        let (movement, tool, share) = (way.name(), tool.0, 100.0 * rough / force);
+    for (points, case, stats) in &measured.roughness {
+        let ForceStats { force, roughness, max_step, max_stiffness } = stats;
+        let Case { path, tool, law, rendering, stiffness } = case;
+        let (path, tool, share) = (path.name(), tool.0, 100.0 * roughness / force);
         writeln!(
             page,
-            "| {movement} | {tool} | {points} | {law} | {how} | {stiffness} | {force:.3} | {rough:.1e} | {share:.2} % | {step:.1e} | {stiffest:.1} |"
+            "| {path} | {tool} | {points} | {law} | {rendering} | {stiffness} | {force:.3} | {roughness:.1e} | {share:.2} % | {max_step:.1e} | {max_stiffness:.1} |"
         )?;
     }
     writeln!(page)
 }
 
-fn write_latency(page: &mut String, measured: &Measured) -> fmt::Result {
+fn write_latency(page: &mut String, measured: &Measurements) -> fmt::Result {
     writeln!(page, "## How long a cycle takes\n")?;
     writeln!(
         page,

@@ -7,7 +7,7 @@
 
 use super::formula;
 use super::points::{Point, points};
-use crate::race::contender::{Answer, Contender, Sums, View};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use touchoff::{Cloud, Pose};
 
@@ -22,7 +22,7 @@ impl Scalar {
     /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Scalar {
         let points = points(cloud);
-        Scalar { positions: points.iter().map(|point| point.at).collect(), points }
+        Scalar { positions: points.iter().map(|point| point.position).collect(), points }
     }
 }
 
@@ -32,19 +32,19 @@ impl Contender for Scalar {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let transform = PoseTransform::of(pose);
         let mut sums = Sums::default();
         for (position, point) in self.positions.iter().zip(&self.points) {
-            let arm = view.arm(*position);
-            let p = view.turn(arm);
-            if formula::beside(p) {
+            let offset = transform.offset_from_tip(*position);
+            let p = transform.to_tool_frame(offset);
+            if formula::is_outside_envelope(p) {
                 continue;
             }
-            if let Some(evaluation) = formula::sense(p) {
-                sums.add([arm, p], (point.weight, point.normal), evaluation);
+            if let Some(evaluation) = formula::evaluate(p) {
+                sums.add([offset, p], (point.weight, point.normal), evaluation);
             }
         }
-        sums.answer(&view)
+        sums.answer(&transform)
     }
 }
 
@@ -64,7 +64,8 @@ impl Lanes {
         let points = points(cloud);
         let padded_length = points.len().next_multiple_of(WIDTH);
         let coordinates = [0, 1, 2].map(|axis| {
-            let mut padded: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();
+            let mut padded: Vec<f32> =
+                points.iter().map(|point| point.position[axis] as f32).collect();
             padded.resize(padded_length, 1e6);
             padded
         });
@@ -72,20 +73,21 @@ impl Lanes {
     }
 
     /// Adds one inside point to the sums. Its coordinates are rounded to single precision; the sums are doubles.
-    fn add_point(&self, view: &View, index: usize, sums: &mut Sums) {
+    fn add_point(&self, transform: &PoseTransform, index: usize, sums: &mut Sums) {
         let point = &self.points[index];
-        let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
-        let p = view.turn(arm).map(|c| f64::from(c as f32));
+        let offset = transform
+            .offset_from_tip([0, 1, 2].map(|axis| f64::from(self.coordinates[axis][index])));
+        let p = transform.to_tool_frame(offset).map(|c| f64::from(c as f32));
         // Within rounding of the surface the two formulas may disagree about the side.
-        let evaluation = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
-        sums.add([arm, p], (point.weight, point.normal), evaluation);
+        let evaluation = formula::evaluate(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
+        sums.add([offset, p], (point.weight, point.normal), evaluation);
     }
 }
 
 #[inline(always)]
-fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
-    let rows = view.single();
-    let tip = view.tip.map(|c| c as f32);
+fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, transform: &PoseTransform, sums: &mut Sums) {
+    let rows = transform.rows_f32();
+    let tip = transform.tip.map(|c| c as f32);
     let zero = f32x16::splat(simd, 0.0);
     for block in 0..lanes.coordinates[0].len() / WIDTH {
         let range = block * WIDTH..(block + 1) * WIDTH;
@@ -97,7 +99,7 @@ fn add_points_inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Su
         let depth = formula::magnitude_from(simd, lists, (rows, tip));
         let mut hits = depth.simd_ge(zero).to_bitmask();
         while hits != 0 {
-            lanes.add_point(view, block * WIDTH + hits.trailing_zeros() as usize, sums);
+            lanes.add_point(transform, block * WIDTH + hits.trailing_zeros() as usize, sums);
             hits &= hits - 1;
         }
     }
@@ -109,9 +111,9 @@ impl Contender for Lanes {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let transform = PoseTransform::of(pose);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
-        sums.answer(&view)
+        dispatch!(self.level, simd => add_points_inside(simd, self, &transform, &mut sums));
+        sums.answer(&transform)
     }
 }

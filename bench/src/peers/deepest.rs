@@ -1,7 +1,7 @@
 //! Branch and bound for the largest of the thesis's magnitudes on a part's triangles: the peers' reference.
 
 use super::formula;
-use crate::race::contender::View;
+use crate::race::contender::PoseTransform;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, Pose, TriangleId};
 
@@ -10,8 +10,10 @@ pub const TOLERANCE: f64 = 1e-6;
 
 /// Returns the largest magnitude on the part's triangles, to [`TOLERANCE`]. `best` is a magnitude known to be attained.
 pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
-    let view = View::of(pose);
-    let to_tool = |p: Point3<f64>| Vector3::from(view.turn(view.arm(p.coords.into())));
+    let transform = PoseTransform::of(pose);
+    let to_tool = |p: Point3<f64>| {
+        Vector3::from(transform.to_tool_frame(transform.offset_from_tip(p.coords.into())))
+    };
     let ids = 0..mesh.triangles().len() as u32;
     let mut pending: Vec<_> = ids.map(|id| mesh.triangle(TriangleId(id)).map(to_tool)).collect();
     while let Some([a, b, c]) = pending.pop() {
@@ -41,7 +43,7 @@ fn bound_on_triangle(corners: [Vector3<f64>; 3]) -> (f64, f64) {
     let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
     let d = centre.x.hypot(centre.y);
     let radial = if d > 0.0 { [centre.x / d, centre.y / d] } else { [0.0; 2] };
-    let functions = formula::pieces(d, formula::TIP - centre.z);
+    let functions = formula::concave_pieces(d, formula::TIP - centre.z);
     let max_on_triangle = |(value, [by_d, by_z]): (f64, [f64; 2])| {
         let slope = Vector3::new(by_d * radial[0], by_d * radial[1], -by_z);
         let rise = corners.map(|corner| slope.dot(&(corner - centre)));

@@ -7,7 +7,7 @@
 //! compiling a shorter one takes longer than evaluating all points.
 
 use super::points::{Bounds, Tree};
-use crate::race::contender::{Answer, Contender, Sums, View};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fidget::context::Tree as Formula;
 use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape, TracingEvaluator};
 use fidget::jit::{JitFloatSliceEval, JitFunction, JitGradSliceEval, JitIntervalEval};
@@ -67,11 +67,11 @@ impl Fidget {
     }
 
     /// Collects the points of the leaves that the tool may touch, in the tool's frame.
-    fn gather(&mut self, view: &View) {
+    fn gather(&mut self, transform: &PoseTransform) {
         let (eval, tape, indices) = &mut self.interval;
         let (points, leaves) = self.tree.leaves(|bounds| {
-            let centre = view.turn(view.arm(bounds.centre));
-            let half = view.reach(bounds.half);
+            let centre = transform.to_tool_frame(transform.offset_from_tip(bounds.centre));
+            let half = transform.box_half_extents(bounds.half);
             let mut sides = [Interval::from(0.0); 3];
             for axis in 0..3 {
                 let [low, high] = [-1.0, 1.0].map(|sign| (centre[axis] + sign * half[axis]) as f32);
@@ -84,10 +84,10 @@ impl Fidget {
         self.arms.clear();
         self.at.iter_mut().for_each(Vec::clear);
         for index in leaves.flatten() {
-            let arm = view.arm(points[index].at);
-            let p = view.turn(arm);
+            let offset = transform.offset_from_tip(points[index].position);
+            let p = transform.to_tool_frame(offset);
             self.candidates.push(index);
-            self.arms.push([arm, p]);
+            self.arms.push([offset, p]);
             for (coordinate, index) in p.iter().zip(self.values.2) {
                 self.at[index].push(*coordinate as f32);
             }
@@ -119,11 +119,11 @@ impl Contender for Fidget {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
-        self.gather(&view);
+        let transform = PoseTransform::of(pose);
+        self.gather(&transform);
         let mut sums = Sums::default();
         if self.candidates.is_empty() {
-            return sums.answer(&view);
+            return sums.answer(&transform);
         }
         let (eval, tape, _) = &mut self.values;
         let values = eval.eval(tape, &self.at).expect("lists of one length");
@@ -131,7 +131,7 @@ impl Contender for Fidget {
         let inside_indices = values[0].iter().enumerate().filter(|(_, value)| **value >= 0.0);
         self.hits.extend(inside_indices.map(|(index, _)| index));
         if self.hits.is_empty() {
-            return sums.answer(&view);
+            return sums.answer(&transform);
         }
         let (eval, tape, indices) = &mut self.slopes;
         for (axis, index) in indices.iter().enumerate() {
@@ -154,6 +154,6 @@ impl Contender for Fidget {
             let evaluation = (f64::from(slope.v), direction);
             sums.add(self.arms[*hit], (point.weight, point.normal), evaluation);
         }
-        sums.answer(&view)
+        sums.answer(&transform)
     }
 }

@@ -17,7 +17,7 @@ type Value = (f64, [f64; 2]);
 /// Returns the magnitude and unit direction at a point of the tool's frame, or `None` outside. Three decision trees are
 /// arranged along the axis.
 #[inline]
-pub fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
+pub fn evaluate(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let z = TIP - p[2];
     let squared = p[0] * p[0] + p[1] * p[1];
     let evaluation = if z >= 15.0 {
@@ -95,7 +95,7 @@ pub fn in_space(p: [f64; 3], squared: f64, (magnitude, direction): Value) -> (f6
 
 /// Returns whether a point is outside judging by its axial position and distance from the axis alone, without branches.
 #[inline]
-pub fn beside(p: [f64; 3]) -> bool {
+pub fn is_outside_envelope(p: [f64; 3]) -> bool {
     let radius = if p[2] < 9.0 { (p[2] - 4.0).clamp(1.0, 3.0) } else { RADIUS };
     (p[0] * p[0] + p[1] * p[1] > radius * radius) | (p[2] < 0.0) | (p[2] > TIP)
 }
@@ -112,7 +112,7 @@ pub fn magnitude(p: [f64; 3]) -> f64 {
 }
 
 /// Returns five concave functions of `d` and `z` whose maximum is [`magnitude`], each with its two derivatives.
-pub fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
+pub fn concave_pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
     let linear =
         |by_d: f64, by_z: f64, constant: f64| (constant + by_d * d + by_z * z, [by_d, by_z]);
     let min = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };

@@ -5,8 +5,8 @@
 //! `f32` with a margin, by the widest SIMD instructions of the machine. The remaining points are evaluated in `f64`.
 
 use super::formula;
-use super::points::{Bounds, Point, order, points};
-use crate::race::contender::{Answer, Contender, Sums, View};
+use super::points::{Bounds, Point, points, sort_in_kd_order};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -35,11 +35,11 @@ impl ParryBvh {
     /// Sorts the points of a cloud into blocks and builds the hierarchy.
     pub fn new(cloud: &Cloud) -> ParryBvh {
         let mut points = points(cloud);
-        order(&mut points, POINTS_PER_BLOCK);
+        sort_in_kd_order(&mut points, POINTS_PER_BLOCK);
         let boxes: Vec<Aabb> = points
             .chunks(POINTS_PER_BLOCK)
             .map(|chunk| {
-                let bounds = Bounds::of(chunk.iter().map(|point| Bounds::at(point.at)));
+                let bounds = Bounds::of(chunk.iter().map(|point| Bounds::of_point(point.position)));
                 let corner = |sign: f64| {
                     let end = |axis: usize| {
                         (bounds.centre[axis] + sign * (bounds.half[axis] + MARGIN)) as f32
@@ -53,7 +53,7 @@ impl ParryBvh {
             .chunks(POINTS_PER_BLOCK)
             .map(|chunk| {
                 let coordinate = |axis: usize, index: usize| {
-                    chunk.get(index).map_or(1e6, |point| point.at[axis] as f32)
+                    chunk.get(index).map_or(1e6, |point| point.position[axis] as f32)
                 };
                 Block([0, 1, 2].map(|axis| std::array::from_fn(|index| coordinate(axis, index))))
             })
@@ -65,9 +65,14 @@ impl ParryBvh {
 
 /// Adds the points of the found blocks that are inside to the sums.
 #[inline(always)]
-fn add_points_inside<S: Simd>(simd: S, method: &ParryBvh, view: &View, sums: &mut Sums) {
-    let rows = view.single();
-    let tip = view.tip.map(|c| c as f32);
+fn add_points_inside<S: Simd>(
+    simd: S,
+    method: &ParryBvh,
+    transform: &PoseTransform,
+    sums: &mut Sums,
+) {
+    let rows = transform.rows_f32();
+    let tip = transform.tip.map(|c| c as f32);
     let margin = f32x16::splat(simd, -MARGIN as f32);
     for block in &method.found_blocks {
         let Block([xs, ys, zs]) = &method.blocks[*block as usize];
@@ -80,7 +85,7 @@ fn add_points_inside<S: Simd>(simd: S, method: &ParryBvh, view: &View, sums: &mu
                 let index = *block as usize * POINTS_PER_BLOCK
                     + lane_group * WIDTH
                     + hits.trailing_zeros() as usize;
-                method.points[index].feel(view, sums);
+                method.points[index].add_to(transform, sums);
                 hits &= hits - 1;
             }
         }
@@ -93,18 +98,21 @@ impl Contender for ParryBvh {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
+        let transform = PoseTransform::of(pose);
         self.found_blocks.clear();
         let leaves = self.bvh.leaves(|node| {
             let (low, high) = (node.mins(), node.maxs());
             let ends = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
             let centre = ends.map(|(low, high)| 0.5 * (f64::from(low) + f64::from(high)));
             let half = ends.map(|(low, high)| 0.5 * (f64::from(high) - f64::from(low)));
-            formula::may_touch(view.turn(view.arm(centre)), view.reach(half))
+            formula::may_touch(
+                transform.to_tool_frame(transform.offset_from_tip(centre)),
+                transform.box_half_extents(half),
+            )
         });
         self.found_blocks.extend(leaves);
         let mut sums = Sums::default();
-        dispatch!(self.level, simd => add_points_inside(simd, self, &view, &mut sums));
-        sums.answer(&view)
+        dispatch!(self.level, simd => add_points_inside(simd, self, &transform, &mut sums));
+        sums.answer(&transform)
     }
 }

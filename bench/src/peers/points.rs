@@ -1,7 +1,7 @@
 //! Points in kd order and a tree of boxes over them, shared by several methods.
 
 use super::formula;
-use crate::race::contender::{Sums, View};
+use crate::race::contender::{PoseTransform, Sums};
 use std::ops::Range;
 use touchoff::Cloud;
 
@@ -9,7 +9,7 @@ use touchoff::Cloud;
 #[derive(Clone, Copy)]
 pub struct Point {
     /// The position.
-    pub at: [f64; 3],
+    pub position: [f64; 3],
     /// The unit normal, out of the material.
     pub normal: [f64; 3],
     /// The surface area that the point represents.
@@ -19,11 +19,11 @@ pub struct Point {
 impl Point {
     /// Adds the point to the sums if the formula in `f64` classifies it as inside.
     #[inline]
-    pub fn feel(&self, view: &View, sums: &mut Sums) {
-        let arm = view.arm(self.at);
-        let p = view.turn(arm);
-        if let Some(evaluation) = formula::sense(p) {
-            sums.add([arm, p], (self.weight, self.normal), evaluation);
+    pub fn add_to(&self, transform: &PoseTransform, sums: &mut Sums) {
+        let offset = transform.offset_from_tip(self.position);
+        let p = transform.to_tool_frame(offset);
+        if let Some(evaluation) = formula::evaluate(p) {
+            sums.add([offset, p], (self.weight, self.normal), evaluation);
         }
     }
 }
@@ -33,7 +33,7 @@ pub fn points(cloud: &Cloud) -> Vec<Point> {
     let lists = cloud.points().iter().zip(cloud.normals()).zip(cloud.weights());
     lists
         .map(|((at, normal), weight)| Point {
-            at: at.coords.into(),
+            position: at.coords.into(),
             normal: (*normal).into(),
             weight: *weight,
         })
@@ -41,17 +41,17 @@ pub fn points(cloud: &Cloud) -> Vec<Point> {
 }
 
 /// Sorts points in kd order: splits at the longest side, with a power of two of full leaves in the left half.
-pub fn order(points: &mut [Point], leaf: usize) {
+pub fn sort_in_kd_order(points: &mut [Point], leaf: usize) {
     if points.len() <= leaf {
         return;
     }
     let left = leaf * (points.len().div_ceil(leaf).next_power_of_two() / 2);
-    let bounds = Bounds::of(points.iter().map(|point| Bounds::at(point.at)));
+    let bounds = Bounds::of(points.iter().map(|point| Bounds::of_point(point.position)));
     let axis = (0..3).fold(0, |best, k| if bounds.half[k] > bounds.half[best] { k } else { best });
-    points.select_nth_unstable_by(left, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+    points.select_nth_unstable_by(left, |a, b| a.position[axis].total_cmp(&b.position[axis]));
     let (low, high) = points.split_at_mut(left);
-    order(low, leaf);
-    order(high, leaf);
+    sort_in_kd_order(low, leaf);
+    sort_in_kd_order(high, leaf);
 }
 
 /// A box, by its centre and half extents.
@@ -65,7 +65,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the box of a single point.
-    pub fn at(point: [f64; 3]) -> Bounds {
+    pub fn of_point(point: [f64; 3]) -> Bounds {
         Bounds { centre: point, half: [0.0; 3] }
     }
 
@@ -101,14 +101,17 @@ impl<N> Tree<N> {
     /// Builds the tree of a cloud with `leaf` points per leaf. `node` makes a node from its box and points.
     pub fn new(cloud: &Cloud, leaf: usize, node: impl Fn(Bounds, &[Point]) -> N) -> Self {
         let mut points = points(cloud);
-        order(&mut points, leaf);
+        sort_in_kd_order(&mut points, leaf);
         let mut levels = Vec::new();
         let mut size = leaf;
         loop {
             let level: Vec<N> = points
                 .chunks(size)
                 .map(|chunk| {
-                    node(Bounds::of(chunk.iter().map(|point| Bounds::at(point.at))), chunk)
+                    node(
+                        Bounds::of(chunk.iter().map(|point| Bounds::of_point(point.position))),
+                        chunk,
+                    )
                 })
                 .collect();
             let is_root = level.len() == 1;

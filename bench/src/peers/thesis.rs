@@ -9,7 +9,7 @@
 
 use super::formula;
 use super::points::{Point, points};
-use crate::race::contender::{Answer, Contender, Sums, View, dot};
+use crate::race::contender::{Answer, Contender, PoseTransform, Sums, dot};
 use touchoff::{Cloud, Pose};
 
 /// Maximum number of points per leaf; values from 4 to 32 were tried at 20,000 points.
@@ -69,14 +69,15 @@ enum Children {
 fn build(points: &mut [Point]) -> Box<Node> {
     let mut volume = Dop::EMPTY;
     for point in &*points {
-        volume.include(&Dop(DIRECTION_VECTORS.map(|direction| [dot(direction, point.at); 2])));
+        volume
+            .include(&Dop(DIRECTION_VECTORS.map(|direction| [dot(direction, point.position); 2])));
     }
     let (size, axis) = volume.longest();
     let children = if points.len() <= LEAF {
         Children::Points(points.to_vec())
     } else {
         let middle = points.len() / 2;
-        points.select_nth_unstable_by(middle, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+        points.select_nth_unstable_by(middle, |a, b| a.position[axis].total_cmp(&b.position[axis]));
         let (low, high) = points.split_at_mut(middle);
         Children::Nodes([build(low), build(high)])
     };
@@ -147,17 +148,17 @@ fn children_of(volume: usize) -> Option<[usize; 2]> {
 
 /// The tool at a pose.
 struct Tool {
-    view: View,
+    transform: PoseTransform,
     volumes: [Dop; 5],
     sums: Sums,
 }
 
 impl Tool {
     fn at(pose: &Pose) -> Tool {
-        let view = View::of(pose);
+        let transform = PoseTransform::of(pose);
         let axis: [f64; 3] = pose.axis().into();
         let projections = Projections {
-            tip: DIRECTION_VECTORS.map(|direction| dot(direction, view.tip)),
+            tip: DIRECTION_VECTORS.map(|direction| dot(direction, transform.tip)),
             axis: DIRECTION_VECTORS.map(|direction| dot(direction, axis)),
         };
         let cutter = union(projections.ball(), &projections.bound(&CUTTER));
@@ -165,7 +166,7 @@ impl Tool {
         let housing = projections.bound(&HOUSING);
         let neck = union(cutter, &spindle);
         let volumes = [cutter, spindle, housing, neck, union(neck, &housing)];
-        Tool { view, volumes, sums: Sums::default() }
+        Tool { transform, volumes, sums: Sums::default() }
     }
 
     /// Descends both trees at once.
@@ -186,12 +187,12 @@ impl Tool {
 
     fn add_points(&mut self, points: &[Point], decision_tree: DecisionTree) {
         for point in points {
-            let arm = self.view.arm(point.at);
-            let p = self.view.turn(arm);
+            let offset = self.transform.offset_from_tip(point.position);
+            let p = self.transform.to_tool_frame(offset);
             let squared = p[0] * p[0] + p[1] * p[1];
             if let Some(evaluation) = decision_tree(squared, formula::TIP - p[2]) {
                 let evaluation = formula::in_space(p, squared, evaluation);
-                self.sums.add([arm, p], (point.weight, point.normal), evaluation);
+                self.sums.add([offset, p], (point.weight, point.normal), evaluation);
             }
         }
     }
@@ -215,6 +216,6 @@ impl Contender for Thesis {
     fn query(&mut self, pose: &Pose) -> Answer {
         let mut tool = Tool::at(pose);
         tool.descend(&self.0, WHOLE);
-        tool.sums.answer(&tool.view)
+        tool.sums.answer(&tool.transform)
     }
 }

@@ -1,29 +1,29 @@
 //! A posture sweep compared with brute force, on postures drawn from those found accessible and from the others.
 //!
-//! Each posture is rebuilt from the tool's restatement ([`stand`]) and validated by subdividing all triangles
-//! ([`free`]). Accessible postures must be free, and the others must be blocked.
+//! Each posture is rebuilt from the tool's restatement ([`tool_model`]) and validated by subdividing all triangles
+//! ([`brute_force`]). Accessible postures must be free, and the others must be blocked.
 
-pub mod free;
+pub mod brute_force;
 pub mod page;
 pub mod parts;
-pub mod stand;
+pub mod tool_model;
 
-use free::{Part, Verdict};
+use brute_force::{TrianglePart, Verdict};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
-use stand::Stand;
 use std::error::Error;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use std::time::Instant;
+use tool_model::ToolModel;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::sweep::{PostureSweep, SweepStats};
 use touchoff::postures::{Directions, MapRow, Rules};
 use touchoff::{Mesh, Tool, TriangleId};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The settings of a comparison.
-pub struct Wanted<'a> {
+pub struct ComparisonSettings<'a> {
     /// The part.
     pub mesh: &'a Mesh,
     /// Library tools, by name.
@@ -55,40 +55,40 @@ pub struct Reach {
 
 /// A posture on which sweep and brute force disagree or the latter is undecided.
 #[derive(Clone, Debug)]
-pub struct Odd {
+pub struct Discrepancy {
     /// Triangle, tool and direction.
-    pub at: String,
+    pub posture: String,
     /// The result of brute force.
-    pub what: String,
+    pub result: String,
 }
 
 /// The validated postures of one kind.
 #[derive(Clone, Debug, Default)]
-pub struct Drawn {
+pub struct ValidatedPostures {
     /// Number of postures.
-    pub judged: usize,
+    pub count: usize,
     /// Postures on which brute force contradicts the sweep.
-    pub wrong: Vec<Odd>,
+    pub contradicted: Vec<Discrepancy>,
     /// Postures that brute force leaves undecided.
-    pub open: Vec<Odd>,
+    pub undecided: Vec<Discrepancy>,
 }
 
 /// The results of a comparison.
-pub struct Found {
+pub struct ComparisonResults {
     /// The sweep's statistics.
-    pub tally: SweepStats,
+    pub stats: SweepStats,
     /// Duration of the sweep, and of brute force, s.
     pub seconds: [f64; 2],
     /// Number of triangles and area of the whole part.
-    pub all: (usize, f64),
+    pub total: (usize, f64),
     /// Number of triangles and area that any tool reaches.
-    pub any: (usize, f64),
+    pub reached: (usize, f64),
     /// The reach of each tool.
     pub reach: Vec<Reach>,
     /// The validated accessible postures.
-    pub accessible: Drawn,
+    pub accessible: ValidatedPostures,
     /// The validated postures that face their triangle but are not accessible.
-    pub refused: Drawn,
+    pub inaccessible: ValidatedPostures,
     /// The distance that counts as rounding, in the part's unit.
     pub rounding: f64,
 }
@@ -111,66 +111,66 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// If a tool is not in the library, or cannot be used in a sweep.
-pub fn measure(task: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
-    let mesh = task.mesh;
+pub fn measure(settings: &ComparisonSettings<'_>) -> Result<ComparisonResults, Box<dyn Error>> {
+    let mesh = settings.mesh;
     let find = |name: &&str| tools_library::find(name).ok_or_else(|| format!("no tool `{name}`"));
-    let tools: Vec<&dyn Tool> = task
+    let tools: Vec<&dyn Tool> = settings
         .tools
         .iter()
         .map(|name| find(name).map(|tool| tool as &dyn Tool))
         .collect::<Result<_, _>>()?;
     let unit_factor = |tool: &&dyn Tool| tool.info().unit.factor_to(mesh.unit());
-    let stands: Vec<Stand> = tools
+    let tool_models: Vec<ToolModel> = tools
         .iter()
-        .zip(&task.tools)
-        .map(|(tool, name)| Stand::new(name, unit_factor(tool), task.tolerance))
+        .zip(&settings.tools)
+        .map(|(tool, name)| ToolModel::new(name, unit_factor(tool), settings.tolerance))
         .collect::<Result<_, _>>()?;
-    let (tolerance, niceness) = (task.tolerance, task.niceness);
-    let directions = Directions::spread(task.hemisphere);
+    let (tolerance, niceness) = (settings.tolerance, settings.niceness);
+    let directions = Directions::spread(settings.hemisphere);
     let bvh = TriangleBvh::new(mesh);
     let rules = Rules { tolerance, niceness, allowed: Vec::new() };
     let start = Instant::now();
     let sweep = PostureSweep::new(mesh, &bvh, tools, &directions, rules, NonZeroU16::MIN)?;
     let mut rows = vec![MapRow::default(); mesh.triangles().len()];
-    let mut tally = SweepStats::default();
+    let mut stats = SweepStats::default();
     let batches: Vec<usize> = (0..sweep.batches()).collect();
     let outcome = sweep.run(&batches, |batch| {
-        tally += batch.stats;
+        stats += batch.stats;
         batch.rows.into_iter().for_each(|(id, row)| rows[id.index()] = row);
         ControlFlow::<()>::Continue(())
     });
     debug_assert!(outcome.is_continue());
     let sweep_seconds = start.elapsed().as_secs_f64();
-    let part = Part::new(mesh);
-    let size = stands.iter().map(|stand| stand.extent()[0] + stand.extent()[1]);
+    let part = TrianglePart::new(mesh);
+    let size = tool_models.iter().map(|model| model.extent()[0] + model.extent()[1]);
     let validation = Validation {
         mesh,
         part: &part,
         directions: directions.list(),
-        stands: &stands,
+        tool_models: &tool_models,
         tolerance,
         niceness,
         rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
     };
-    let mut rng = Rng::new(task.seed);
+    let mut rng = Rng::new(settings.seed);
     let start = Instant::now();
-    let choices = draw_accessible(&rows, task.draws, &mut rng);
+    let choices = draw_accessible(&rows, settings.draws, &mut rng);
     let accessible = sort_results(
         choices.into_par_iter().map(|choice| validation.check_accessible(&choice)).collect(),
     );
-    let choices = validation.draw_refused(&rows, task.draws, &mut rng);
-    let refused = sort_results(
-        choices.into_par_iter().map(|choice| validation.check_refused(&choice)).collect(),
+    let choices = validation.draw_inaccessible(&rows, settings.draws, &mut rng);
+    let inaccessible = sort_results(
+        choices.into_par_iter().map(|choice| validation.check_inaccessible(&choice)).collect(),
     );
-    let (all, any, reach) = coverage(mesh, &rows, &task.tools);
-    Ok(Found {
-        tally,
+    let (total, reached, reach) = coverage(mesh, &rows, &settings.tools);
+    Ok(ComparisonResults {
+        stats,
         seconds: [sweep_seconds, start.elapsed().as_secs_f64()],
-        all,
-        any,
+        total,
+        reached,
         reach,
         accessible,
-        refused,
+        inaccessible,
         rounding: validation.rounding,
     })
 }
@@ -206,56 +206,60 @@ fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> 
     (0..count).filter_map(choice).collect()
 }
 
-fn sort_results(results: Vec<Result<(), (bool, Odd)>>) -> Drawn {
-    let mut drawn = Drawn { judged: results.len(), ..Drawn::default() };
+fn sort_results(results: Vec<Result<(), (bool, Discrepancy)>>) -> ValidatedPostures {
+    let mut validated = ValidatedPostures { count: results.len(), ..ValidatedPostures::default() };
     for (is_open, finding) in results.into_iter().filter_map(Result::err) {
-        if is_open { drawn.open.push(finding) } else { drawn.wrong.push(finding) }
+        if is_open {
+            validated.undecided.push(finding);
+        } else {
+            validated.contradicted.push(finding);
+        }
     }
-    drawn
+    validated
 }
 
 /// The data for the validation of postures.
 struct Validation<'a> {
     mesh: &'a Mesh,
-    part: &'a Part<'a>,
+    part: &'a TrianglePart<'a>,
     directions: &'a [[f64; 3]],
-    stands: &'a [Stand],
+    tool_models: &'a [ToolModel],
     tolerance: f64,
     niceness: f64,
     rounding: f64,
 }
 
 impl Validation<'_> {
-    fn postures(&self, choice: &Choice, tolerance_factor: f64) -> Vec<stand::Posture> {
+    fn postures(&self, choice: &Choice, tolerance_factor: f64) -> Vec<tool_model::Posture> {
         let [a, b, c] = self.mesh.triangle(TriangleId(choice.triangle));
         let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
         let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
         let axis = Vector3::from(self.directions[choice.direction]);
         let mut postures =
-            self.stands[choice.tool].postures(centroid, normal, axis, tolerance_factor);
+            self.tool_models[choice.tool].postures(centroid, normal, axis, tolerance_factor);
         postures.retain(|posture| posture.niceness > self.niceness);
         postures
     }
 
     fn describe(&self, choice: &Choice) -> String {
         let [x, y, z] = self.directions[choice.direction];
-        let name = touchoff_tests::oracle::Oracle::name(&self.stands[choice.tool].oracle);
+        let name = touchoff_tests::oracle::Oracle::name(&self.tool_models[choice.tool].oracle);
         format!(
             "triangle {}, {name}, direction {} ({x:.3}, {y:.3}, {z:.3})",
             choice.triangle, choice.direction
         )
     }
 
-    fn judge(&self, choice: &Choice, posture: &stand::Posture, allowance: f64) -> Verdict {
-        self.part.judge(&self.stands[choice.tool], posture, self.tolerance, allowance)
+    fn check(&self, choice: &Choice, posture: &tool_model::Posture, allowance: f64) -> Verdict {
+        self.part.check(&self.tool_models[choice.tool], posture, self.tolerance, allowance)
     }
 
     /// Checks that one of the postures of a choice is free. The error has the finding, and whether it is undecided.
-    fn check_accessible(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+    fn check_accessible(&self, choice: &Choice) -> Result<(), (bool, Discrepancy)> {
         let verdicts: Vec<Verdict> = self
             .postures(choice, 2.0)
             .iter()
-            .map(|posture| self.judge(choice, posture, self.rounding))
+            .map(|posture| self.check(choice, posture, self.rounding))
             .collect();
         if verdicts.contains(&Verdict::Free) {
             return Ok(());
@@ -265,18 +269,18 @@ impl Validation<'_> {
             [] => "no contact".to_owned(),
             verdicts => format!("{verdicts:?}"),
         };
-        Err((is_open, Odd { at: self.describe(choice), what: finding }))
+        Err((is_open, Discrepancy { posture: self.describe(choice), result: finding }))
     }
 
     /// Draws postures that face a triangle and that the sweep did not find accessible.
-    fn draw_refused(&self, rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
+    fn draw_inaccessible(&self, rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
         let mut choices = Vec::new();
         for _ in 0..100 * count {
             if choices.len() == count {
                 break;
             }
             let mut random_below = |limit: usize| (rng.bits() % limit as u64) as usize;
-            let (triangle, tool) = (random_below(rows.len()), random_below(self.stands.len()));
+            let (triangle, tool) = (random_below(rows.len()), random_below(self.tool_models.len()));
             let direction = random_below(self.directions.len());
             let tool_access =
                 rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
@@ -291,14 +295,14 @@ impl Validation<'_> {
     }
 
     /// Checks that all postures of a choice are blocked. The error has the finding, and whether it is undecided.
-    fn check_refused(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+    fn check_inaccessible(&self, choice: &Choice) -> Result<(), (bool, Discrepancy)> {
         for posture in self.postures(choice, -1.0) {
-            let verdict = self.judge(choice, &posture, 0.0);
+            let verdict = self.check(choice, &posture, 0.0);
             if matches!(verdict, Verdict::Blocked(_)) {
                 continue;
             }
             let near_share = NEAR_COLLISION_SHARES.iter().find(|near_share| {
-                let closer_verdict = self.judge(choice, &posture, -*near_share * self.tolerance);
+                let closer_verdict = self.check(choice, &posture, -*near_share * self.tolerance);
                 matches!(closer_verdict, Verdict::Blocked(_))
             });
             let finding = match near_share {
@@ -310,7 +314,7 @@ impl Validation<'_> {
             // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
             let is_open = verdict == Verdict::Open
                 || near_share.is_some_and(|near_share| *near_share <= 1e-6);
-            return Err((is_open, Odd { at: self.describe(choice), what: finding }));
+            return Err((is_open, Discrepancy { posture: self.describe(choice), result: finding }));
         }
         Ok(())
     }

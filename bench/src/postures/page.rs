@@ -1,6 +1,6 @@
 //! The results as Markdown.
 
-use super::{Drawn, Found, Wanted};
+use super::{ComparisonResults, ComparisonSettings, ValidatedPostures};
 use std::fmt::{Error, Write};
 
 /// Maximum number of deviating postures listed.
@@ -10,16 +10,20 @@ const MAX_LISTED: usize = 20;
 ///
 /// # Errors
 /// Never in practice: writing to a string cannot fail.
-pub fn page(part: &str, task: &Wanted<'_>, results: &Found) -> Result<String, Error> {
+pub fn page(
+    part: &str,
+    settings: &ComparisonSettings<'_>,
+    results: &ComparisonResults,
+) -> Result<String, Error> {
     let mut page = String::new();
-    let unit = task.mesh.unit();
-    let (triangles, area) = results.all;
+    let unit = settings.mesh.unit();
+    let (triangles, area) = results.total;
     writeln!(
         page,
         "{part}: {triangles} triangles, {area:.0} {unit}². {} directions a hemisphere, a tolerance of {} {unit}, niceness above {}.",
-        task.hemisphere, task.tolerance, task.niceness
+        settings.hemisphere, settings.tolerance, settings.niceness
     )?;
-    let stats = &results.tally;
+    let stats = &results.stats;
     let percent = |count: u64| 100.0 * count as f64 / stats.postures().max(1) as f64;
     writeln!(page, "\n## How postures were decided\n\n| by | postures | % |\n|---|--:|--:|")?;
     let rows = [
@@ -56,18 +60,22 @@ pub fn page(part: &str, task: &Wanted<'_>, results: &Found) -> Result<String, Er
             reach.tool, reach.triangles, reach.postures
         )?;
     }
-    let [count, part] = share(results.any);
-    writeln!(page, "| any | {} | {count:.1} | {part:.1} | {} |", results.any.0, stats.acceptable)?;
+    let [count, part] = share(results.reached);
+    writeln!(
+        page,
+        "| any | {} | {count:.1} | {part:.1} | {} |",
+        results.reached.0, stats.acceptable
+    )?;
     writeln!(
         page,
         "\n## Judged again\n\n| said to be | judged | false | left open |\n|---|--:|--:|--:|\n\
          | accessible | {} | {} | {} |\n| not accessible | {} | {} | {} |",
-        results.accessible.judged,
-        results.accessible.wrong.len(),
-        results.accessible.open.len(),
-        results.refused.judged,
-        results.refused.wrong.len(),
-        results.refused.open.len()
+        results.accessible.count,
+        results.accessible.contradicted.len(),
+        results.accessible.undecided.len(),
+        results.inaccessible.count,
+        results.inaccessible.contradicted.len(),
+        results.inaccessible.undecided.len()
     )?;
     writeln!(
         page,
@@ -76,18 +84,23 @@ pub fn page(part: &str, task: &Wanted<'_>, results: &Found) -> Result<String, Er
         results.rounding
     )?;
     list_findings(&mut page, "Accessible", &results.accessible)?;
-    list_findings(&mut page, "Not accessible", &results.refused)?;
+    list_findings(&mut page, "Not accessible", &results.inaccessible)?;
     Ok(page)
 }
 
-fn list_findings(page: &mut String, kind: &str, drawn: &Drawn) -> Result<(), Error> {
-    for (verdict, findings) in [("false", &drawn.wrong), ("open", &drawn.open)] {
+fn list_findings(
+    page: &mut String,
+    kind: &str,
+    validated: &ValidatedPostures,
+) -> Result<(), Error> {
+    for (verdict, findings) in [("false", &validated.contradicted), ("open", &validated.undecided)]
+    {
         if findings.is_empty() {
             continue;
         }
         writeln!(page, "\n### {kind}, {verdict}\n")?;
         for finding in findings.iter().take(MAX_LISTED) {
-            writeln!(page, "- {}: {}", finding.at, finding.what)?;
+            writeln!(page, "- {}: {}", finding.posture, finding.result)?;
         }
         if findings.len() > MAX_LISTED {
             writeln!(page, "- and {} more", findings.len() - MAX_LISTED)?;

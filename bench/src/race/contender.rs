@@ -25,45 +25,45 @@ pub struct Answer {
 }
 
 /// A pose, stored as three rows that turn vectors from the world frame into the tool's frame.
-pub struct View {
+pub struct PoseTransform {
     /// The tip, in the world frame.
     pub tip: [f64; 3],
     rows: [[f64; 3]; 3],
 }
 
-impl View {
+impl PoseTransform {
     /// Converts a pose.
-    pub fn of(pose: &Pose) -> View {
+    pub fn of(pose: &Pose) -> PoseTransform {
         let column = |axis: usize| pose.rotation().column(axis).into_owned().into();
-        View { tip: pose.tip().coords.into(), rows: [column(0), column(1), column(2)] }
+        PoseTransform { tip: pose.tip().coords.into(), rows: [column(0), column(1), column(2)] }
     }
 
     /// Returns the vector from the tip to a point, in the world frame.
     #[inline]
-    pub fn arm(&self, p: [f64; 3]) -> [f64; 3] {
+    pub fn offset_from_tip(&self, p: [f64; 3]) -> [f64; 3] {
         [p[0] - self.tip[0], p[1] - self.tip[1], p[2] - self.tip[2]]
     }
 
     /// Returns a vector of the world frame in the tool's frame.
     #[inline]
-    pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
+    pub fn to_tool_frame(&self, v: [f64; 3]) -> [f64; 3] {
         [dot(self.rows[0], v), dot(self.rows[1], v), dot(self.rows[2], v)]
     }
 
     /// Returns the half extents along the tool's axes of a box with these half extents along the world's axes.
     #[inline]
-    pub fn reach(&self, half: [f64; 3]) -> [f64; 3] {
+    pub fn box_half_extents(&self, half: [f64; 3]) -> [f64; 3] {
         let extent = |row: [f64; 3]| dot([row[0].abs(), row[1].abs(), row[2].abs()], half);
         [extent(self.rows[0]), extent(self.rows[1]), extent(self.rows[2])]
     }
 
     /// Returns the rows in single precision.
-    pub fn single(&self) -> [[f32; 3]; 3] {
+    pub fn rows_f32(&self) -> [[f32; 3]; 3] {
         self.rows.map(|row| row.map(|c| c as f32))
     }
 
     /// Returns a vector of the tool's frame in the world frame.
-    pub fn back(&self, v: Vector3<f64>) -> Vector3<f64> {
+    pub fn to_world_frame(&self, v: Vector3<f64>) -> Vector3<f64> {
         let [x, y, z] = self.rows.map(Vector3::from);
         Matrix3::from_columns(&[x, y, z]) * v
     }
@@ -81,12 +81,12 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Adds a point inside. `arm` and `p` are its vectors from the tip in the world frame and in the tool's frame. The
-    /// pairs are its weight and normal in the world frame, and its magnitude and direction in the tool's frame.
+    /// Adds a point inside. `offset` and `p` are its vectors from the tip in the world frame and in the tool's frame.
+    /// The pairs are its weight and normal in the world frame, and its magnitude and direction in the tool's frame.
     #[inline]
     pub fn add(
         &mut self,
-        [arm, p]: [[f64; 3]; 2],
+        [offset, p]: [[f64; 3]; 2],
         (weight, normal): (f64, [f64; 3]),
         (magnitude, direction): (f64, [f64; 3]),
     ) {
@@ -96,14 +96,14 @@ impl Sums {
         let (normal_force, direction_force) =
             (force_scale * Vector3::from(normal), force_scale * Vector3::from(direction));
         self.part[0] += normal_force;
-        self.part[1] += Vector3::from(arm).cross(&normal_force);
+        self.part[1] += Vector3::from(offset).cross(&normal_force);
         self.tool[0] -= direction_force;
         self.tool[1] -= Vector3::from(p).cross(&direction_force);
     }
 
     /// Returns the answer, with both sums in the world frame.
-    pub fn answer(&self, view: &View) -> Answer {
-        let sum = |index: usize| view.back(self.tool[index]) + self.part[index];
+    pub fn answer(&self, transform: &PoseTransform) -> Answer {
+        let sum = |index: usize| transform.to_world_frame(self.tool[index]) + self.part[index];
         Answer { colliding: self.colliding, depth: self.depth, wrench: Some([sum(0), sum(1)]) }
     }
 }

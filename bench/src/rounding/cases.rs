@@ -5,8 +5,8 @@ use super::truth::Point;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::outline::{Flat, Segment};
+use touchoff_tests::oracle::outline::{MeridianPoint, Segment};
+use touchoff_tests::oracle::rng::Rng;
 
 /// A family of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,13 +119,13 @@ struct Sketch<'a> {
 
 impl Sketch<'_> {
     /// Rotates a point `[d, z]` and a vector with radial and axial components about the axis by one random angle.
-    fn revolve(point: Flat, vector: Flat, rng: &mut Rng) -> (Point, Point) {
+    fn revolve(point: MeridianPoint, vector: MeridianPoint, rng: &mut Rng) -> (Point, Point) {
         let (sin, cos) = match rng.bits() % 4 {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
             _ => rng.between(0.0, TAU).sin_cos(),
         };
-        let to_space = |[d, z]: Flat| [d * cos, d * sin, z];
+        let to_space = |[d, z]: MeridianPoint| [d * cos, d * sin, z];
         (to_space(point), to_space(vector))
     }
 
@@ -192,7 +192,8 @@ impl Sketch<'_> {
     fn centre(&self, rng: &mut Rng) -> [Point; 3] {
         let centres = self.cutter.outline.segments.iter().filter_map(|segment| segment.centre);
         let axis = [0.0, rng.between(0.0, self.cutter.extent[1])];
-        let points: Vec<Flat> = centres.filter(|point| point[0] >= 0.0).chain([axis]).collect();
+        let points: Vec<MeridianPoint> =
+            centres.filter(|point| point[0] >= 0.0).chain([axis]).collect();
         let sine_cosine = rng.between(0.0, TAU).sin_cos();
         let (point, direction) =
             Self::revolve(pick(&points, rng), [sine_cosine.0, sine_cosine.1], rng);
@@ -287,18 +288,18 @@ impl Sketch<'_> {
     }
 }
 
-fn unit(v: Flat) -> Flat {
+fn unit(v: MeridianPoint) -> MeridianPoint {
     let norm = v[0].hypot(v[1]);
     if norm > 0.0 { v.map(|component| component / norm) } else { [0.0, 1.0] }
 }
 
 /// Returns the unit normal of a profile segment, out of the material, at parameter `fraction` in 0 to 1.
-fn outward(segment: &Segment, fraction: f64) -> Flat {
+fn outward(segment: &Segment, fraction: f64) -> MeridianPoint {
     let ([a, b], [c, d]) = (segment.from, segment.to);
     let point = [a + fraction * (c - a), b + fraction * (d - b)];
     let Some(centre) = segment.centre else { return unit([d - b, a - c]) };
     let normal = unit([point[0] - centre[0], point[1] - centre[1]]);
-    if segment.is_hollow() { normal.map(|component| -component) } else { normal }
+    if segment.is_concave() { normal.map(|component| -component) } else { normal }
 }
 
 /// Returns a random pose: the identity, an axis along a coordinate axis, or any rotation. The tip is within a few tool

@@ -7,9 +7,9 @@ use std::fmt::Write;
 use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, ToolError};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::outline::{Flat, Outline, Segment};
+use touchoff_tests::oracle::outline::{MeridianPoint, Outline, Segment};
 use touchoff_tests::oracle::reference::Reference;
-use touchoff_tests::oracle::restated::{Restated, Way};
+use touchoff_tests::oracle::restated::{self, Restated};
 
 /// A tool at one scale.
 pub struct Cutter {
@@ -29,7 +29,7 @@ pub struct Cutter {
 }
 
 /// A profile: the name, and the end points of its segments with the centre if the segment is an arc.
-type ProfilePoints = (&'static str, &'static [(Flat, Option<Flat>)]);
+type ProfilePoints = (&'static str, &'static [(MeridianPoint, Option<MeridianPoint>)]);
 
 /// The profiles at scale 1, mm; each begins at the origin.
 const PROFILES: [ProfilePoints; 11] = [
@@ -138,7 +138,7 @@ pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
     let (name, points) = PROFILES[number % PROFILES.len()];
     let exponent = SCALES[number / PROFILES.len()];
     let scale = 2f64.powi(exponent);
-    let scaled = |point: Flat| point.map(|coordinate| coordinate * scale);
+    let scaled = |point: MeridianPoint| point.map(|coordinate| coordinate * scale);
     let mut segments = Vec::new();
     let mut from = [0.0, 0.0];
     for &(to, centre) in points {
@@ -172,7 +172,7 @@ fn source_text(name: &str, segments: &[Segment]) -> String {
         let [d, z] = segment.to;
         let result = match segment.centre {
             Some([x, y]) => {
-                let concave = if segment.is_hollow() { " concave" } else { "" };
+                let concave = if segment.is_concave() { " concave" } else { "" };
                 write!(text, " arc to ({d}, {z}) center ({x}, {y}){concave} as s{k} cutting;")
             }
             None => write!(text, " line to ({d}, {z}) as s{k} cutting;"),
@@ -184,8 +184,8 @@ fn source_text(name: &str, segments: &[Segment]) -> String {
 
 /// Returns the tool as the 256-bit reference reads it.
 fn restated(name: &'static str, segments: &[Segment]) -> Restated {
-    let exact = |point: Flat| point.map(Big::exactly);
-    let step = |segment: &Segment| Way {
+    let exact = |point: MeridianPoint| point.map(Big::exactly);
+    let exact_segment = |segment: &Segment| restated::Segment {
         to: exact(segment.to),
         centre: segment.centre.map(exact),
         surface: "all",
@@ -193,7 +193,7 @@ fn restated(name: &'static str, segments: &[Segment]) -> Restated {
     Restated {
         name,
         start: exact([0.0, 0.0]),
-        ways: segments.iter().map(step).collect(),
+        segments: segments.iter().map(exact_segment).collect(),
         cutting: Vec::new(),
         niceness: |_, _, _| 1.0,
     }
@@ -202,8 +202,8 @@ fn restated(name: &'static str, segments: &[Segment]) -> Restated {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Rng;
-    use touchoff_tests::oracle::reference::At;
+    use touchoff_tests::oracle::reference::QueryPoint;
+    use touchoff_tests::oracle::rng::Rng;
 
     #[test]
     fn doubles_and_256_bits_agree() {
@@ -213,7 +213,7 @@ mod tests {
             let [radius, height] = cutter.extent;
             for _ in 0..200 {
                 let (d, z) = (rng.between(0.0, 1.2 * radius), rng.between(-0.1, 1.1) * height);
-                let exact = cutter.reference.depth(&At::new([d, 0.0, z])).to_f64();
+                let exact = cutter.reference.depth(&QueryPoint::new([d, 0.0, z])).to_f64();
                 let difference = (cutter.outline.depth([d, z]) - exact).abs();
                 assert!(
                     difference < 1e-13 * (radius + height),

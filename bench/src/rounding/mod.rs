@@ -20,8 +20,8 @@ use std::fmt::Write;
 use touchoff::certify::{Certifier, TriangleBvh, Witness};
 use touchoff::{Mesh, Unit};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use truth::{Place, Point, Scene};
+use touchoff_tests::oracle::rng::Rng;
+use truth::{Point, Scene, TrianglePoint};
 
 /// Number of violations listed per family.
 const MAX_LISTED: usize = 4;
@@ -30,14 +30,14 @@ const MAX_LISTED: usize = 4;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     /// The value.
-    pub figure: f64,
+    pub value: f64,
     /// The case number.
     pub case: u64,
 }
 
 impl Worst {
     fn update(&mut self, other: Worst) {
-        if other.figure.is_nan() || other.figure > self.figure {
+        if other.value.is_nan() || other.value > self.value {
             *self = other;
         }
     }
@@ -53,25 +53,25 @@ pub struct Row {
     /// Cases in which a point of the triangles is inside the tool.
     pub touching: u64,
     /// Cases in which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
-    pub alone: u64,
+    pub found_unaided: u64,
     /// Cases in which a depth in 256 bits reaches the lower bound, so that the bound is certainly true.
-    pub certain: u64,
+    pub lower_certain: u64,
     /// Intervals wider than the tolerance plus the promised widening at both ends.
-    pub wider: u64,
+    pub too_wide: u64,
     /// The largest excess of an interval's width over that, in widenings.
-    pub widest: Worst,
+    pub max_excess_width: Worst,
     /// The largest excess of the true depth over the computed depth, as a fraction of what the upper bound adds.
     pub above: Worst,
     /// The largest excess of the computed depth over the true depth, as a fraction of what the lower bound subtracts.
     pub below: Worst,
     /// Upper bounds below a depth in 256 bits, and intervals that are negative or not finite.
-    pub exceeded: u64,
+    pub upper_violations: u64,
     /// Witnesses that are off their triangle.
-    pub off: u64,
+    pub off_triangle: u64,
     /// Witnesses that are not as deep as the lower bound.
-    pub shallow: u64,
+    pub too_shallow: u64,
     /// Descriptions of the first of these three kinds of violations.
-    pub shown: Vec<String>,
+    pub descriptions: Vec<String>,
 }
 
 impl Row {
@@ -81,16 +81,16 @@ impl Row {
             family,
             cases: 0,
             touching: 0,
-            alone: 0,
-            certain: 0,
-            wider: 0,
-            widest: Worst::default(),
+            found_unaided: 0,
+            lower_certain: 0,
+            too_wide: 0,
+            max_excess_width: Worst::default(),
             above: Worst::default(),
             below: Worst::default(),
-            exceeded: 0,
-            off: 0,
-            shallow: 0,
-            shown: Vec::new(),
+            upper_violations: 0,
+            off_triangle: 0,
+            too_shallow: 0,
+            descriptions: Vec::new(),
         }
     }
 
@@ -98,55 +98,55 @@ impl Row {
     pub fn add(&mut self, other: Row) {
         self.cases += other.cases;
         self.touching += other.touching;
-        self.alone += other.alone;
-        self.certain += other.certain;
-        self.wider += other.wider;
-        self.widest.update(other.widest);
+        self.found_unaided += other.found_unaided;
+        self.lower_certain += other.lower_certain;
+        self.too_wide += other.too_wide;
+        self.max_excess_width.update(other.max_excess_width);
         self.above.update(other.above);
         self.below.update(other.below);
-        self.exceeded += other.exceeded;
-        self.off += other.off;
-        self.shallow += other.shallow;
-        self.shown.extend(other.shown);
-        self.shown.truncate(MAX_LISTED);
+        self.upper_violations += other.upper_violations;
+        self.off_triangle += other.off_triangle;
+        self.too_shallow += other.too_shallow;
+        self.descriptions.extend(other.descriptions);
+        self.descriptions.truncate(MAX_LISTED);
     }
 
     /// Returns the number of wrong answers.
     pub fn violations(&self) -> u64 {
-        self.exceeded + self.off + self.shallow
+        self.upper_violations + self.off_triangle + self.too_shallow
     }
 
     fn list_violation(&mut self, description: String) {
-        if self.shown.len() < MAX_LISTED {
-            self.shown.push(description);
+        if self.descriptions.len() < MAX_LISTED {
+            self.descriptions.push(description);
         }
     }
 }
 
 /// The tools, and the seed of the random cases.
-pub struct Rounding {
+pub struct RoundingCheck {
     cutters: Vec<Cutter>,
     seed: u64,
     /// The fraction of the rounding and tolerance added at each end that is removed before the answer is validated. It
     /// is 0 except in tests that the validation rejects a bound that is too tight.
-    pub pinch: f64,
+    pub tightening: f64,
 }
 
-impl Rounding {
+impl RoundingCheck {
     /// Compiles all tools.
     ///
     /// # Panics
     /// If the compiler rejects one.
-    pub fn new(seed: u64) -> Rounding {
+    pub fn new(seed: u64) -> RoundingCheck {
         let cutter = |number| cutters::cutter(number).expect("a tool that compiles");
-        Rounding { cutters: (0..cutters::COUNT).map(cutter).collect(), seed, pinch: 0.0 }
+        RoundingCheck { cutters: (0..cutters::COUNT).map(cutter).collect(), seed, tightening: 0.0 }
     }
 
     /// Queries the case with this number and adds the result to the row of its family.
     ///
     /// # Panics
     /// If the certifier rejects the tool.
-    pub fn ask(&self, number: u64, rows: &mut [Row]) {
+    pub fn run_case(&self, number: u64, rows: &mut [Row]) {
         let mut rng = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
         let family_index = number as usize % Family::ALL.len();
         let cutter = &self.cutters[rng.bits() as usize % self.cutters.len()];
@@ -165,7 +165,7 @@ impl Rounding {
             case: &case,
             scene: &scene,
             interval: [penetration.depth.low, penetration.depth.high],
-            pinch: self.pinch,
+            tightening: self.tightening,
         };
         validation.run(penetration.witness, &mut rng, &mut rows[family_index], number);
     }
@@ -184,7 +184,7 @@ struct Validation<'a> {
     case: &'a Case,
     scene: &'a Scene<'a>,
     interval: [f64; 2],
-    pinch: f64,
+    tightening: f64,
 }
 
 impl Validation<'_> {
@@ -193,9 +193,9 @@ impl Validation<'_> {
         let widening = rounding + skew;
         let tolerance = self.case.tolerance.max(4.0 * rounding);
         let [mut low, mut high] = self.interval;
-        if self.pinch > 0.0 && low > 0.0 {
-            low += self.pinch * (rounding + widening);
-            high -= self.pinch * (tolerance + widening);
+        if self.tightening > 0.0 && low > 0.0 {
+            low += self.tightening * (rounding + widening);
+            high -= self.tightening * (tolerance + widening);
         }
         let size = self.scene.cutter.extent[0].max(self.scene.cutter.extent[1]);
         let unaided_depth = self.scene.exact_depth(&self.scene.deepest(rng));
@@ -204,28 +204,28 @@ impl Validation<'_> {
         let true_depth = self.best_depth(unaided_depth, nearest.as_ref(), rng);
         row.cases += 1;
         row.touching += u64::from(true_depth > Big::zero());
-        row.alone += u64::from(is_near);
-        row.certain += u64::from(Big::exactly(low) <= true_depth);
+        row.found_unaided += u64::from(is_near);
+        row.lower_certain += u64::from(Big::exactly(low) <= true_depth);
         let excess_width = high - low - tolerance - rounding - 2.0 * widening;
-        row.wider += u64::from(excess_width > 0.01 * widening);
-        let worst_of = |figure: f64| Worst { figure, case: number };
-        row.widest.update(worst_of(excess_width / widening));
+        row.too_wide += u64::from(excess_width > 0.01 * widening);
+        let worst_of = |value: f64| Worst { value, case: number };
+        row.max_excess_width.update(worst_of(excess_width / widening));
         let describe =
             || format!("case {number}: [{low:e}, {high:e}], {} in 256 bits", true_depth.to_f64());
         if !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high) {
-            row.exceeded += 1;
+            row.upper_violations += 1;
             row.list_violation(format!("{}: above it", describe()));
         }
         let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
             if low > 0.0 {
-                row.shallow += 1;
+                row.too_shallow += 1;
                 row.list_violation(format!("{}: no witness", describe()));
             }
             return;
         };
         let depth = self.scene.exact_depth(&point_on_triangle);
         if distance > rounding_distance + widening {
-            row.off += 1;
+            row.off_triangle += 1;
             row.list_violation(format!(
                 "{}: the witness is {distance:e} off its triangle",
                 describe()
@@ -233,7 +233,7 @@ impl Validation<'_> {
         } else if low > 0.0
             && Big::exactly(low) > &depth + &Big::exactly(distance + rounding_distance)
         {
-            row.shallow += 1;
+            row.too_shallow += 1;
             row.list_violation(format!("{}: the witness is {:e} deep", describe(), depth.to_f64()));
         }
         if low > 0.0 {
@@ -300,7 +300,7 @@ impl Validation<'_> {
 
 /// A point of a triangle next to a witness.
 struct NearestPoint {
-    point_on_triangle: Place,
+    point_on_triangle: TrianglePoint,
     /// The distance between the two.
     distance: f64,
     /// The distance by which rounding in the world frame may have moved the witness.
@@ -341,15 +341,15 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
             row.family,
             row.cases,
             row.touching,
-            share(row.alone),
-            share(row.certain),
-            row.above.figure,
-            row.below.figure,
-            row.wider,
-            row.widest.figure,
-            row.exceeded,
-            row.off,
-            row.shallow
+            share(row.found_unaided),
+            share(row.lower_certain),
+            row.above.value,
+            row.below.value,
+            row.too_wide,
+            row.max_excess_width.value,
+            row.upper_violations,
+            row.off_triangle,
+            row.too_shallow
         )?;
     }
     let sum = |value: fn(&Row) -> u64| rows.iter().map(value).sum::<u64>();
@@ -358,18 +358,22 @@ pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
         "\n{} cases, {} of them in contact, {} wider, {} violations.\n\n## Violated\n",
         sum(|row| row.cases),
         sum(|row| row.touching),
-        sum(|row| row.wider),
+        sum(|row| row.too_wide),
         sum(Row::violations)
     )?;
     if rows.iter().all(|row| row.violations() == 0) {
         page += "Nothing.\n";
     }
-    for text in rows.iter().flat_map(|row| &row.shown) {
+    for text in rows.iter().flat_map(|row| &row.descriptions) {
         writeln!(page, "- {text}")?;
     }
     page += "\n## Cases with the largest figures\n\n| family | above | below | widest |\n|---|--:|--:|--:|\n";
-    for Row { family, above, below, widest, .. } in rows {
-        writeln!(page, "| {family:?} | {} | {} | {} |", above.case, below.case, widest.case)?;
+    for Row { family, above, below, max_excess_width, .. } in rows {
+        writeln!(
+            page,
+            "| {family:?} | {} | {} | {} |",
+            above.case, below.case, max_excess_width.case
+        )?;
     }
     Ok(page)
 }

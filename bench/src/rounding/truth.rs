@@ -6,8 +6,8 @@
 use super::cutters::Cutter;
 use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::reference::At;
+use touchoff_tests::oracle::reference::QueryPoint;
+use touchoff_tests::oracle::rng::Rng;
 
 /// A point or vector in space.
 pub type Point = [f64; 3];
@@ -29,7 +29,7 @@ pub struct Scene<'a> {
 
 /// A point on a triangle, by its unnormalised barycentric weights.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct TrianglePoint {
     /// The index of the triangle.
     pub triangle: usize,
     /// Weights that are not negative and not all 0.
@@ -121,51 +121,51 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the point in the tool's frame, in doubles.
-    pub fn point(&self, place: &Place) -> Point {
-        mean(&self.triangles[place.triangle], place.weights)
+    pub fn point(&self, point: &TrianglePoint) -> Point {
+        mean(&self.triangles[point.triangle], point.weights)
     }
 
     /// Returns the depth of a point, computed in doubles.
-    pub fn depth(&self, place: &Place) -> f64 {
-        let [x, y, z] = self.point(place);
+    pub fn depth(&self, point: &TrianglePoint) -> f64 {
+        let [x, y, z] = self.point(point);
         self.cutter.outline.depth([x.hypot(y), z])
     }
 
     /// Returns the depth of a point, computed in 256 bits.
-    pub fn exact_depth(&self, place: &Place) -> Big {
-        let corners = &self.exact[place.triangle];
-        let weights = place.weights.map(Big::exactly);
+    pub fn exact_depth(&self, triangle_point: &TrianglePoint) -> Big {
+        let corners = &self.exact[triangle_point.triangle];
+        let weights = triangle_point.weights.map(Big::exactly);
         let sum = &(&weights[0] + &weights[1]) + &weights[2];
         let point = [0, 1, 2].map(|axis| {
             let column = [0, 1, 2].map(|k| corners[k][axis].clone());
             &dot(&weights, &column) / &sum
         });
-        self.cutter.reference.depth(&At::of(point))
+        self.cutter.reference.depth(&QueryPoint::of(point))
     }
 
     /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.
-    pub fn nearest(&self, triangle: usize, p: Point) -> Place {
-        Place { triangle, weights: nearest(p, &self.triangles[triangle]) }
+    pub fn nearest(&self, triangle: usize, p: Point) -> TrianglePoint {
+        TrianglePoint { triangle, weights: nearest(p, &self.triangles[triangle]) }
     }
 
     /// Returns the deepest point found by the random search.
-    pub fn deepest(&self, rng: &mut Rng) -> Place {
+    pub fn deepest(&self, rng: &mut Rng) -> TrianglePoint {
         let mut starts = Vec::new();
         for triangle in 0..self.triangles.len() {
             self.starts(triangle, rng, &mut starts);
         }
         let mut starts: Vec<_> =
-            starts.into_iter().map(|place| (self.depth(&place), place)).collect();
+            starts.into_iter().map(|point| (self.depth(&point), point)).collect();
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
         starts.truncate(CLIMBS);
-        let climbed = starts.iter().map(|(_, place)| self.climb(place, 0.3, STEPS_PER_CLIMB, rng));
+        let climbed = starts.iter().map(|(_, point)| self.climb(point, 0.3, STEPS_PER_CLIMB, rng));
         let best = climbed.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a triangle has starts");
         self.climb(&best.1, best.2, FINAL_STEPS, rng).1
     }
 
     /// Appends starting points: corners, points on edges and inside, and feet of points of the tool.
-    fn starts(&self, triangle: usize, rng: &mut Rng, starts: &mut Vec<Place>) {
-        let mut add = |weights: Point| starts.push(Place { triangle, weights });
+    fn starts(&self, triangle: usize, rng: &mut Rng, starts: &mut Vec<TrianglePoint>) {
+        let mut add = |weights: Point| starts.push(TrianglePoint { triangle, weights });
         for k in 0..3 {
             let mut corner = [0.0; 3];
             corner[k] = 1.0;
@@ -197,11 +197,11 @@ impl<'a> Scene<'a> {
     /// grows after an improvement and shrinks otherwise.
     pub fn climb(
         &self,
-        start: &Place,
+        start: &TrianglePoint,
         step: f64,
         steps: usize,
         rng: &mut Rng,
-    ) -> (f64, Place, f64) {
+    ) -> (f64, TrianglePoint, f64) {
         let (mut best, mut current, mut step) = (self.depth(start), *start, step);
         let mut last_change = [0.0; 3];
         for k in 0..steps {
@@ -217,7 +217,7 @@ impl<'a> Scene<'a> {
             };
             let moved = [0, 1, 2].map(|k| (current.weights[k] + step * change[k]).max(0.0));
             let sum = moved[0] + moved[1] + moved[2];
-            let next = Place { weights: moved.map(|weight| weight / sum), ..current };
+            let next = TrianglePoint { weights: moved.map(|weight| weight / sum), ..current };
             let depth = self.depth(&next);
             if depth > best {
                 (best, current, last_change) = (depth, next, change);

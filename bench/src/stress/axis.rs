@@ -1,8 +1,8 @@
 //! Item 4: distances d = ±0, 5e-324 and 2^-540 from the axis, or for a solid from its coordinate planes.
 
-use super::judge::Judge;
 use super::ledger::Ledger;
 use super::truth::Subject;
+use super::validator::Validator;
 
 const DISTANCES: [f64; 4] = [0.0, -0.0, 5e-324, 0.0];
 
@@ -17,9 +17,9 @@ fn distances() -> [f64; 4] {
 /// `extra_heights`
 /// more heights.
 pub(super) fn axis_points(subject: &Subject, extra_heights: usize, ledger: &mut Ledger) {
-    let validator = Judge::new(subject.tool, &*subject.truth);
+    let validator = Validator::new(subject.tool, &*subject.truth);
     let corners = subject.oracle.corner_points();
-    let points = if subject.oracle.revolved() {
+    let points = if subject.oracle.is_revolved() {
         let height = subject.oracle.extent()[1];
         let mut heights: Vec<f64> = corners.into_iter().map(|[.., z]| z).collect();
         heights.sort_by(f64::total_cmp);
@@ -34,7 +34,7 @@ pub(super) fn axis_points(subject: &Subject, extra_heights: usize, ledger: &mut 
         corners.into_iter().flat_map(points_near_planes).collect::<Vec<_>>()
     };
     for points in points.chunks(1024) {
-        validator.points(points, ledger);
+        validator.validate(points, ledger);
     }
 }
 

@@ -2,28 +2,33 @@
 //! ulp beside them.
 
 use super::borders::{Bracket, brackets, is_exact, rotated_copies};
-use super::judge::{Answer, Judge};
 use super::ledger::{Kind, Ledger};
-use super::truth::{Subject, place};
+use super::truth::{Subject, to_exact};
+use super::validator::{PointEvaluation, Validator};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Difference between the evaluated depth on a curve and the depth of each neighbouring region there.
-const NEIGHBOUR_DEPTH: Kind = Kind::of("both neighbours", "ulp(S)", 1.0);
+const NEIGHBOUR_DEPTH: Kind = Kind::with_limit("both neighbours", "ulp(S)", 1.0);
 /// Step of the evaluated depth across a curve, less the step of the true depth.
-const STEP_ERROR: Kind = Kind::of("step across", "ulp(S)", 1.0);
+const STEP_ERROR: Kind = Kind::with_limit("step across", "ulp(S)", 1.0);
 /// Number of points that lie on a curve exactly.
-const EXACT_SHARE: Kind = Kind::told("exactly on it", "share");
+const EXACT_SHARE: Kind = Kind::informational("exactly on it", "share");
 
 /// Validates item 1.
-pub(super) fn on_borders(subject: &Subject, max_points: usize, rng: &mut Rng, ledger: &mut Ledger) {
-    let validator = Judge::new(subject.tool, &*subject.truth);
+pub(super) fn points_on_borders(
+    subject: &Subject,
+    max_points: usize,
+    rng: &mut Rng,
+    ledger: &mut Ledger,
+) {
+    let validator = Validator::new(subject.tool, &*subject.truth);
     let (mut exact_count, mut count) = (0, 0);
     for bracket in brackets(subject, max_points, rng) {
         let side = nearer_end(subject, &bracket);
         count += 1;
         exact_count += usize::from(is_exact(subject, bracket.ends[side], bracket.owners));
-        let answers = validator.points(&bracket.ends, ledger);
+        let answers = validator.validate(&bracket.ends, ledger);
         compare_neighbours(
             subject,
             bracket.ends[side],
@@ -33,17 +38,17 @@ pub(super) fn on_borders(subject: &Subject, max_points: usize, rng: &mut Rng, le
         );
         compare_step(subject, &bracket, &answers, ledger);
         let copies = rotated_copies(subject, bracket.ends[side], rng);
-        validator.points(&copies[1..], ledger);
+        validator.validate(&copies[1..], ledger);
     }
     for corner in subject.oracle.corner_points() {
         for p in rotated_copies(subject, corner, rng) {
-            let answer = validator.points(&[p], ledger).swap_remove(0);
+            let answer = validator.validate(&[p], ledger).swap_remove(0);
             let owners = owners_at(subject, p);
             compare_neighbours(subject, p, answer.as_ref(), &owners, ledger);
         }
     }
     let share = if count > 0 { exact_count as f64 / count as f64 } else { 0.0 };
-    ledger.tell(EXACT_SHARE, count, share, &format!("{exact_count} of {count}"));
+    ledger.record_info(EXACT_SHARE, count, share, &format!("{exact_count} of {count}"));
 }
 
 /// Returns the index of the bracket's end nearer to the border: there the depths of both sides differ less.
@@ -57,17 +62,17 @@ fn nearer_end(subject: &Subject, bracket: &Bracket) -> usize {
 
 /// Returns the depth of a region at a point; outside it is 0.
 fn region_depth(subject: &Subject, p: [f64; 3], owner: Option<usize>) -> Big {
-    let claim = owner.and_then(|region| subject.truth.claim(&place(p), region));
+    let claim = owner.and_then(|region| subject.truth.region_values(&to_exact(p), region));
     claim.map_or_else(Big::zero, |claim| claim.depth)
 }
 
 /// Returns all regions that own a point, to half an ulp(S).
 fn owners_at(subject: &Subject, p: [f64; 3]) -> Vec<Option<usize>> {
-    let exact_point = place(p);
+    let exact_point = to_exact(p);
     let regions = 0..subject.tool.info().regions.len();
     let owning = regions.filter(|region| {
-        let claim = subject.truth.claim(&exact_point, *region);
-        claim.is_some_and(|claim| claim.behind <= subject.ulp() / 2.0)
+        let claim = subject.truth.region_values(&exact_point, *region);
+        claim.is_some_and(|claim| claim.excess_distance <= subject.ulp() / 2.0)
     });
     owning.map(Some).collect()
 }
@@ -75,7 +80,7 @@ fn owners_at(subject: &Subject, p: [f64; 3]) -> Vec<Option<usize>> {
 fn compare_neighbours(
     subject: &Subject,
     p: [f64; 3],
-    answer: Option<&Answer>,
+    answer: Option<&PointEvaluation>,
     owners: &[Option<usize>],
     ledger: &mut Ledger,
 ) {
@@ -83,7 +88,7 @@ fn compare_neighbours(
     let computed = Big::exactly(answer.depth());
     for owner in owners {
         let error = (&computed - &region_depth(subject, p, *owner)).abs().to_f64();
-        ledger.see(NEIGHBOUR_DEPTH, error / subject.ulp(), || {
+        ledger.record(NEIGHBOUR_DEPTH, error / subject.ulp(), || {
             format!("{p:?} beside region {owner:?}")
         });
     }
@@ -92,25 +97,25 @@ fn compare_neighbours(
 fn compare_step(
     subject: &Subject,
     bracket: &Bracket,
-    answers: &[Option<Answer>],
+    answers: &[Option<PointEvaluation>],
     ledger: &mut Ledger,
 ) {
     if let [Some(a), Some(b)] = answers {
-        let exact = bracket.ends.map(|p| subject.truth.depth(&place(p)));
+        let exact = bracket.ends.map(|p| subject.truth.depth(&to_exact(p)));
         let computed = &Big::exactly(a.depth()) - &Big::exactly(b.depth());
         let error = (&computed - &(&exact[0] - &exact[1])).abs().to_f64();
-        ledger.see(STEP_ERROR, error / subject.ulp(), || format!("{:?}", bracket.ends));
+        ledger.record(STEP_ERROR, error / subject.ulp(), || format!("{:?}", bracket.ends));
     }
 }
 
 /// Validates item 2.
-pub(super) fn beside_borders(
+pub(super) fn points_near_borders(
     subject: &Subject,
     max_points: usize,
     rng: &mut Rng,
     ledger: &mut Ledger,
 ) {
-    let validator = Judge::new(subject.tool, &*subject.truth);
+    let validator = Validator::new(subject.tool, &*subject.truth);
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     let mut centres: Vec<[f64; 3]> = subject.oracle.corner_points();
     centres.extend(brackets(subject, max_points, rng).into_iter().flat_map(|bracket| bracket.ends));
@@ -118,7 +123,7 @@ pub(super) fn beside_borders(
         let mut points = Vec::new();
         for x in neighbours(x) {
             for z in neighbours(z) {
-                if subject.oracle.revolved() {
+                if subject.oracle.is_revolved() {
                     let copies = rotated_copies(subject, [x.abs(), 0.0, z], rng);
                     points.push(copies[rng.bits() as usize % copies.len()]);
                 } else {
@@ -126,6 +131,6 @@ pub(super) fn beside_borders(
                 }
             }
         }
-        validator.points(&points, ledger);
+        validator.validate(&points, ledger);
     }
 }

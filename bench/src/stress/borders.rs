@@ -1,8 +1,8 @@
 //! Borders of regions and of the solid: adjacent doubles on different sides of a surface or a splitting curve,
 //! according to the 256-bit reference.
 
-use super::truth::{Place, Subject, place};
-use touchoff_tests::oracle::draw::Rng;
+use super::truth::{ExactPoint, Subject, to_exact};
+use touchoff_tests::oracle::rng::Rng;
 
 /// Two adjacent doubles along one coordinate, with different owners.
 pub(super) struct Bracket {
@@ -15,16 +15,16 @@ pub(super) struct Bracket {
 /// Returns brackets along each splitting curve and each segment of the surface, at about
 /// `max_points` of its points.
 pub(super) fn brackets(subject: &Subject, max_points: usize, rng: &mut Rng) -> Vec<Bracket> {
-    let mut found = Vec::new();
+    let mut brackets = Vec::new();
     for curve in subject.oracle.curve_points() {
         let step = curve.len().div_ceil(max_points).max(1);
         let first = rng.bits() as usize % step;
         for p in curve.iter().skip(first).step_by(step) {
-            let axes: &[usize] = if subject.oracle.revolved() { &[2, 0] } else { &[2, 0, 1] };
-            found.extend(axes.iter().filter_map(|axis| bracket_at(subject, *p, *axis)));
+            let axes: &[usize] = if subject.oracle.is_revolved() { &[2, 0] } else { &[2, 0, 1] };
+            brackets.extend(axes.iter().filter_map(|axis| bracket_at(subject, *p, *axis)));
         }
     }
-    found
+    brackets
 }
 
 /// Returns the border that a coordinate line crosses at a point or within 1e-6 of the tool's size.
@@ -33,8 +33,8 @@ fn bracket_at(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
         let mut p = p;
         p[axis] = value;
         // A distance from the axis cannot be negative.
-        let is_negative_distance = subject.oracle.revolved() && axis == 0 && value < 0.0;
-        (!is_negative_distance).then(|| subject.truth.owner(&place(p)))
+        let is_negative_distance = subject.oracle.is_revolved() && axis == 0 && value < 0.0;
+        (!is_negative_distance).then(|| subject.truth.owner(&to_exact(p)))
     };
     let coordinate = p[axis];
     let adjacent = [[coordinate.next_down(), coordinate], [coordinate, coordinate.next_up()]];
@@ -76,7 +76,7 @@ fn bisect(
 /// Returns the rotations about z of a point in the half plane y = 0: onto x and y exactly, and by a random angle. A
 /// point of a solid without rotational symmetry is returned unchanged.
 pub(super) fn rotated_copies(subject: &Subject, p: [f64; 3], rng: &mut Rng) -> Vec<[f64; 3]> {
-    if !subject.oracle.revolved() {
+    if !subject.oracle.is_revolved() {
         return vec![p];
     }
     let [d, _, z] = p;
@@ -87,9 +87,9 @@ pub(super) fn rotated_copies(subject: &Subject, p: [f64; 3], rng: &mut Rng) -> V
 /// Returns whether a point lies exactly on the border of two regions: their depths agree to 1e-60 of the tool's size.
 /// The depth outside is 0.
 pub(super) fn is_exact(subject: &Subject, p: [f64; 3], owners: [Option<usize>; 2]) -> bool {
-    let exact_point: Place = place(p);
+    let exact_point: ExactPoint = to_exact(p);
     let depths = owners.map(|owner| match owner {
-        Some(region) => subject.truth.claim(&exact_point, region).map(|claim| claim.depth),
+        Some(region) => subject.truth.region_values(&exact_point, region).map(|claim| claim.depth),
         None => Some(touchoff_tests::oracle::big::Big::zero()),
     });
     match depths {

@@ -1,17 +1,17 @@
 //! Item 3: points that are equally near to three, four or more features.
 
-use super::judge::Judge;
 use super::ledger::{Kind, Ledger};
-use super::section::find_meetings;
-use super::truth::{Subject, place};
+use super::section::find_equidistant_points;
+use super::truth::{Subject, to_exact};
+use super::validator::Validator;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Difference between the evaluated depth and the depth of each region that owns the point.
-const OWNER_DEPTH: Kind = Kind::of("all owners", "ulp(S)", 1.0);
-const THREE_FEATURES: Kind = Kind::told("as near to three", "features");
-const FOUR_FEATURES: Kind = Kind::told("as near to four or more", "features");
+const OWNER_DEPTH: Kind = Kind::with_limit("all owners", "ulp(S)", 1.0);
+const THREE_FEATURES: Kind = Kind::informational("as near to three", "features");
+const FOUR_FEATURES: Kind = Kind::informational("as near to four or more", "features");
 
 /// Validates these points and their neighbours at one ulp.
 pub(super) fn equidistant_points(
@@ -20,15 +20,15 @@ pub(super) fn equidistant_points(
     rng: &mut Rng,
     ledger: &mut Ledger,
 ) {
-    let validator = Judge::new(subject.tool, &*subject.truth);
+    let validator = Validator::new(subject.tool, &*subject.truth);
     let neighbours = |v: f64| [v, v.next_up(), v.next_down()];
     for ([x, y, z], count) in candidate_points(subject, starts, rng) {
         let kind = if count > 3 { FOUR_FEATURES } else { THREE_FEATURES };
-        ledger.tell(kind, 1, count as f64, &format!("{:?}", [x, y, z]));
+        ledger.record_info(kind, 1, count as f64, &format!("{:?}", [x, y, z]));
         let mut points = Vec::new();
         for x in neighbours(x) {
             for z in neighbours(z) {
-                if subject.oracle.revolved() {
+                if subject.oracle.is_revolved() {
                     let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
                     points.extend([[x.abs(), 0.0, z], [x * cos, x * sin, z]]);
                 } else {
@@ -36,16 +36,18 @@ pub(super) fn equidistant_points(
                 }
             }
         }
-        let answers = validator.points(&points, ledger);
+        let answers = validator.validate(&points, ledger);
         if let Some(answer) = &answers[0] {
-            let exact_point = place(points[0]);
+            let exact_point = to_exact(points[0]);
             for region in 0..subject.tool.info().regions.len() {
-                let Some(claim) = subject.truth.claim(&exact_point, region) else { continue };
-                if claim.behind > subject.ulp() / 2.0 {
+                let Some(claim) = subject.truth.region_values(&exact_point, region) else {
+                    continue;
+                };
+                if claim.excess_distance > subject.ulp() / 2.0 {
                     continue;
                 }
                 let error = (&Big::exactly(answer.depth()) - &claim.depth).abs().to_f64();
-                ledger.see(OWNER_DEPTH, error / subject.ulp(), || format!("{:?}", points[0]));
+                ledger.record(OWNER_DEPTH, error / subject.ulp(), || format!("{:?}", points[0]));
             }
         }
     }
@@ -59,8 +61,8 @@ fn candidate_points(
 ) -> Vec<([f64; 3], usize)> {
     let profile_points = |name: &str, rng: &mut Rng| {
         let tool = restated::of(name).expect("every profile is restated");
-        let points = find_meetings(&tool, subject.scale(), starts, rng);
-        points.into_iter().map(|m| ([m.at[0], 0.0, m.at[1]], m.features)).collect::<Vec<_>>()
+        let points = find_equidistant_points(&tool, subject.scale(), starts, rng);
+        points.into_iter().map(|m| ([m.point[0], 0.0, m.point[1]], m.features)).collect::<Vec<_>>()
     };
     match subject.name() {
         "Block" => {
@@ -73,7 +75,9 @@ fn candidate_points(
             // Inside: the corners of its own regions. Outside: the points for the exact solid.
             let own_corners = subject.oracle.corner_points().into_iter().map(|p| (p, 3));
             let outside = profile_points("Fig73Exact", rng).into_iter();
-            own_corners.chain(outside.filter(|(p, _)| subject.oracle.sense(*p).is_none())).collect()
+            own_corners
+                .chain(outside.filter(|(p, _)| subject.oracle.evaluate(*p).is_none()))
+                .collect()
         }
         name => profile_points(name, rng),
     }

@@ -5,10 +5,10 @@ use super::scene::PointSet;
 use super::truth::Subject;
 use nalgebra::Point3;
 use touchoff::{Level, Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
-const OTHER_CHECKSUM: Kind = Kind::never("another checksum");
-const CONTACT_SHARE: Kind = Kind::told("touching", "share of cycles");
+const OTHER_CHECKSUM: Kind = Kind::forbidden_event("another checksum");
+const CONTACT_SHARE: Kind = Kind::informational("touching", "share of cycles");
 
 /// Number of cycles with a checksum of their own, whichever thread runs them.
 const CYCLES_PER_CHUNK: usize = 500;
@@ -37,7 +37,7 @@ pub(super) fn cycles(subject: &Subject, count: usize, rng: &mut Rng, ledger: &mu
     let levels = levels();
     let (first, touching) = checksum(levels[0].1, 1);
     let share = touching as f64 / count as f64;
-    ledger.tell(CONTACT_SHARE, count, share, &format!("checksum {first:016x}"));
+    ledger.record_info(CONTACT_SHARE, count, share, &format!("checksum {first:016x}"));
     ledger.count(OTHER_CHECKSUM, checksum(levels[0].1, 2).0 != first, || "two threads".to_owned());
     for (name, level) in &levels[1..] {
         ledger.count(OTHER_CHECKSUM, checksum(*level, 1).0 != first, || (*name).to_owned());

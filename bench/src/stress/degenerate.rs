@@ -1,20 +1,20 @@
 //! Item 9: degenerate profiles. Each must give a compile error or exact values.
 
-use super::judge::Judge;
 use super::ledger::{Item, Kind, Ledger, Row};
 use super::text::profile_text;
 use super::truth::Profiled;
+use super::validator::Validator;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::restated::{Restated, Way};
+use touchoff_tests::oracle::restated::{Restated, Segment};
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Rejected by the compiler; the location is the message.
-const REJECTED: Kind = Kind::told("refused", "");
+const REJECTED: Kind = Kind::informational("refused", "");
 /// A profile that must be rejected, but was accepted.
-const ACCEPTED: Kind = Kind::never("taken");
+const ACCEPTED: Kind = Kind::forbidden_event("taken");
 
 /// A step of a profile: the end point, and the centre if it is an arc.
 type Step = ([f64; 2], Option<[f64; 2]>);
@@ -192,12 +192,15 @@ fn cases() -> Vec<Case> {
 
 fn restated(case: &Case) -> Restated {
     let point = |p: [f64; 2]| p.map(Big::decimal);
-    let segment =
-        |(to, centre): &Step| Way { to: point(*to), centre: centre.map(point), surface: "side" };
+    let segment = |(to, centre): &Step| Segment {
+        to: point(*to),
+        centre: centre.map(point),
+        surface: "side",
+    };
     Restated {
         name: "Case",
         start: point(case.start),
-        ways: case.steps.iter().map(segment).collect(),
+        segments: case.steps.iter().map(segment).collect(),
         cutting: Vec::new(),
         niceness: |_, _, _| 1.0,
     }
@@ -238,13 +241,13 @@ pub(super) fn degenerate_profiles(item: Item, count: usize, rng: &mut Rng) -> Ve
             Err(error) => {
                 let message = error.to_string();
                 let first = message.lines().next().unwrap_or_default().to_owned();
-                ledger.tell(REJECTED, 1, 0.0, &first);
+                ledger.record_info(REJECTED, 1, 0.0, &first);
             }
             Ok(tool) => {
                 ledger.count(ACCEPTED, case.is_invalid, || case.name.to_owned());
                 let truth = Profiled::new(&tool, &restated);
                 let points = points(&Nearest::new(&restated), count, rng);
-                Judge::new(&tool, &truth).points(&points, &mut ledger);
+                Validator::new(&tool, &truth).validate(&points, &mut ledger);
             }
         }
         rows.extend(ledger.rows());

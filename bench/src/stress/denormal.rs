@@ -1,21 +1,21 @@
 //! Item 13: denormal coordinates, depths and weights.
 
-use super::judge::Judge;
 use super::ledger::{Kind, Ledger};
 use super::scene::{PointSet, ProbeCheck};
 use super::truth::Subject;
+use super::validator::Validator;
 use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Error of a stored weight, in units of `f32` rounding relative to the largest weight.
-const WEIGHT_ERROR: Kind = Kind::of("stored weight", "2^-24 of the largest", 1.0);
+const WEIGHT_ERROR: Kind = Kind::with_limit("stored weight", "2^-24 of the largest", 1.0);
 
 const TINY_NUMBERS: [f64; 8] = [5e-324, -5e-324, 1e-323, 1e-310, -1e-310, 2.2e-308, 1e-300, 1e-160];
 
 /// Validates denormal coordinates, weights and poses.
 pub(super) fn denormal(subject: &Subject, count: usize, rng: &mut Rng, ledger: &mut Ledger) {
-    let validator = Judge::new(subject.tool, &*subject.truth);
+    let validator = Validator::new(subject.tool, &*subject.truth);
     let mut tiny = || TINY_NUMBERS[rng.bits() as usize % TINY_NUMBERS.len()];
     let mut points: Vec<[f64; 3]> = (0..count).map(|_| [tiny(), tiny(), tiny()]).collect();
     // Include points near every corner, and on the lowest face.
@@ -25,7 +25,7 @@ pub(super) fn denormal(subject: &Subject, count: usize, rng: &mut Rng, ledger: &
     for [x, y, z] in corners {
         points.extend([[x, tiny(), z], [tiny(), y, z], [x, y, tiny()], [x, tiny(), tiny()]]);
     }
-    validator.points(&points, ledger);
+    validator.validate(&points, ledger);
 
     for weight in [1.0, 1e-300, 1e-310, 5e-324] {
         let mut point_set = PointSet::near_tool(subject, 40, 2f64.powi(-20), rng);
@@ -66,7 +66,8 @@ fn check_poses(subject: &Subject, point_set: &PointSet, ledger: &mut Ledger) {
         let error = (stored - given).abs();
         // If the largest weight is itself denormal, a fraction of it is rounded to a denormal number.
         let bound = largest * 2f64.powi(-24) + 5e-324;
-        ledger
-            .see(WEIGHT_ERROR, error / bound, || format!("{given:e} of {largest:e} is {stored:e}"));
+        ledger.record(WEIGHT_ERROR, error / bound, || {
+            format!("{given:e} of {largest:e} is {stored:e}")
+        });
     }
 }

@@ -9,11 +9,11 @@ use super::truth::Subject;
 use nalgebra::{Matrix3, Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Contact, Part, Pose, Probe, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
-const MIRRORED: Kind = Kind::never("mirrored: other bits");
-const MERGED: Kind = Kind::never("merged: other contacts");
-const ADDED: Kind = Kind::of("merged: force and torque", "3 roundings of the sums", 1.0);
+const MIRRORED: Kind = Kind::forbidden_event("mirrored: other bits");
+const MERGED: Kind = Kind::forbidden_event("merged: other contacts");
+const ADDED: Kind = Kind::with_limit("merged: force and torque", "3 roundings of the sums", 1.0);
 
 /// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.
 const GRID: f64 = 1.0 / 1024.0;
@@ -31,7 +31,7 @@ pub(super) fn equivalent_scenes(
         let placed = scene.transformed(&scene_pose, GRID);
         rotate_scene(subject, (&placed, &scene_pose), rng, ledger);
         mirror_part(subject, &scene, ledger);
-        if subject.oracle.revolved() {
+        if subject.oracle.is_revolved() {
             spin_tool(subject, &scene, rng, ledger);
         }
         merge_clouds(subject, &placed, &scene_pose, rng, ledger);
@@ -100,7 +100,7 @@ fn evaluation(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, 
 fn mirror_part(subject: &Subject, scene: &PointSet, ledger: &mut Ledger) {
     let expected = evaluation(subject, &contacts(subject, &scene.part(), &Pose::default()));
     let mut mirrors = vec![Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0)];
-    if subject.oracle.revolved() {
+    if subject.oracle.is_revolved() {
         mirrors.push(Matrix3::new(-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
         mirrors.push(Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0));
     }
@@ -108,9 +108,9 @@ fn mirror_part(subject: &Subject, scene: &PointSet, ledger: &mut Ledger) {
         let image = |p: &Point3<f64>| Point3::from(mirror * p.coords);
         let mirrored_scene =
             PointSet { points: scene.points.iter().map(image).collect(), ..scene.clone() };
-        let found =
+        let actual =
             evaluation(subject, &contacts(subject, &mirrored_scene.part(), &Pose::default()));
-        ledger.count(MIRRORED, found != expected, || format!("by {:?}", mirror.as_slice()));
+        ledger.count(MIRRORED, actual != expected, || format!("by {:?}", mirror.as_slice()));
     }
 }
 
@@ -133,8 +133,8 @@ fn spin_tool(subject: &Subject, scene: &PointSet, rng: &mut Rng, ledger: &mut Le
     // A half turn does not round.
     let half_turn = [0.0, 0.0, 1.0, 0.0];
     let pose = Pose::from_quaternion(Point3::origin(), half_turn).expect("a unit quaternion");
-    let found = evaluation(subject, &contacts(subject, &part, &pose));
-    ledger.count(MIRRORED, found != evaluation(subject, &expected), || format_pose(&pose));
+    let actual = evaluation(subject, &contacts(subject, &part, &pose));
+    ledger.count(MIRRORED, actual != evaluation(subject, &expected), || format_pose(&pose));
 }
 
 /// Compares a part with two parts that have half of its points each.
@@ -177,8 +177,8 @@ fn merge_clouds(
     let ratio = |difference: Vector3<f64>, bound: f64| {
         if difference == Vector3::zeros() { 0.0 } else { difference.norm() / (3.0 * bound) }
     };
-    ledger.see(ADDED, ratio(a.force + b.force - ab.force, force), || format_pose(pose));
-    ledger.see(ADDED, ratio(a.torque + b.torque - ab.torque, torque), || format_pose(pose));
+    ledger.record(ADDED, ratio(a.force + b.force - ab.force, force), || format_pose(pose));
+    ledger.record(ADDED, ratio(a.torque + b.torque - ab.torque, torque), || format_pose(pose));
 }
 
 /// Compares the scene in millimetres, inches and metres, with the points given in that unit and with the part converted
@@ -200,12 +200,12 @@ fn convert_units(subject: &Subject, (scene, pose): (&PointSet, &Pose), ledger: &
         ProbeCheck { tool, truth, point_set: &converted_scene, part: &converted_part }
             .check(&converted_pose, ledger);
         let part_in_unit = part.clone().converted_to(unit);
-        let mut found = contacts(subject, &part_in_unit, &converted_pose);
-        for contact in &mut found {
+        let mut actual = contacts(subject, &part_in_unit, &converted_pose);
+        for contact in &mut actual {
             contact.depth /= factor;
         }
         let bound = depth_bound(subject, [&part, &part], 2.0 * subject.scale());
         let location = || format!("in {}, {}", unit.symbol(), format_pose(&converted_pose));
-        compare_depths([&expected, &found], scene.points.len(), bound, location, ledger);
+        compare_depths([&expected, &actual], scene.points.len(), bound, location, ledger);
     }
 }

@@ -7,13 +7,13 @@ use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Cloud, Mesh, Part, Pose, Probe, Sampling, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Rejected; the location is the message.
-const REJECTED: Kind = Kind::told("refused", "");
+const REJECTED: Kind = Kind::informational("refused", "");
 /// Invalid input that was accepted, or valid input that was rejected.
-const WRONG_OUTCOME: Kind = Kind::never("taken, or refused, wrongly");
-const SENSELESS_RESULT: Kind = Kind::never("no sense");
+const WRONG_OUTCOME: Kind = Kind::forbidden_event("taken, or refused, wrongly");
+const SENSELESS_RESULT: Kind = Kind::forbidden_event("no sense");
 
 const MM: Unit = Unit::Millimetre;
 
@@ -191,7 +191,7 @@ pub(super) fn invalid_input(item: Item) -> Vec<Row> {
             }
             Err(message) => {
                 ledger.count(WRONG_OUTCOME, !must_fail, || message.clone());
-                ledger.tell(REJECTED, 1, 0.0, message);
+                ledger.record_info(REJECTED, 1, 0.0, message);
             }
         }
         rows.extend(ledger.rows());

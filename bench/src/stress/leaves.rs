@@ -8,12 +8,12 @@ use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Contact, Part, Pose, Probe, Wrench};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
-const OTHER_CONTACTS: Kind = Kind::never("another order: other contacts");
+const OTHER_CONTACTS: Kind = Kind::forbidden_event("another order: other contacts");
 /// Sums are taken in the tree's order, which within a leaf is the cloud's order.
 const SUM_DIFFERENCE: Kind =
-    Kind::of("another order: force and torque", "2 roundings of the sums", 1.0);
+    Kind::with_limit("another order: force and torque", "2 roundings of the sums", 1.0);
 
 /// Numbers of points: full and partial leaves, one level and two.
 pub(super) const COUNTS: [usize; 9] = [1, 2, 3, 15, 16, 17, 255, 256, 257];
@@ -110,9 +110,10 @@ fn compare(
     let ratio = |difference: Vector3<f64>, bound: f64| {
         if difference == Vector3::zeros() { 0.0 } else { difference.norm() / (2.0 * bound) }
     };
-    ledger
-        .see(SUM_DIFFERENCE, ratio(wrench.force - other_wrench.force, force), || format_pose(pose));
-    ledger.see(SUM_DIFFERENCE, ratio(wrench.torque - other_wrench.torque, torque), || {
+    ledger.record(SUM_DIFFERENCE, ratio(wrench.force - other_wrench.force, force), || {
+        format_pose(pose)
+    });
+    ledger.record(SUM_DIFFERENCE, ratio(wrench.torque - other_wrench.torque, torque), || {
         format_pose(pose)
     });
 }

@@ -38,27 +38,27 @@ impl Item {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kind {
     /// The quantity.
-    pub what: &'static str,
+    pub quantity: &'static str,
     /// The unit.
     pub unit: &'static str,
     /// The largest allowed value.
-    pub bar: f64,
+    pub limit: f64,
 }
 
 impl Kind {
     /// Makes a kind with a limit.
-    pub const fn of(what: &'static str, unit: &'static str, bar: f64) -> Kind {
-        Kind { what, unit, bar }
+    pub const fn with_limit(quantity: &'static str, unit: &'static str, limit: f64) -> Kind {
+        Kind { quantity, unit, limit }
     }
 
     /// Makes a kind of event that must not occur.
-    pub const fn never(what: &'static str) -> Kind {
-        Kind { what, unit: "times", bar: 0.0 }
+    pub const fn forbidden_event(quantity: &'static str) -> Kind {
+        Kind { quantity, unit: "times", limit: 0.0 }
     }
 
     /// Makes a kind without a limit, for information.
-    pub const fn told(what: &'static str, unit: &'static str) -> Kind {
-        Kind { what, unit, bar: f64::INFINITY }
+    pub const fn informational(quantity: &'static str, unit: &'static str) -> Kind {
+        Kind { quantity, unit, limit: f64::INFINITY }
     }
 }
 
@@ -76,25 +76,28 @@ pub struct Row {
     /// The worst value, or the number of occurrences of an event.
     pub worst: f64,
     /// Location of the worst value, to the last bit, or of the first occurrence.
-    pub place: String,
+    pub location: String,
 }
 
 impl Row {
     /// Returns whether the limit is exceeded.
-    pub fn missed(&self) -> bool {
-        self.worst.is_nan() || self.worst > self.kind.bar
+    pub fn exceeds_limit(&self) -> bool {
+        self.worst.is_nan() || self.worst > self.kind.limit
     }
 
     /// Returns the worst value divided by the limit; for events 0 or infinity.
-    pub fn share(&self) -> f64 {
-        if self.worst == 0.0 { 0.0 } else { self.worst / self.kind.bar }
+    pub fn limit_fraction(&self) -> f64 {
+        if self.worst == 0.0 { 0.0 } else { self.worst / self.kind.limit }
     }
 
     /// Returns a description of a missed limit.
-    pub fn shown(&self) -> String {
-        let Row { item, kind, tool, cases, worst, place } = self;
-        let Kind { what, unit, bar } = kind;
-        format!("{} {tool}: {what} {worst:.3e} {unit} > {bar}, of {cases}, at {place}", item.0)
+    pub fn describe(&self) -> String {
+        let Row { item, kind, tool, cases, worst, location } = self;
+        let Kind { quantity, unit, limit } = kind;
+        format!(
+            "{} {tool}: {quantity} {worst:.3e} {unit} > {limit}, of {cases}, at {location}",
+            item.0
+        )
     }
 }
 
@@ -117,35 +120,35 @@ impl Ledger {
     }
 
     /// Records a value. NaN counts as infinite.
-    pub fn see(&mut self, kind: Kind, figure: f64, place: impl FnOnce() -> String) {
+    pub fn record(&mut self, kind: Kind, value: f64, location: impl FnOnce() -> String) {
         let row = self.row(kind);
         row.cases += 1;
-        let figure = if figure.is_nan() { f64::INFINITY } else { figure };
-        if figure > row.worst {
-            row.worst = figure;
-            row.place = place();
+        let value = if value.is_nan() { f64::INFINITY } else { value };
+        if value > row.worst {
+            row.worst = value;
+            row.location = location();
         }
     }
 
     /// Records a case, and whether the event occurred.
-    pub fn count(&mut self, kind: Kind, occurred: bool, place: impl FnOnce() -> String) {
+    pub fn count(&mut self, kind: Kind, occurred: bool, location: impl FnOnce() -> String) {
         let row = self.row(kind);
         row.cases += 1;
         if occurred {
             if row.worst == 0.0 {
-                row.place = place();
+                row.location = location();
             }
             row.worst += 1.0;
         }
     }
 
     /// Records `cases` cases of a kind without a limit.
-    pub fn tell(&mut self, kind: Kind, cases: usize, figure: f64, place: &str) {
+    pub fn record_info(&mut self, kind: Kind, cases: usize, value: f64, location: &str) {
         let row = self.row(kind);
         row.cases += cases;
-        if figure > row.worst || row.place.is_empty() {
-            row.worst = row.worst.max(figure);
-            place.clone_into(&mut row.place);
+        if value > row.worst || row.location.is_empty() {
+            row.worst = row.worst.max(value);
+            location.clone_into(&mut row.location);
         }
     }
 
@@ -153,7 +156,7 @@ impl Ledger {
         let existing = self.rows.iter().position(|row| row.kind == kind);
         let index = existing.unwrap_or_else(|| {
             let (item, tool) = (self.item, self.tool.clone());
-            self.rows.push(Row { item, kind, tool, cases: 0, worst: 0.0, place: String::new() });
+            self.rows.push(Row { item, kind, tool, cases: 0, worst: 0.0, location: String::new() });
             self.rows.len() - 1
         });
         &mut self.rows[index]

@@ -13,7 +13,6 @@ mod degenerate;
 mod denormal;
 mod equivalent;
 mod input;
-pub mod judge;
 mod leaves;
 pub mod ledger;
 pub mod page;
@@ -25,10 +24,11 @@ mod tangent;
 mod text;
 mod translated;
 pub mod truth;
+pub mod validator;
 
 use crate::parallel;
 use ledger::{Item, Ledger, Row};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use truth::{Subject, subjects};
 
 /// The exponents -300, -290 … 300.
@@ -44,7 +44,7 @@ const POWERS: [i32; 61] = {
 
 /// Extent of a measurement.
 #[derive(Clone, Copy, Debug)]
-pub struct Amount {
+pub struct StressSettings {
     /// The seed of all random numbers.
     pub seed: u64,
     /// Number of points per curve at which borders are searched for.
@@ -65,12 +65,12 @@ pub struct Amount {
     pub cycles: usize,
 }
 
-impl Amount {
+impl StressSettings {
     /// Returns the extent of the full page.
-    pub fn full(seed: u64) -> Amount {
+    pub fn full(seed: u64) -> StressSettings {
         // Ten million cycles over all tools together.
         let cycles = 10_000_000usize.div_ceil(tools_library::TOOLS.len());
-        Amount {
+        StressSettings {
             seed,
             borders: 16,
             starts: (3, 1),
@@ -84,8 +84,8 @@ impl Amount {
     }
 
     /// Returns the extent of a sample.
-    pub fn sample(seed: u64) -> Amount {
-        Amount {
+    pub fn sample(seed: u64) -> StressSettings {
+        StressSettings {
             seed,
             borders: 1,
             starts: (1, 3),
@@ -101,7 +101,7 @@ impl Amount {
 
 /// Validates the selected tools and items, in parallel, and returns the rows by item.
 pub fn measure(
-    amount: Amount,
+    settings: StressSettings,
     item: impl Fn(Item) -> bool,
     tool: impl Fn(&str) -> bool,
 ) -> Vec<Row> {
@@ -110,13 +110,13 @@ pub fn measure(
     let mut tasks: Vec<(Item, &Subject)> =
         items.flat_map(|item| subjects.iter().map(move |subject| (item, subject))).collect();
     tasks.sort_by_key(|(item, subject)| (*item, subject.name()));
-    let rows = parallel::rows(tasks.len(), |k| measure_item(amount, tasks[k].0, tasks[k].1));
+    let rows = parallel::rows(tasks.len(), |k| measure_item(settings, tasks[k].0, tasks[k].1));
     let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     if item(Item(9)) {
         rows.extend(degenerate::degenerate_profiles(
             Item(9),
-            amount.degenerate,
-            &mut Rng::new(amount.seed),
+            settings.degenerate,
+            &mut Rng::new(settings.seed),
         ));
     }
     if item(Item(10)) {
@@ -127,28 +127,28 @@ pub fn measure(
 }
 
 /// Returns the rows of one item for one tool.
-fn measure_item(amount: Amount, item: Item, subject: &Subject) -> Vec<Row> {
+fn measure_item(settings: StressSettings, item: Item, subject: &Subject) -> Vec<Row> {
     let name = subject.name();
     let mut ledger = Ledger::new(item, name);
     let name_hash = name.bytes().fold(0u64, |sum, c| sum.wrapping_mul(31).wrapping_add(c.into()));
-    let mut rng = Rng::new(amount.seed ^ name_hash.wrapping_mul(64).wrapping_add(item.0 as u64));
+    let mut rng = Rng::new(settings.seed ^ name_hash.wrapping_mul(64).wrapping_add(item.0 as u64));
     match item.0 {
-        1 => border_points::on_borders(subject, amount.borders, &mut rng, &mut ledger),
-        2 => border_points::beside_borders(subject, amount.borders, &mut rng, &mut ledger),
-        3 => corners::equidistant_points(subject, amount.starts, &mut rng, &mut ledger),
-        4 => axis::axis_points(subject, amount.heights, &mut ledger),
-        5 => scaled::scaled_scenes(subject, amount.scaled, &mut rng, &mut ledger),
-        6 => translated::translated_scenes(subject, amount.scene, &mut rng, &mut ledger),
-        7 => poses::aligned_poses(subject, amount.scene.0, &mut rng, &mut ledger),
-        8 => tangent::tangent_contacts(subject, amount.scene.0 / 8, &mut rng, &mut ledger),
-        10 => input::small_clouds(subject, amount.scene.1, &mut rng, &mut ledger),
+        1 => border_points::points_on_borders(subject, settings.borders, &mut rng, &mut ledger),
+        2 => border_points::points_near_borders(subject, settings.borders, &mut rng, &mut ledger),
+        3 => corners::equidistant_points(subject, settings.starts, &mut rng, &mut ledger),
+        4 => axis::axis_points(subject, settings.heights, &mut ledger),
+        5 => scaled::scaled_scenes(subject, settings.scaled, &mut rng, &mut ledger),
+        6 => translated::translated_scenes(subject, settings.scene, &mut rng, &mut ledger),
+        7 => poses::aligned_poses(subject, settings.scene.0, &mut rng, &mut ledger),
+        8 => tangent::tangent_contacts(subject, settings.scene.0 / 8, &mut rng, &mut ledger),
+        10 => input::small_clouds(subject, settings.scene.1, &mut rng, &mut ledger),
         11 => {
-            let poses = amount.scene.1.div_ceil(4);
-            leaves::leaves(subject, (amount.orders, poses), &mut rng, &mut ledger);
+            let poses = settings.scene.1.div_ceil(4);
+            leaves::leaves(subject, (settings.orders, poses), &mut rng, &mut ledger);
         }
-        12 => cycles::cycles(subject, amount.cycles, &mut rng, &mut ledger),
-        13 => denormal::denormal(subject, amount.scene.0, &mut rng, &mut ledger),
-        14 => equivalent::equivalent_scenes(subject, amount.scene, &mut rng, &mut ledger),
+        12 => cycles::cycles(subject, settings.cycles, &mut rng, &mut ledger),
+        13 => denormal::denormal(subject, settings.scene.0, &mut rng, &mut ledger),
+        14 => equivalent::equivalent_scenes(subject, settings.scene, &mut rng, &mut ledger),
         _ => {}
     }
     ledger.rows()

@@ -66,8 +66,11 @@ pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
     }
     write_shares(rows, &mut page)?;
     page += "## Missed\n\n";
-    let missed: Vec<String> =
-        rows.iter().filter(|row| row.missed()).map(|row| format!("- {}", row.shown())).collect();
+    let missed: Vec<String> = rows
+        .iter()
+        .filter(|row| row.exceeds_limit())
+        .map(|row| format!("- {}", row.describe()))
+        .collect();
     page += &if missed.is_empty() { "Nothing.\n".to_owned() } else { missed.join("\n") + "\n" };
     Ok(page)
 }
@@ -98,7 +101,7 @@ fn code_cell(text: &str) -> String {
 /// Writes the worst row of each kind over all tools.
 fn write_worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     let mut kinds: Vec<Kind> = Vec::new();
-    for row in rows.iter().filter(|row| row.kind.what != "refused") {
+    for row in rows.iter().filter(|row| row.kind.quantity != "refused") {
         if !kinds.contains(&row.kind) {
             kinds.push(row.kind);
         }
@@ -112,20 +115,20 @@ fn write_worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
         let Some(worst_row) = kind_rows().max_by(|a, b| a.worst.total_cmp(&b.worst)) else {
             continue;
         };
-        let (value, bar) = match kind.bar {
+        let (value, bar) = match kind.limit {
             0.0 => (total, "0".to_owned()),
             f64::INFINITY => (worst_row.worst, "told".to_owned()),
             bar => (worst_row.worst, format_value(bar)),
         };
-        let (tool, place) = if value == 0.0 {
+        let (tool, location) = if value == 0.0 {
             (String::new(), String::new())
         } else {
-            (worst_row.tool.clone(), code_cell(&worst_row.place))
+            (worst_row.tool.clone(), code_cell(&worst_row.location))
         };
         writeln!(
             page,
-            "| {} | {cases} | {} | {bar} | {} | {tool} | {place} |",
-            escape_bars(kind.what),
+            "| {} | {cases} | {} | {bar} | {} | {tool} | {location} |",
+            escape_bars(kind.quantity),
             format_value(value),
             escape_bars(kind.unit),
         )?;
@@ -148,13 +151,13 @@ fn write_cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "| case | comes to |\n|---|---|")?;
     for name in names {
         let case_rows = || rows.iter().filter(|row| row.tool == name);
-        let rejection = case_rows().find(|row| row.kind.what == "refused");
+        let rejection = case_rows().find(|row| row.kind.quantity == "refused");
         let missed: Vec<String> =
-            case_rows().filter(|row| row.missed()).map(|row| row.shown()).collect();
-        let depth = case_rows().find(|row| row.kind.what == "depth");
+            case_rows().filter(|row| row.exceeds_limit()).map(|row| row.describe()).collect();
+        let depth = case_rows().find(|row| row.kind.quantity == "depth");
         let outcome = match (rejection, depth) {
             _ if !missed.is_empty() => format!("**missed**: {}", code_cell(&missed.join("; "))),
-            (Some(rejection), _) => format!("refused: {}", code_cell(&rejection.place)),
+            (Some(rejection), _) => format!("refused: {}", code_cell(&rejection.location)),
             (_, Some(depth)) => {
                 format!(
                     "exact: depth to {} ulp(S) at {} points inside",
@@ -171,14 +174,14 @@ fn write_cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
 
 fn write_checksums(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page, "| tool | cycles | touching | checksum |\n|---|--:|--:|---|")?;
-    for row in rows.iter().filter(|row| row.kind.bar.is_infinite()) {
+    for row in rows.iter().filter(|row| row.kind.limit.is_infinite()) {
         let share = 100.0 * row.worst;
         writeln!(
             page,
             "| {} | {} | {share:.1} % | {} |",
             row.tool,
             row.cases,
-            code_cell(&row.place)
+            code_cell(&row.location)
         )?;
     }
     writeln!(page)
@@ -201,8 +204,10 @@ fn write_shares(rows: &[Row], page: &mut String) -> std::fmt::Result {
     for tool in tools {
         let share = |item: &Item| {
             let tool_rows = rows.iter().filter(|row| row.tool == tool && row.item == *item);
-            let shares: Vec<f64> =
-                tool_rows.filter(|row| row.kind.bar.is_finite()).map(Row::share).collect();
+            let shares: Vec<f64> = tool_rows
+                .filter(|row| row.kind.limit.is_finite())
+                .map(Row::limit_fraction)
+                .collect();
             if shares.is_empty() {
                 return String::new();
             }

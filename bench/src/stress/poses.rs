@@ -5,10 +5,10 @@ use super::scene::{PointSet, ProbeCheck, format_pose};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Part and tool rotated together by quarter and half turns: depths, magnitudes and regions have the same bits.
-const CHANGED_BITS: Kind = Kind::never("quarter turn: other bits");
+const CHANGED_BITS: Kind = Kind::forbidden_event("quarter turn: other bits");
 
 /// Spacing of the coordinates' grid, so that its multiples keep all bits near the tips used here.
 const GRID: f64 = 1.0 / 1024.0;
@@ -36,7 +36,7 @@ pub(super) fn aligned_poses(subject: &Subject, count: usize, rng: &mut Rng, ledg
     let [exact, rounded] = quarter_turns();
     let pose_of = |q: &[f64; 4]| Pose::from_quaternion(tip, *q).expect("a unit quaternion");
     let mut poses: Vec<Pose> = exact.iter().chain(&rounded).map(pose_of).collect();
-    if subject.oracle.revolved() {
+    if subject.oracle.is_revolved() {
         let axes = [Vector3::x(), -Vector3::x(), Vector3::y(), -Vector3::y(), -Vector3::z()];
         let tilted = [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()]
             .map(|axis| axis + Vector3::new(1e-9, -1e-9, 1e-9));

@@ -1,28 +1,29 @@
 //! Item 5: the whole scene scaled: the points, and the tool, written out with all lengths multiplied.
 
-use super::judge::{Answer, Judge, answers};
 use super::ledger::{Kind, Ledger};
 use super::text::{hand_written_text, power_of_two, profile_text, with_plain_names};
-use super::truth::{Claim, Place, Profiled, Subject, Truth};
+use super::truth::{ExactPoint, Profiled, RegionValues, Subject, Truth};
+use super::validator::{PointEvaluation, Validator, evaluate_points};
 use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, ToolError};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Exponents at which every tool is accepted and has the same bits.
 const EXACT_EXPONENTS: std::ops::RangeInclusive<i32> = -40..=160;
-const CHANGED_BITS: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: other bits than unscaled");
+const CHANGED_BITS: Kind = Kind::forbidden_event("2^k, -40 ≤ k ≤ 160: other bits than unscaled");
 /// The derivative of a magnitude is simplified if a radius is 1, so it may be rounded differently.
-const GRADIENT_ERROR: Kind = Kind::of("2^k, -40 ≤ k ≤ 160: gradient", "ε", 4.0);
-const REJECTED: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: refused");
+const GRADIENT_ERROR: Kind = Kind::with_limit("2^k, -40 ≤ k ≤ 160: gradient", "ε", 4.0);
+const REJECTED: Kind = Kind::forbidden_event("2^k, -40 ≤ k ≤ 160: refused");
 /// Number of scales beyond that range with other bits, and number of those rejected.
-const CHANGED_BITS_BEYOND: Kind = Kind::told("2^k beyond: other bits", "steps");
-const REJECTED_BEYOND: Kind = Kind::told("2^k beyond: refused", "steps");
+const CHANGED_BITS_BEYOND: Kind = Kind::informational("2^k beyond: other bits", "steps");
+const REJECTED_BEYOND: Kind = Kind::informational("2^k beyond: refused", "steps");
 /// Errors if an arc's radius exceeds S: the distance from its centre is rounded relative to the larger number.
-const LARGE_RADIUS_DEPTH: Kind = Kind::of("depth, a radius above S", "ulp(S)", 2.0);
-const LARGE_RADIUS_CLEARANCE: Kind = Kind::of("distance outside, a radius above S", "ulp(S)", 2.0);
+const LARGE_RADIUS_DEPTH: Kind = Kind::with_limit("depth, a radius above S", "ulp(S)", 2.0);
+const LARGE_RADIUS_CLEARANCE: Kind =
+    Kind::with_limit("distance outside, a radius above S", "ulp(S)", 2.0);
 
 /// True values with all lengths multiplied by a factor.
 struct Scaled<'a> {
@@ -41,7 +42,7 @@ impl<'a> Scaled<'a> {
         Scaled { unscaled, factor: Big::decimal(factor), scale }
     }
 
-    fn to_unscaled(&self, p: &Place) -> Place {
+    fn to_unscaled(&self, p: &ExactPoint) -> ExactPoint {
         std::array::from_fn(|k| &p[k] / &self.factor)
     }
 }
@@ -51,22 +52,22 @@ impl Truth for Scaled<'_> {
         self.scale
     }
 
-    fn depth(&self, p: &Place) -> Big {
+    fn depth(&self, p: &ExactPoint) -> Big {
         &self.unscaled.depth(&self.to_unscaled(p)) * &self.factor
     }
 
-    fn owner(&self, p: &Place) -> Option<usize> {
+    fn owner(&self, p: &ExactPoint) -> Option<usize> {
         self.unscaled.owner(&self.to_unscaled(p))
     }
 
-    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let claim = self.unscaled.claim(&self.to_unscaled(p), region)?;
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
+        let values = self.unscaled.region_values(&self.to_unscaled(p), region)?;
         let factor = self.factor.to_f64();
-        Some(Claim {
-            depth: &claim.depth * &self.factor,
-            behind: claim.behind * factor,
-            singular: claim.singular * factor,
-            ..claim
+        Some(RegionValues {
+            depth: &values.depth * &self.factor,
+            excess_distance: values.excess_distance * factor,
+            singularity_distance: values.singularity_distance * factor,
+            ..values
         })
     }
 }
@@ -91,7 +92,7 @@ fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
         let distance = 10f64.powf(rng.between(-16.0, -1.0));
         let step = rng.direction().map(|c| distance * c * radius);
         let angle = rng.between(0.0, std::f64::consts::TAU);
-        points.push(touchoff_tests::oracle::moved(&*subject.oracle, origin, step, angle));
+        points.push(touchoff_tests::oracle::displaced(&*subject.oracle, origin, step, angle));
         let xy = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
         points.push([xy[0], xy[1], rng.between(-0.05, 1.05) * height]);
         points.push([0.0, 0.0, rng.between(0.0, height)]);
@@ -100,7 +101,7 @@ fn points(subject: &Subject, count: usize, rng: &mut Rng) -> Vec<[f64; 3]> {
 }
 
 /// Returns whether two evaluations agree to the last bit: lengths up to `factor`, niceness and direction as they are.
-fn same_bits(a: Option<&Answer>, b: Option<&Answer>, factor: f64) -> bool {
+fn same_bits(a: Option<&PointEvaluation>, b: Option<&PointEvaluation>, factor: f64) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return a.is_none() == b.is_none() };
     let mut scaled = a.numbers;
     scaled[0] *= factor;
@@ -109,7 +110,7 @@ fn same_bits(a: Option<&Answer>, b: Option<&Answer>, factor: f64) -> bool {
 }
 
 /// Returns the largest difference between the components of two gradients, in units of ε.
-fn gradient_difference(a: Option<&Answer>, b: Option<&Answer>) -> f64 {
+fn gradient_difference(a: Option<&PointEvaluation>, b: Option<&PointEvaluation>) -> f64 {
     let (Some(a), Some(b)) = (a, b) else { return 0.0 };
     let differences = (6..9).map(|k| (a.numbers[k] - b.numbers[k]).abs());
     differences.fold(0.0, f64::max) / f64::EPSILON
@@ -124,7 +125,7 @@ pub(super) fn scaled_scenes(
 ) {
     let points = points(subject, count, rng);
     let base = compile_scaled(subject, "1").expect("the tool that is restated");
-    let unscaled = answers(&base, Level::new(), &points);
+    let unscaled = evaluate_points(&base, Level::new(), &points);
     let mut outside_range = [Vec::new(), Vec::new()];
     for &k in powers {
         let in_range = EXACT_EXPONENTS.contains(&k);
@@ -144,7 +145,7 @@ pub(super) fn scaled_scenes(
         }
         let factor = 2f64.powi(k);
         let scaled_points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * factor)).collect();
-        let scaled = answers(&tool, Level::new(), &scaled_points);
+        let scaled = evaluate_points(&tool, Level::new(), &scaled_points);
         let mut all_equal = true;
         for ((p, a), b) in points.iter().zip(&unscaled).zip(&scaled) {
             // Skip points so close to 0 that scaling loses bits.
@@ -156,7 +157,7 @@ pub(super) fn scaled_scenes(
             if in_range {
                 ledger.count(CHANGED_BITS, !equal, || format!("{p:?} at k = {k}: {a:?}, {b:?}"));
                 let difference = gradient_difference(a.as_ref(), b.as_ref());
-                ledger.see(GRADIENT_ERROR, difference, || format!("{p:?} at k = {k}"));
+                ledger.record(GRADIENT_ERROR, difference, || format!("{p:?} at k = {k}"));
             }
         }
         if !all_equal && !in_range {
@@ -164,7 +165,7 @@ pub(super) fn scaled_scenes(
         }
     }
     for (kind, steps) in [CHANGED_BITS_BEYOND, REJECTED_BEYOND].into_iter().zip(&outside_range) {
-        ledger.tell(kind, 1, steps.len() as f64, &format!("k = {steps:?}"));
+        ledger.record_info(kind, 1, steps.len() as f64, &format!("k = {steps:?}"));
     }
     for (text, factor) in [("1e-9", 1e-9), ("25.4", 25.4), ("1e6", 1e6)] {
         let tool = match compile_scaled(subject, text) {
@@ -180,12 +181,12 @@ pub(super) fn scaled_scenes(
             profiled.as_ref().map_or(&*subject.truth, |profiled| profiled);
         let truth = Scaled::new(truth_of_tool, factor, max_coordinate(subject));
         let scaled_points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|c| c * factor)).collect();
-        let validator = Judge::new(&tool, &truth);
+        let validator = Validator::new(&tool, &truth);
         if largest_radius(subject) * factor > truth.scale() {
-            Judge { depth: LARGE_RADIUS_DEPTH, clearance: LARGE_RADIUS_CLEARANCE, ..validator }
-                .points(&scaled_points, ledger);
+            Validator { depth: LARGE_RADIUS_DEPTH, clearance: LARGE_RADIUS_CLEARANCE, ..validator }
+                .validate(&scaled_points, ledger);
         } else {
-            validator.points(&scaled_points, ledger);
+            validator.validate(&scaled_points, ledger);
         }
     }
 }
@@ -199,10 +200,10 @@ fn max_coordinate(subject: &Subject) -> f64 {
 /// Returns the largest radius of the tool's arcs.
 fn largest_radius(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.0 };
-    let radius = |segment: &restated::Way| {
+    let radius = |segment: &restated::Segment| {
         let centre = segment.centre.as_ref()?;
         let [d, z] = [0, 1].map(|k| (&segment.to[k] - &centre[k]).to_f64());
         Some(d.hypot(z))
     };
-    tool.ways.iter().filter_map(radius).fold(0.0, f64::max)
+    tool.segments.iter().filter_map(radius).fold(0.0, f64::max)
 }

@@ -1,29 +1,31 @@
 //! A few points near a tool, given as a part, and validation of a probe's answers against 256 bits.
 
 use super::ledger::{Kind, Ledger};
-use super::truth::{Place, Subject, Truth};
+use super::truth::{ExactPoint, Subject, Truth};
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Cloud, Contact, Part, Pose, Probe, Tool, Unit, Wrench};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Error of a contact's depth relative to the true depth of the given point.
 pub(super) const DEPTH_ERROR: Kind =
-    Kind::of("depth of contacts", "Probe::rounding_error_bound", 1.0);
+    Kind::with_limit("depth of contacts", "Probe::rounding_error_bound", 1.0);
 /// Points beyond doubt inside without a contact, or beyond doubt outside with one.
-pub(super) const WRONG_CONTACT: Kind = Kind::never("wrong contact");
+pub(super) const WRONG_CONTACT: Kind = Kind::forbidden_event("wrong contact");
 /// Error of force and torque relative to the sums over the contacts in 256 bits.
-pub(super) const SUM_ERROR: Kind = Kind::of("force and torque", "rounding of the sums", 1.0);
+pub(super) const SUM_ERROR: Kind =
+    Kind::with_limit("force and torque", "rounding of the sums", 1.0);
 /// Contradictions between the answers of different queries.
-pub(super) const INCONSISTENT_QUERIES: Kind = Kind::never("questions disagree");
+pub(super) const INCONSISTENT_QUERIES: Kind = Kind::forbidden_event("questions disagree");
 /// Numbers that are not finite.
-pub(super) const NOT_FINITE: Kind = Kind::never("senseless number");
+pub(super) const NOT_FINITE: Kind = Kind::forbidden_event("senseless number");
 
 /// Difference of a depth between two equivalent scenes, which comes from the rounding of both clouds and of the
 /// coordinates.
-const DEPTH_DIFFERENCE: Kind = Kind::of("depth in both scenes", "both errors and rounding", 1.0);
-const UNMATCHED_CONTACT: Kind = Kind::never("contact in one scene only");
+const DEPTH_DIFFERENCE: Kind =
+    Kind::with_limit("depth in both scenes", "both errors and rounding", 1.0);
+const UNMATCHED_CONTACT: Kind = Kind::forbidden_event("contact in one scene only");
 
 /// Checks that the contacts of two equivalent scenes agree to `bound`. A contact's triangle is the index of its point.
 pub(super) fn compare_depths(
@@ -43,7 +45,7 @@ pub(super) fn compare_depths(
     for (k, pair) in depths(a).into_iter().zip(depths(b)).enumerate() {
         let location = || format!("point {k}, {}", location());
         match pair {
-            (Some(a), Some(b)) => ledger.see(DEPTH_DIFFERENCE, (a - b).abs() / bound, location),
+            (Some(a), Some(b)) => ledger.record(DEPTH_DIFFERENCE, (a - b).abs() / bound, location),
             (Some(depth), None) | (None, Some(depth)) => {
                 ledger.count(UNMATCHED_CONTACT, depth > bound, location);
             }
@@ -86,7 +88,7 @@ impl PointSet {
             let origin = curve[rng.bits() as usize % curve.len()];
             let step = rng.direction().map(|c| c * reach * if k % 2 == 0 { 0.05 } else { 1.0 });
             let angle = rng.between(0.0, std::f64::consts::TAU);
-            let p = touchoff_tests::oracle::moved(&*subject.oracle, origin, step, angle);
+            let p = touchoff_tests::oracle::displaced(&*subject.oracle, origin, step, angle);
             point_set.points.push(Point3::from(p.map(|c| (c / grid).round() * grid)));
             point_set.normals.push(Vector3::from(rng.direction()));
             point_set.weights.push(rng.between(0.1, 2.0));
@@ -116,19 +118,19 @@ pub(super) fn format_pose(pose: &Pose) -> String {
     format!("tip {}, axes {}", list(tip.coords.as_slice()), list(r.as_slice()))
 }
 
-fn to_big(v: &Vector3<f64>) -> Place {
+fn to_big(v: &Vector3<f64>) -> ExactPoint {
     [v.x, v.y, v.z].map(Big::exactly)
 }
 
-fn add(a: &Place, b: &Place) -> Place {
+fn add(a: &ExactPoint, b: &ExactPoint) -> ExactPoint {
     std::array::from_fn(|k| &a[k] + &b[k])
 }
 
-fn scale(a: &Place, factor: &Big) -> Place {
+fn scale(a: &ExactPoint, factor: &Big) -> ExactPoint {
     std::array::from_fn(|k| &a[k] * factor)
 }
 
-fn cross(a: &Place, b: &Place) -> Place {
+fn cross(a: &ExactPoint, b: &ExactPoint) -> ExactPoint {
     std::array::from_fn(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         &(&a[i] * &b[j]) - &(&a[j] * &b[i])
@@ -136,15 +138,16 @@ fn cross(a: &Place, b: &Place) -> Place {
 }
 
 /// Returns the distance between a vector of doubles and one of 256 bits.
-fn distance(a: &Vector3<f64>, b: &Place) -> f64 {
+fn distance(a: &Vector3<f64>, b: &ExactPoint) -> f64 {
     let sum_of_squares =
         to_big(a).iter().zip(b).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
     sum_of_squares.sqrt()
 }
 
 /// Transforms a point to the tool's frame and unit.
-pub(super) fn in_tool(p: &Point3<f64>, pose: &Pose, [tool, part]: [Unit; 2]) -> Place {
-    let offset: Place = std::array::from_fn(|k| &Big::exactly(p[k]) - &Big::exactly(pose.tip()[k]));
+pub(super) fn in_tool(p: &Point3<f64>, pose: &Pose, [tool, part]: [Unit; 2]) -> ExactPoint {
+    let offset: ExactPoint =
+        std::array::from_fn(|k| &Big::exactly(p[k]) - &Big::exactly(pose.tip()[k]));
     let millimetres = |unit: Unit| Big::decimal(unit.millimetres());
     let factor = &millimetres(part) / &millimetres(tool);
     std::array::from_fn(|k| {
@@ -208,7 +211,7 @@ impl ProbeCheck<'_> {
                 let error = (&Big::exactly(contact.depth) - &exact).abs().to_f64();
                 // A point outside by less than the error bound may be a contact; its true depth is 0.
                 let error = if depth < 0.0 { contact.depth } else { error };
-                ledger.see(DEPTH_ERROR, error / error_bound, describe);
+                ledger.record(DEPTH_ERROR, error / error_bound, describe);
             }
         }
     }
@@ -229,7 +232,7 @@ impl ProbeCheck<'_> {
             let magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
             let [n, u] = [to_big(&contact.normal), to_big(&contact.direction)];
             let f = scale(&add(&n, &scale(&u, &Big::exactly(-1.0))), &magnitude);
-            let arm: Place =
+            let arm: ExactPoint =
                 std::array::from_fn(|k| &Big::exactly(contact.point[k]) - &Big::exactly(tip[k]));
             torque = add(&torque, &cross(&arm, &f));
             force = add(&force, &f);
@@ -244,13 +247,13 @@ impl ProbeCheck<'_> {
         let ratio = |difference: f64, force_bound: f64| {
             if difference == 0.0 { 0.0 } else { difference / (rounding * force_bound + 1e-320) }
         };
-        ledger.see(SUM_ERROR, ratio(distance(&wrench.force, &force), force_bound), || {
+        ledger.record(SUM_ERROR, ratio(distance(&wrench.force, &force), force_bound), || {
             format_pose(pose)
         });
-        ledger.see(SUM_ERROR, ratio(distance(&wrench.torque, &torque), torque_bound), || {
+        ledger.record(SUM_ERROR, ratio(distance(&wrench.torque, &torque), torque_bound), || {
             format_pose(pose)
         });
         let difference = (&Big::exactly(wrench.integral) - &integral).abs().to_f64();
-        ledger.see(SUM_ERROR, ratio(difference, force_bound), || format_pose(pose));
+        ledger.record(SUM_ERROR, ratio(difference, force_bound), || format_pose(pose));
     }
 }

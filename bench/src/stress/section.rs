@@ -6,16 +6,16 @@
 //! Every two borders are intersected by Newton's method. An intersection is kept if no other feature is nearer. All
 //! computations are in doubles: the points found are validated in 256 bits wherever they are.
 
-use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated::Restated;
+use touchoff_tests::oracle::rng::Rng;
 
 type P2 = [f64; 2];
 
 /// A point, and the number of features that it is equally near to.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(super) struct EquidistantPoint {
     /// The point as `[d, z]`.
-    pub at: P2,
+    pub point: P2,
     /// The number of features.
     pub features: usize,
 }
@@ -96,7 +96,7 @@ fn features(tool: &Restated) -> Vec<Feature> {
     let double = |p: &touchoff_tests::oracle::restated::Point| [p[0].to_f64(), p[1].to_f64()];
     let mut point = double(&tool.start);
     let (mut segments, mut corners) = (Vec::new(), vec![point]);
-    for step in &tool.ways {
+    for step in &tool.segments {
         let to = double(&step.to);
         segments.push(match step.centre.as_ref().map(double) {
             None => {
@@ -182,17 +182,17 @@ fn intersect(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) ->
 /// Returns points off the surface with three or more nearest features, inside and outside. Newton's method begins at
 /// `starts` random points per pair of borders: up to twice the tool's radius from the axis, and up to half its radius
 /// beyond its ends. Only every `stride`-th pair is used.
-pub(super) fn find_meetings(
+pub(super) fn find_equidistant_points(
     tool: &Restated,
     size: f64,
     (starts, stride): (usize, usize),
     rng: &mut Rng,
-) -> Vec<Meeting> {
+) -> Vec<EquidistantPoint> {
     let features = features(tool);
     let borders = borders(&features);
-    let radius = tool.ways.iter().map(|segment| segment.to[0].to_f64()).fold(0.0, f64::max);
-    let height = tool.ways.iter().map(|segment| segment.to[1].to_f64()).fold(0.0, f64::max);
-    let mut found: Vec<Meeting> = Vec::new();
+    let radius = tool.segments.iter().map(|segment| segment.to[0].to_f64()).fold(0.0, f64::max);
+    let height = tool.segments.iter().map(|segment| segment.to[1].to_f64()).fold(0.0, f64::max);
+    let mut points: Vec<EquidistantPoint> = Vec::new();
     let pairs = borders
         .iter()
         .enumerate()
@@ -201,16 +201,17 @@ pub(super) fn find_meetings(
         for _ in 0..starts {
             let start =
                 [rng.between(0.0, 2.0 * radius), rng.between(-0.5 * radius, height + 0.5 * radius)];
-            let Some(at) = intersect(&features, pair, start, size) else { continue };
-            let Some(count) = nearest_count(&features, at, size) else { continue };
-            let is_same =
-                |other: &Meeting| subtract(other.at, at).iter().all(|c| c.abs() < 1e-9 * size);
-            if !found.iter().any(is_same) {
-                found.push(Meeting { at, features: count });
+            let Some(point) = intersect(&features, pair, start, size) else { continue };
+            let Some(count) = nearest_count(&features, point, size) else { continue };
+            let is_same = |other: &EquidistantPoint| {
+                subtract(other.point, point).iter().all(|c| c.abs() < 1e-9 * size)
+            };
+            if !points.iter().any(is_same) {
+                points.push(EquidistantPoint { point, features: count });
             }
         }
     }
-    found
+    points
 }
 
 /// Returns the number of nearest features. Returns `None` if there are fewer than three, or if the point is on the
@@ -236,11 +237,11 @@ mod tests {
     #[test]
     fn finds_the_known_points_near_four_features() {
         let tool = restated::of("Fig73Exact").expect("it is restated");
-        let found = find_meetings(&tool, 32.0, (2, 1), &mut Rng::new(1));
+        let found = find_equidistant_points(&tool, 32.0, (2, 1), &mut Rng::new(1));
         for known in [[5.0, 7.0], [11.0, 1.0]] {
-            let meeting =
-                found.iter().find(|m| subtract(m.at, known).iter().all(|c| c.abs() < 1e-12));
-            assert_eq!(meeting.map(|m| m.features), Some(4), "{known:?} in {found:?}");
+            let point =
+                found.iter().find(|m| subtract(m.point, known).iter().all(|c| c.abs() < 1e-12));
+            assert_eq!(point.map(|m| m.features), Some(4), "{known:?} in {found:?}");
         }
     }
 }

@@ -11,21 +11,24 @@ use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, Probe, TriangleId};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Error of the greatest depth relative to the closed form.
-const CLOSED_FORM_ERROR: Kind = Kind::of("closed form", "Probe::rounding_error_bound", 1.0);
+const CLOSED_FORM_ERROR: Kind = Kind::with_limit("closed form", "Probe::rounding_error_bound", 1.0);
 /// A contact deeper than the error bound that was not found.
-const MISSED_CONTACT: Kind = Kind::never("contact missed");
+const MISSED_CONTACT: Kind = Kind::forbidden_event("contact missed");
 /// Distance of the closed form from the certified interval.
-const INTERVAL_MISS: Kind = Kind::of("outside the certified interval", "64 ε (tool + part)", 1.0);
+const INTERVAL_MISS: Kind =
+    Kind::with_limit("outside the certified interval", "64 ε (tool + part)", 1.0);
 /// Width of the certified interval beyond 1e-9.
-const EXCESS_WIDTH: Kind = Kind::of("its width beyond 1e-9 mm", "256 ε (tool + part)", 1.0);
+const EXCESS_WIDTH: Kind = Kind::with_limit("its width beyond 1e-9 mm", "256 ε (tool + part)", 1.0);
 /// Width of the interval for a tool without a profile. The certifier knows its depth only by a bound on its change and
 /// stops when the budget is spent, so the interval is valid but wide.
-const FIELD_WIDTH: Kind =
-    Kind::told("its width, of tools whose distance it does not know", "of the tool's unit");
+const FIELD_WIDTH: Kind = Kind::informational(
+    "its width, of tools whose distance it does not know",
+    "of the tool's unit",
+);
 /// Maximum number of nodes per query for such a tool.
 const FIELD_BUDGET: u32 = 20_000;
 
@@ -43,7 +46,7 @@ fn longest_side(subject: &Subject) -> Option<Side> {
     let tool = restated::of(subject.name())?;
     let mut from = tool.start;
     let mut longest: Option<Side> = None;
-    for segment in tool.ways {
+    for segment in tool.segments {
         let [d, low, high] = [&segment.to[0], &from[1], &segment.to[1]].map(Big::to_f64);
         if segment.centre.is_none() && from[0] == segment.to[0] && high > low {
             let side = [d, (low + high) / 2.0, high - low];
@@ -58,7 +61,7 @@ fn longest_side(subject: &Subject) -> Option<Side> {
 /// on its axis: half the radius of its end face or ball. Returns 0 for a tool whose end is neither.
 fn max_press_depth(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.5 };
-    let (zero, first) = (Big::zero(), &tool.ways[0]);
+    let (zero, first) = (Big::zero(), &tool.segments[0]);
     let has_flat_end = first.centre.is_none() && first.to[1] == zero && tool.start[1] == zero;
     let has_ball_end = first.centre.as_ref().is_some_and(|centre| centre[0] == zero);
     if has_flat_end || has_ball_end { 0.5 * first.to[0].to_f64() } else { 0.0 }
@@ -155,7 +158,7 @@ fn check_contact(
     match first {
         Some(first) => {
             let error = (&Big::exactly(first.depth) - closed_form).abs().to_f64();
-            ledger.see(CLOSED_FORM_ERROR, error / error_bound, || format_pose(&pose));
+            ledger.record(CLOSED_FORM_ERROR, error / error_bound, || format_pose(&pose));
         }
         None => ledger.count(MISSED_CONTACT, depth > error_bound, || format_pose(&pose)),
     }
@@ -259,10 +262,10 @@ fn check_interval(
     let rounding = f64::EPSILON * (circles.fold(subject.scale(), f64::max) + max_coordinate);
     let miss = (low - depth).max(depth - high).max(0.0);
     let location = || format!("depth {depth:e} in {low:e} to {high:e}, {}", format_pose(&pose));
-    ledger.see(INTERVAL_MISS, miss / (64.0 * rounding), location);
+    ledger.record(INTERVAL_MISS, miss / (64.0 * rounding), location);
     if has_profile {
-        ledger.see(EXCESS_WIDTH, (high - low - 1e-9).max(0.0) / (256.0 * rounding), location);
+        ledger.record(EXCESS_WIDTH, (high - low - 1e-9).max(0.0) / (256.0 * rounding), location);
     } else {
-        ledger.tell(FIELD_WIDTH, 1, high - low, &location());
+        ledger.record_info(FIELD_WIDTH, 1, high - low, &location());
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn plain_surface_name(surface: &'static str) -> &'static str {
 /// Returns a restated tool with surface names that a file may use.
 pub(super) fn with_plain_names(tool: &Restated) -> Restated {
     let mut tool = tool.clone();
-    for segment in &mut tool.ways {
+    for segment in &mut tool.segments {
         segment.surface = plain_surface_name(segment.surface);
     }
     tool.cutting = tool.cutting.iter().map(|surface| plain_surface_name(surface)).collect();
@@ -49,11 +49,12 @@ pub(super) fn with_plain_names(tool: &Restated) -> Restated {
 
 /// Returns the source text of a profile, from a restatement with [plain][with_plain_names] names.
 pub(super) fn profile_text(tool: &Restated, scale: &str) -> String {
-    let point = |[d, z]: &Point| format!("({}*s, {}*s)", d.written(), z.written());
+    let point =
+        |[d, z]: &Point| format!("({}*s, {}*s)", d.to_decimal_string(), z.to_decimal_string());
     let mut text = format!("tool {} {{ units mm; let s = {scale};\nprofile {{\n", tool.name);
     let _ = writeln!(text, "start {};", point(&tool.start));
     let mut from = tool.start.clone();
-    for segment in &tool.ways {
+    for segment in &tool.segments {
         let cutting = if tool.cutting.contains(&segment.surface) { " cutting" } else { "" };
         let to = point(&segment.to);
         let command = match &segment.centre {

@@ -5,10 +5,10 @@ use super::scene::{PointSet, ProbeCheck, compare_depths, format_pose};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// If no coordinate loses a bit, all evaluations must have the same bits.
-const CHANGED_BITS: Kind = Kind::never("moved without a loss: other bits");
+const CHANGED_BITS: Kind = Kind::forbidden_event("moved without a loss: other bits");
 /// Spacing of the coordinates' grid, so that sums with 2^40 are exact.
 const GRID: f64 = 1.0 / 1024.0;
 

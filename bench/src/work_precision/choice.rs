@@ -4,37 +4,37 @@ use super::row::{Label, Row};
 
 /// A requirement on the error of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
+pub enum ErrorRequirement {
     /// The root-mean-square error of the force is at most this share of the typical force.
     Force(f64),
     /// The largest error of depth is at most this, in the part's unit.
     Depth(f64),
 }
 
-impl Wish {
+impl ErrorRequirement {
     /// The requirements on the page.
-    pub const ALL: [Wish; 7] = [
-        Wish::Force(0.1),
-        Wish::Force(0.01),
-        Wish::Force(0.001),
-        Wish::Depth(0.1),
-        Wish::Depth(0.01),
-        Wish::Depth(0.001),
-        Wish::Depth(1e-6),
+    pub const ALL: [ErrorRequirement; 7] = [
+        ErrorRequirement::Force(0.1),
+        ErrorRequirement::Force(0.01),
+        ErrorRequirement::Force(0.001),
+        ErrorRequirement::Depth(0.1),
+        ErrorRequirement::Depth(0.01),
+        ErrorRequirement::Depth(0.001),
+        ErrorRequirement::Depth(1e-6),
     ];
 
     /// Returns a row's error in the quantity of the requirement.
     fn error(self, row: &Row) -> Option<f64> {
         match self {
-            Wish::Force(_) => row.err_force,
-            Wish::Depth(_) => row.worst_depth,
+            ErrorRequirement::Force(_) => row.err_force,
+            ErrorRequirement::Depth(_) => row.worst_depth,
         }
     }
 
     /// Returns the largest allowed error.
     fn max_error(self) -> f64 {
         match self {
-            Wish::Force(max_error) | Wish::Depth(max_error) => max_error,
+            ErrorRequirement::Force(max_error) | ErrorRequirement::Depth(max_error) => max_error,
         }
     }
 }
@@ -55,7 +55,7 @@ pub struct Choice {
 pub fn fastest(
     rows: &[Row],
     scenes: &[&str],
-    requirement: Wish,
+    requirement: ErrorRequirement,
     allowed: impl Fn(&Row) -> bool,
 ) -> Option<Choice> {
     let mut labels: Vec<Label> = Vec::new();
@@ -71,7 +71,12 @@ pub fn fastest(
 }
 
 /// Returns a setting's results in all scenes, if it meets the requirement in each.
-fn choice(rows: &[Row], scenes: &[&str], requirement: Wish, label: Label) -> Option<Choice> {
+fn choice(
+    rows: &[Row],
+    scenes: &[&str],
+    requirement: ErrorRequirement,
+    label: Label,
+) -> Option<Choice> {
     let (mut p50, mut error) = (Vec::new(), 0.0f64);
     for scene in scenes {
         let row = rows.iter().find(|row| row.scene == *scene && row.label() == label)?;
@@ -102,17 +107,18 @@ mod tests {
         ];
         let fastest_for = |requirement| fastest(&rows, &["a", "b"], requirement, |_| true);
         let name = |requirement| fastest_for(requirement).map(|choice| choice.label.method);
-        assert_eq!(name(Wish::Force(0.1)), Some("quick"));
-        assert_eq!(name(Wish::Force(0.01)), Some("even"));
-        assert_eq!(name(Wish::Depth(0.01)), Some("good"));
-        assert_eq!(name(Wish::Depth(0.001)), None);
-        let even = fastest_for(Wish::Force(0.01)).expect("there is one");
+        assert_eq!(name(ErrorRequirement::Force(0.1)), Some("quick"));
+        assert_eq!(name(ErrorRequirement::Force(0.01)), Some("even"));
+        assert_eq!(name(ErrorRequirement::Depth(0.01)), Some("good"));
+        assert_eq!(name(ErrorRequirement::Depth(0.001)), None);
+        let even = fastest_for(ErrorRequirement::Force(0.01)).expect("there is one");
         assert_eq!((even.p50.as_slice(), even.error), (&[700, 700][..], 0.009));
-        let only = fastest(&rows, &["a"], Wish::Force(0.1), |row| row.method != "elsewhere");
+        let only =
+            fastest(&rows, &["a"], ErrorRequirement::Force(0.1), |row| row.method != "elsewhere");
         assert_eq!(only.map(|choice| choice.label.method), Some("quick"));
-        assert_eq!(fastest(&rows, &[], Wish::Force(0.1), |_| true), None);
+        assert_eq!(fastest(&rows, &[], ErrorRequirement::Force(0.1), |_| true), None);
         let mut without_force = rows[2].clone();
         without_force.err_force = None;
-        assert_eq!(fastest(&[without_force], &["a"], Wish::Force(1.0), |_| true), None);
+        assert_eq!(fastest(&[without_force], &["a"], ErrorRequirement::Force(1.0), |_| true), None);
     }
 }

@@ -7,7 +7,7 @@ use touchoff::{Cloud, Mesh, Pose, Unit};
 use touchoff_tests::oracle::closed_forms::{
     ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Depth of the tool in the part, mm.
 pub(super) const DEPTH: f64 = 0.1;
@@ -45,7 +45,7 @@ pub(super) enum Contact {
 
 /// A pose of the tool with the exact force and torque.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
+pub(super) struct Placement {
     /// The tool's pose.
     pub(super) pose: Pose,
     /// The force on the tool, by the thesis's law.
@@ -213,7 +213,7 @@ impl Contact {
     ///
     /// # Panics
     /// Never: the poses are finite.
-    pub(super) fn place(self, rng: &mut Rng) -> Placed {
+    pub(super) fn random_placement(self, rng: &mut Rng) -> Placement {
         let half_width = (DEPTH * (2.0 * TOOL_RADIUS - DEPTH)).sqrt();
         let tilt = |rng: &mut Rng, axis: Vector3<f64>, max_angle: f64| {
             let perpendicular = axis.cross(&Vector3::from(rng.direction())).normalize();
@@ -263,7 +263,7 @@ impl Contact {
         };
         let arm = tip * axis;
         let pose = Pose::from_axis(balance - arm, axis).expect("a finite pose");
-        Placed { pose, force, torque: arm.cross(&force) }
+        Placement { pose, force, torque: arm.cross(&force) }
     }
 }
 

@@ -8,7 +8,7 @@
 //! ```
 
 pub mod choice;
-mod closed;
+mod closed_form;
 mod contact;
 mod cutter;
 mod lineup;
@@ -63,28 +63,28 @@ pub enum Failure {
 
 /// The description of a scene, and the values that its errors are relative to.
 #[derive(Clone, Debug)]
-pub struct Facts {
+pub struct SceneInfo {
     /// The scene's name.
     pub scene: String,
     /// Description of the tool and the part.
-    pub about: String,
+    pub description: String,
     /// True if the scene is a path along a part.
-    pub path: bool,
+    pub is_path: bool,
     /// Root mean squares of force, torque and depth.
     pub typical: [f64; 3],
     /// Relative accuracy of the true values, as shares of `typical`.
-    pub known: [f64; 3],
+    pub reference_error: [f64; 3],
     /// The part's unit.
     pub unit: Unit,
 }
 
 /// The results of all measurements.
 #[derive(Clone, Debug, Default)]
-pub struct Measured {
+pub struct Measurements {
     /// All rows.
     pub rows: Vec<Row>,
     /// All scenes.
-    pub scenes: Vec<Facts>,
+    pub scenes: Vec<SceneInfo>,
     /// True if the measuring thread was pinned to one core.
     pub pinned: bool,
 }
@@ -99,7 +99,7 @@ pub fn scenes() -> Vec<&'static str> {
 }
 
 /// A user's part, and a tool with a path along it.
-pub struct Own<'t> {
+pub struct UserScene<'t> {
     /// The part.
     pub mesh: Mesh,
     /// The scene's name.
@@ -116,11 +116,11 @@ pub struct Own<'t> {
 /// See [`Failure`].
 pub fn measure(
     scene_names: &[&str],
-    own: Option<Own<'_>>,
+    own: Option<UserScene<'_>>,
     plan: &Plan,
     sink: Sink<'_>,
-) -> Result<Measured, Failure> {
-    let mut measured = Measured::default();
+) -> Result<Measurements, Failure> {
+    let mut measured = Measurements::default();
     let mut record = |row: Row| {
         sink(row.clone());
         measured.rows.push(row);
@@ -131,19 +131,19 @@ pub fn measure(
     let pinned = pin();
     for patch in Patch::ALL.into_iter().filter(|patch| scene_names.contains(&patch.name())) {
         progress(patch.name());
-        scenes.push(closed::measure(patch, plan, &mut record)?);
+        scenes.push(closed_form::measure(patch, plan, &mut record)?);
     }
     let tube_scenes = scenes_along_tube(scene_names, plan);
     if !tube_scenes.is_empty() {
         scenes.extend(path_scenes::measure(&tube(), tube_scenes, plan, &mut record)?);
     }
-    if let Some(Own { mesh, name, tool, poses }) = own {
+    if let Some(UserScene { mesh, name, tool, poses }) = own {
         let triangles = mesh.triangles().len();
         let description = format!("{} along a part of {triangles} triangles", tool.info().name);
         let scene = PathScene { name, description, cutter: Cutter(tool), poses, touches: true };
         scenes.extend(path_scenes::measure(&mesh, vec![scene], plan, &mut record)?);
     }
-    Ok(Measured { scenes, pinned, ..measured })
+    Ok(Measurements { scenes, pinned, ..measured })
 }
 
 fn scenes_along_tube(scene_names: &[&str], plan: &Plan) -> Vec<PathScene<'static>> {

@@ -1,11 +1,11 @@
 //! The text and the diagrams of the page `work-precision.md`.
 
-use super::choice::{Choice, Wish, fastest};
+use super::choice::{Choice, ErrorRequirement, fastest};
 use super::orders::{expected, orders};
 use super::plots::{improving_front, plot};
 use super::row::{Label, Quantity, Row};
 use super::table::{cells, format_error, format_micros, format_setting};
-use super::{Facts, Measured, Plan};
+use super::{Measurements, Plan, SceneInfo};
 use crate::page::{Page, Section};
 use std::fmt::{Error, Write};
 
@@ -16,7 +16,7 @@ fn file_name(scene: &str, quantity: Quantity) -> String {
     format!("{NAME}-{scene}-{}.svg", quantity.name())
 }
 
-fn rows_of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
+fn rows_of<'a>(measured: &'a Measurements, scene: &str) -> Vec<&'a Row> {
     measured.rows.iter().filter(|row| row.scene == scene).collect()
 }
 
@@ -24,7 +24,7 @@ fn rows_of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
 ///
 /// # Errors
 /// Never in practice: writing to a string cannot fail.
-pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
+pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
     let mut body = String::new();
     write_head(&mut body, measured, plan)?;
     for facts in &measured.scenes {
@@ -36,7 +36,7 @@ pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
         name: NAME,
         title: "Run time against error",
         covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
-        sections: vec![Section { title: "", body, missed: Vec::new() }],
+        sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
         figures: figures(measured),
     })
 }
@@ -45,9 +45,9 @@ pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
 const PLOTTED: [Quantity; 2] = [Quantity::Force, Quantity::Depth];
 
 /// Returns the diagrams of those paths that have points.
-fn figures(measured: &Measured) -> Vec<(String, String)> {
+fn figures(measured: &Measurements) -> Vec<(String, String)> {
     let mut figures = Vec::new();
-    for facts in measured.scenes.iter().filter(|facts| facts.path) {
+    for facts in measured.scenes.iter().filter(|facts| facts.is_path) {
         let rows = rows_of(measured, &facts.scene);
         for quantity in PLOTTED {
             let plot = plot(&rows, &facts.scene, quantity);
@@ -59,7 +59,7 @@ fn figures(measured: &Measured) -> Vec<(String, String)> {
     figures
 }
 
-fn write_head(page: &mut String, measured: &Measured, plan: &Plan) -> Result<(), Error> {
+fn write_head(page: &mut String, measured: &Measurements, plan: &Plan) -> Result<(), Error> {
     let pinned = if measured.pinned { "kept on one core" } else { "not kept on one core" };
     let sample = if plan.quick { "This is the sample, `--quick`.\n\n" } else { "" };
     writeln!(
@@ -94,20 +94,20 @@ blue, with cells.
     )
 }
 
-fn write_scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
-    writeln!(page, "## {}\n\n{}.\n", facts.scene, facts.about)?;
+fn write_scene(page: &mut String, facts: &SceneInfo, rows: &[&Row]) -> Result<(), Error> {
+    writeln!(page, "## {}\n\n{}.\n", facts.scene, facts.description)?;
     if rows.iter().all(|row| row.err_depth.is_none()) {
         return write_times(page, rows);
     }
     let [force, torque, depth] = facts.typical;
-    let known = facts.known.map(|share| format!("{share:.0e}"));
+    let known = facts.reference_error.map(|share| format!("{share:.0e}"));
     let unit = facts.unit;
     writeln!(
         page,
         "Typical: force {force:.3e} {unit}³, torque {torque:.3e} {unit}⁴, depth {depth:.3e} {unit}; known to {}, {} and {} of that.\n",
         known[0], known[1], known[2]
     )?;
-    for quantity in PLOTTED.into_iter().filter(|_| facts.path) {
+    for quantity in PLOTTED.into_iter().filter(|_| facts.is_path) {
         writeln!(
             page,
             "![{0}: {1}]({2})",
@@ -166,7 +166,7 @@ fn write_table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     Ok(())
 }
 
-fn write_orders(page: &mut String, measured: &Measured) -> Result<(), Error> {
+fn write_orders(page: &mut String, measured: &Measurements) -> Result<(), Error> {
     writeln!(
         page,
         "## Orders of convergence
@@ -194,8 +194,8 @@ in a place. Along a line (CF2, CF5) the depth's is -2. CF8 and CF9 have no such 
     writeln!(page)
 }
 
-fn write_choices(page: &mut String, measured: &Measured) -> Result<(), Error> {
-    let paths = measured.scenes.iter().filter(|facts| facts.path && facts.typical[2] > 0.0);
+fn write_choices(page: &mut String, measured: &Measurements) -> Result<(), Error> {
+    let paths = measured.scenes.iter().filter(|facts| facts.is_path && facts.typical[2] > 0.0);
     let scenes: Vec<&str> = paths.map(|facts| facts.scene.as_str()).collect();
     if scenes.is_empty() {
         return Ok(());
@@ -212,14 +212,14 @@ unit. The fastest is the one whose slowest median is the shortest. *Safe* are th
         scenes.join(", "),
         scenes.join(", ")
     )?;
-    for requirement in Wish::ALL {
+    for requirement in ErrorRequirement::ALL {
         let choice = fastest(&measured.rows, &scenes, requirement, |_| true);
         let (tolerance, quantity) = match requirement {
-            Wish::Force(share) => (format!("{} %", 100.0 * share), "force"),
-            Wish::Depth(depth) => (format!("{depth}"), "depth"),
+            ErrorRequirement::Force(share) => (format!("{} %", 100.0 * share), "force"),
+            ErrorRequirement::Depth(depth) => (format!("{depth}"), "depth"),
         };
         write_choice(page, &tolerance, quantity, choice)?;
-        if matches!(requirement, Wish::Depth(_)) {
+        if matches!(requirement, ErrorRequirement::Depth(_)) {
             let is_safe = |row: &Row| matches!(row.method, "certified" | "cloud + bound");
             let choice = fastest(&measured.rows, &scenes, requirement, is_safe);
             write_choice(page, &tolerance, "depth, safe", choice)?;

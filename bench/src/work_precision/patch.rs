@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Pose, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, fig_7_3_exact};
 
 /// A patch and its tool.
@@ -153,10 +153,10 @@ impl Patch {
     ///
     /// # Panics
     /// Never: the poses are finite.
-    pub(super) fn place(self, rng: &mut Rng) -> (Pose, Truth) {
+    pub(super) fn random_placement(self, rng: &mut Rng) -> (Pose, Truth) {
         match self {
             Patch::Contact(contact) => {
-                let placed = contact.place(rng);
+                let placed = contact.random_placement(rng);
                 let truth = Truth { force: placed.force, torque: placed.torque, depth: DEPTH };
                 (placed.pose, truth)
             }
@@ -187,7 +187,7 @@ fn integrate_half_section(squares_per_mm: u32) -> SectionIntegrals {
     let row = |k: u32| {
         let mut sums = [0.0; 3];
         for z in (0..squares_per_mm * TOOL_LENGTH).map(midpoint) {
-            if let Some(evaluation) = tool.sense([midpoint(k), 0.0, z]) {
+            if let Some(evaluation) = tool.evaluate([midpoint(k), 0.0, z]) {
                 let m = evaluation.magnitude;
                 let parts = [m, m * evaluation.direction[2], m * z];
                 sums.iter_mut().zip(parts).for_each(|(sum, term)| *sum += term);
@@ -283,7 +283,8 @@ mod tests {
             for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
                 let coordinate = |k: i32| step * (f64::from(k) + 0.5) - HALF_SQUARE;
                 let arm = Point3::new(coordinate(i), coordinate(j), 0.0) - pose.tip();
-                let evaluation = tool.sense(pose.rotation().tr_mul(&arm).into()).expect("inside");
+                let evaluation =
+                    tool.evaluate(pose.rotation().tr_mul(&arm).into()).expect("inside");
                 let direction = pose.rotation() * Vector3::from(evaluation.direction);
                 let force_part = step * step * evaluation.magnitude * (Vector3::z() - direction);
                 force += force_part;

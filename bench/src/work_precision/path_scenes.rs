@@ -6,7 +6,7 @@ use super::methods::{BudgetedProbe, CertifiedDepth};
 use super::plan::Plan;
 use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
-use super::{Facts, Failure, Sink, peers, progress};
+use super::{Failure, SceneInfo, Sink, peers, progress};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Law, LodProbe, Mesh, Part, Pose, Sampling, Unit};
 
@@ -47,7 +47,7 @@ pub(super) fn measure(
     scenes: Vec<PathScene<'_>>,
     plan: &Plan,
     sink: Sink<'_>,
-) -> Result<Vec<Facts>, Failure> {
+) -> Result<Vec<SceneInfo>, Failure> {
     let bvh = TriangleBvh::new(mesh);
     let mut referenced_scenes = Vec::new();
     for scene in scenes {
@@ -204,19 +204,19 @@ fn rows(lineup: &mut Lineup<'_>, referenced: &ReferencedScene<'_>, plan: &Plan) 
     let uses_thesis_list = lineup.uses_thesis_magnitudes().collect::<Vec<bool>>();
     let errors = stats.iter().zip(uses_thesis_list).map(|(method_stats, uses_thesis)| {
         let reference = if uses_thesis { thesis } else { truth };
-        Ok(method_stats.errors(reference.known, reference.depth))
+        Ok(method_stats.errors(reference.reference_error, reference.depth))
     });
     lineup.rows(name, &times, errors)
 }
 
-fn facts(referenced: ReferencedScene<'_>, mesh: &Mesh) -> Facts {
+fn facts(referenced: ReferencedScene<'_>, mesh: &Mesh) -> SceneInfo {
     let truth = referenced.truth;
-    Facts {
+    SceneInfo {
         scene: referenced.scene.name,
-        about: referenced.scene.description,
-        path: true,
+        description: referenced.scene.description,
+        is_path: true,
         typical: truth.as_ref().map_or([0.0; 3], |truth| truth.typical),
-        known: truth.as_ref().map_or([0.0; 3], |truth| truth.known),
+        reference_error: truth.as_ref().map_or([0.0; 3], |truth| truth.reference_error),
         unit: mesh.unit(),
     }
 }
@@ -258,7 +258,7 @@ mod tests {
         for row in measured.rows.iter().filter(|row| row.scene == "apart") {
             assert!(row.missed == 0.0 && row.err_force.is_none() && row.err_depth.is_none());
         }
-        assert!(measured.scenes.iter().any(|facts| facts.scene == "inside" && facts.path));
+        assert!(measured.scenes.iter().any(|facts| facts.scene == "inside" && facts.is_path));
         assert!(super::super::page(&measured, &plan).is_ok());
     }
 }

@@ -104,15 +104,15 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
         }
     }
     for (colour, ends) in percentile_lines {
-        plot = plot.with(Series::dashes("", ends).look(colour));
+        plot = plot.with_series(Series::dashes("", ends).with_colour(colour));
     }
     for (family, points) in families {
         let series = match family.joined {
             true => Series::line(family.name, points),
             false => Series::points(family.name, points),
         };
-        let series = series.look(family.colour);
-        plot = plot.with(if family.bold { series.bold() } else { series });
+        let series = series.with_colour(family.colour);
+        plot = plot.with_series(if family.bold { series.bold() } else { series });
     }
     plot
 }

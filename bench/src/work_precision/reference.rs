@@ -23,7 +23,7 @@ pub(super) struct Reference {
     /// Root mean squares of force, torque and depth.
     pub(super) typical: [f64; 3],
     /// Relative accuracy, as shares of `typical`.
-    pub(super) known: [f64; 3],
+    pub(super) reference_error: [f64; 3],
     /// The largest possible error of a depth, in the part's unit.
     pub(super) depth: f64,
 }
@@ -128,6 +128,11 @@ impl Reference {
         }
         let (typical, change) = (typical.typical(), uncertainty.typical());
         let known = [0, 1, 2].map(|k: usize| change[k] / typical[k]);
-        Ok(Reference { truths, typical, known, depth: uncertainty.largest_depth() })
+        Ok(Reference {
+            truths,
+            typical,
+            reference_error: known,
+            depth: uncertainty.largest_depth(),
+        })
     }
 }

@@ -323,7 +323,7 @@ mod tests {
     use super::*;
     use crate::work_precision::contact::Contact;
     use tools_library::Fig73Exact;
-    use touchoff_tests::oracle::draw::Rng;
+    use touchoff_tests::oracle::rng::Rng;
 
     #[test]
     fn division_shortens_triangles_and_keeps_their_area() {
@@ -349,7 +349,7 @@ mod tests {
             let quadrature = Quadrature::new(&mesh, &Fig73Exact, &Fig73Exact);
             let mut rng = Rng::new(3);
             for _ in 0..5 {
-                let placed = contact.place(&mut rng);
+                let placed = contact.random_placement(&mut rng);
                 let sums = quadrature.sums(&placed.pose, criteria);
                 let error = (sums.force - placed.force).norm();
                 assert!(

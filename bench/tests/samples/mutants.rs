@@ -6,10 +6,10 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
-use touchoff_bench::mutants::{Caught, KINDS, Mutant, caught, changes, mutants};
+use touchoff_bench::mutants::{Detection, KINDS, Mutant, detect, differs, mutants};
 use touchoff_bench::parallel;
 use touchoff_tests::library::library;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Number of points at which bounds are tested.
 const POINTS: usize = 400;
@@ -156,26 +156,27 @@ fn defects_of_library_tools_are_detected_without_the_originals() {
         assert!(diagnostics.is_empty(), "{}: {diagnostics:#?}", original.model.name);
         // Other mutants than those in the table.
         let mut mutants = mutants(&original, 4, 1000 + index as u64);
-        mutants.retain(|mutant| changes(&original, &mutant.tool, 1));
-        let location = |kind: usize, place: &str| {
-            format!("{}: {} at {place}", original.model.name, KINDS[kind])
+        mutants.retain(|mutant| differs(&original, &mutant.tool, 1));
+        let location = |kind: usize, location: &str| {
+            format!("{}: {} at {location}", original.model.name, KINDS[kind])
         };
-        let detected =
-            |mutant: &Mutant| (caught(&proved, &mutant.tool), location(mutant.kind, &mutant.place));
+        let detected = |mutant: &Mutant| {
+            (detect(&proved, &mutant.tool), location(mutant.kind, &mutant.location))
+        };
         mutants.iter().map(detected).collect::<Vec<_>>()
     });
-    let (mut detected, mut compared, mut missed) = (0, Vec::new(), Vec::new());
-    for (detection, place) in results.into_iter().flatten() {
+    let (mut detected, mut compared, mut undetected) = (0, Vec::new(), Vec::new());
+    for (detection, location) in results.into_iter().flatten() {
         match detection {
-            Caught::Error | Caught::Open | Caught::Warning => detected += 1,
-            Caught::Compared => compared.push(place),
-            Caught::Not => missed.push(place),
+            Detection::Error | Detection::Undecided | Detection::Warning => detected += 1,
+            Detection::ByComparison => compared.push(location),
+            Detection::Undetected => undetected.push(location),
         }
     }
-    println!("{detected} seen, {} by comparing, {} not", compared.len(), missed.len());
+    println!("{detected} seen, {} by comparing, {} not", compared.len(), undetected.len());
     assert!(
         detected > 100 && 9 * compared.len() <= detected,
         "{detected} seen, by comparing only {compared:#?}"
     );
-    assert!(missed.is_empty(), "{missed:#?}");
+    assert!(undetected.is_empty(), "{undetected:#?}");
 }

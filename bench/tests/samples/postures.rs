@@ -7,15 +7,15 @@ use touchoff::mesh::shapes;
 use touchoff::postures::sweep::PostureSweep;
 use touchoff::postures::{Directions, Rules};
 use touchoff::{Mesh, Unit};
-use touchoff_bench::postures::free::{Part, Verdict};
+use touchoff_bench::postures::brute_force::{TrianglePart, Verdict};
 use touchoff_bench::postures::parts::relief;
-use touchoff_bench::postures::stand::Posture;
-use touchoff_bench::postures::stand::Stand;
-use touchoff_bench::postures::{Wanted, measure};
+use touchoff_bench::postures::tool_model::Posture;
+use touchoff_bench::postures::tool_model::ToolModel;
+use touchoff_bench::postures::{ComparisonSettings, measure};
 
 fn sample(tools: Vec<&str>, draws: usize) {
     let mesh = relief(20).expect("a block");
-    let task = Wanted {
+    let task = ComparisonSettings {
         mesh: &mesh,
         tools,
         hemisphere: 60,
@@ -25,13 +25,13 @@ fn sample(tools: Vec<&str>, draws: usize) {
         seed: 4,
     };
     let results = measure(&task).expect("a sweep");
-    let format_list = |list: &[touchoff_bench::postures::Odd]| format!("{list:#?}");
-    for drawn in [&results.accessible, &results.refused] {
-        assert_eq!(drawn.judged, draws);
-        assert!(drawn.wrong.is_empty(), "{}", format_list(&drawn.wrong));
-        assert!(20 * drawn.open.len() <= draws, "{}", format_list(&drawn.open));
+    let format_list = |list: &[touchoff_bench::postures::Discrepancy]| format!("{list:#?}");
+    for drawn in [&results.accessible, &results.inaccessible] {
+        assert_eq!(drawn.count, draws);
+        assert!(drawn.contradicted.is_empty(), "{}", format_list(&drawn.contradicted));
+        assert!(20 * drawn.undecided.len() <= draws, "{}", format_list(&drawn.undecided));
     }
-    let stats = &results.tally;
+    let stats = &results.stats;
     assert_eq!(stats.postures(), stats.triangles * 120);
     assert!(
         stats.cached_obstruction > 0
@@ -59,11 +59,11 @@ fn brute_force_rejects_blocked_postures() {
     let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
     let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
-    let part = Part::new(&block);
-    let stand = Stand::new("D2Ball", 1.0, 0.01).expect("a restated tool");
+    let part = TrianglePart::new(&block);
+    let stand = ToolModel::new("D2Ball", 1.0, 0.01).expect("a restated tool");
     let verdict_at = |tip: [f64; 3], allowance: f64| {
         let posture = Posture { tip: tip.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
-        part.judge(&stand, &posture, 0.01, allowance)
+        part.check(&stand, &posture, 0.01, allowance)
     };
     assert_eq!(verdict_at([0.0, 0.0, 0.0], 0.0), Verdict::Free);
     assert_eq!(verdict_at([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
@@ -81,7 +81,7 @@ fn brute_force_rejects_blocked_postures() {
         axis: nalgebra::Vector3::z(),
         niceness: 1.0,
     };
-    let verdict = Part::new(&block).judge(&stand, &posture, 0.01, 0.0);
+    let verdict = TrianglePart::new(&block).check(&stand, &posture, 0.01, 0.0);
     assert_eq!(verdict, Verdict::Blocked(f64::INFINITY));
 }
 

@@ -2,16 +2,16 @@
 //!
 //! `cargo run --release -p touchoff-bench -- stress` runs the full list.
 
-use touchoff_bench::stress::judge::{DEPTH, Judge, SIDES};
 use touchoff_bench::stress::ledger::{Item, Ledger};
 use touchoff_bench::stress::truth::subjects;
-use touchoff_bench::stress::{Amount, measure};
+use touchoff_bench::stress::validator::{DEPTH, Validator, WRONG_SIDE};
+use touchoff_bench::stress::{StressSettings, measure};
 
 #[test]
 fn no_limit_is_exceeded() {
-    let rows = measure(Amount::sample(7), |_| true, |_| true);
+    let rows = measure(StressSettings::sample(7), |_| true, |_| true);
     let missed: Vec<String> =
-        rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect();
+        rows.iter().filter(|row| row.exceeds_limit()).map(|row| row.describe()).collect();
     assert!(missed.is_empty(), "{missed:#?}");
     let cases = |item: Item| rows.iter().filter(move |row| row.item == item).map(|row| row.cases);
     for item in Item::all() {
@@ -31,7 +31,8 @@ fn no_limit_is_exceeded() {
 #[test]
 fn a_seed_gives_the_same_rows() {
     let rows = || {
-        let rows = measure(Amount::sample(3), |item| item.0 < 5, |name| name == "Fig73Exact");
+        let rows =
+            measure(StressSettings::sample(3), |item| item.0 < 5, |name| name == "Fig73Exact");
         rows.iter().map(|row| format!("{row:?}")).collect::<Vec<_>>()
     };
     assert_eq!(rows(), rows());
@@ -46,8 +47,15 @@ fn the_truth_of_another_tool_exceeds_limits() {
     let mut ledger = Ledger::new(Item(1), "D2Ball");
     let points: Vec<[f64; 3]> =
         (0..200).map(|k| [0.4 * f64::from(k % 5), 0.0, 0.1 * f64::from(k)]).collect();
-    Judge::new(ball.tool, &*other.truth).points(&points, &mut ledger);
-    let missed: Vec<&str> =
-        ledger.rows().iter().filter(|row| row.missed()).map(|row| row.kind.what).collect();
-    assert!(missed.contains(&DEPTH.what) && missed.contains(&SIDES.what), "{missed:?}");
+    Validator::new(ball.tool, &*other.truth).validate(&points, &mut ledger);
+    let missed: Vec<&str> = ledger
+        .rows()
+        .iter()
+        .filter(|row| row.exceeds_limit())
+        .map(|row| row.kind.quantity)
+        .collect();
+    assert!(
+        missed.contains(&DEPTH.quantity) && missed.contains(&WRONG_SIDE.quantity),
+        "{missed:?}"
+    );
 }

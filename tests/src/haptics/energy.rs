@@ -6,7 +6,7 @@ use touchoff::haptic::{EnergyBalance, Rendering, ScriptedDevice, Session, Sessio
 use touchoff::{Law, Part, Probe};
 
 /// Returns the block whose top is the plane.
-pub fn plane() -> Part {
+pub fn plane_part() -> Part {
     block(20_000)
 }
 
@@ -15,12 +15,16 @@ const STIFFNESS: f64 = 2.0;
 
 /// Moves a ball up and down on a plane eight times per second for five seconds, whatever force it renders. Returns
 /// the energy balance after each cycle.
-pub fn tapping(part: &Part, rendering: Option<Rendering>, passive: bool) -> Vec<EnergyBalance> {
-    tapping_at(part, STIFFNESS, rendering, passive)
+pub fn tapping_energy(
+    part: &Part,
+    rendering: Option<Rendering>,
+    passive: bool,
+) -> Vec<EnergyBalance> {
+    tapping_energy_at_stiffness(part, STIFFNESS, rendering, passive)
 }
 
 /// The same for a contact of another stiffness, N/mm³.
-pub fn tapping_at(
+pub fn tapping_energy_at_stiffness(
     part: &Part,
     stiffness: f64,
     rendering: Option<Rendering>,

@@ -8,7 +8,7 @@ use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Probe, Sampling, Unit};
 
 /// Returns a sheet 0.5 mm thick, from z = -0.5 to 0.
-pub fn sheet() -> Part {
+pub fn sheet_part() -> Part {
     let (low, high) = (Point3::new(-15., -15., -0.5), Point3::new(15., 15., 0.));
     let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a sheet");
     Part::from_mesh(&mesh, Sampling::new(40_000)).expect("points of a sheet")
@@ -17,7 +17,7 @@ pub fn sheet() -> Part {
 /// Presses a ball of 2 mm, with a contact of 100 N/mm³, onto the sheet. The hand wants it ever deeper, by 10 mm per
 /// second for two seconds. Returns, per cycle, the depth that the hand wants in mm, the tip's height in mm, and the
 /// upward force in N.
-pub fn pressed(part: &Part, law: Law, rendering: Option<Rendering>) -> Vec<[f64; 3]> {
+pub fn press_on_sheet(part: &Part, law: Law, rendering: Option<Rendering>) -> Vec<[f64; 3]> {
     let settings = SessionSettings { stiffness: 100.0, rendering, ..SessionSettings::new(1000.0) };
     let probe = Probe::new(part, tool("D2Ball")).with_law(law);
     let mut session = Session::new(probe, &settings, LIMITS).expect("settings");

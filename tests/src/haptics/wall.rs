@@ -37,7 +37,7 @@ fn exponential(matrix: Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// Returns the largest stiffness of a wall, N/mm, at which a grip comes to rest by theory; `rate` in Hz.
-pub fn theory(grip: &HandImpedance, rate: f64) -> f64 {
+pub fn theoretical_limit(grip: &HandImpedance, rate: f64) -> f64 {
     let per_mass = 1000.0 / grip.mass;
     let dynamics = Matrix2::new(0.0, 1.0, -grip.stiffness * per_mass, -grip.damping * per_mass);
     let transition = exponential(dynamics / rate);
@@ -83,7 +83,7 @@ pub struct Wall<'a> {
 impl Wall<'_> {
     /// Returns the swing of the tip in the last tenth of the run, mm, for a wall of this stiffness, N/mm. The swing
     /// is infinite if the device jumps.
-    pub fn swing(&self, stiffness: f64) -> f64 {
+    pub fn oscillation(&self, stiffness: f64) -> f64 {
         let mut probe = Probe::new(self.part, tool("Flat")).with_law(Law::Gradient);
         let face = probe.stiffness(&upright(-1e-3)).matrix[(2, 2)];
         let settings = SessionSettings {
@@ -119,9 +119,9 @@ impl Wall<'_> {
 
     /// Returns the largest stiffness of a wall at which the tip comes to rest, N/mm: it swings by no more than a
     /// micrometre, or two steps of the encoders.
-    pub fn stiffest(&self) -> f64 {
+    pub fn max_stable_stiffness(&self) -> f64 {
         let rest = (2.0 * self.step).max(1e-3);
-        largest(|stiffness| self.swing(stiffness) <= rest)
+        largest(|stiffness| self.oscillation(stiffness) <= rest)
     }
 }
 
@@ -138,21 +138,22 @@ pub struct Row {
 }
 
 /// Resolution of the encoders, mm.
-pub const STEP: f64 = 0.01;
+pub const ENCODER_STEP: f64 = 0.01;
 
 /// Measures the limits at a rate.
 pub fn row(rate: f64) -> Row {
     let part = block(5_000);
-    let theory = theory(&HandImpedance::default(), rate);
+    let theory = theoretical_limit(&HandImpedance::default(), rate);
     let limits = DeviceLimits { force: 1e6, torque: 1e9, ..LIMITS };
     let scaled = Rendering::Direct { scaled: true, damping: 0.0 };
     let coupled = Rendering::Coupled(Coupling::of(&limits));
-    let renderings = [(DIRECT, 0.0), (DIRECT, STEP), (scaled, 0.0), (coupled, 0.0)];
-    let measured =
-        renderings.map(|(rendering, step)| Wall { part: &part, rate, rendering, step }.stiffest());
+    let renderings = [(DIRECT, 0.0), (DIRECT, ENCODER_STEP), (scaled, 0.0), (coupled, 0.0)];
+    let measured = renderings.map(|(rendering, step)| {
+        Wall { part: &part, rate, rendering, step }.max_stable_stiffness()
+    });
     let coupling = largest(|stiffness| {
         let rendering = Rendering::Coupled(Coupling { stiffness, ..Coupling::of(&limits) });
-        Wall { part: &part, rate, rendering, step: 0.0 }.swing(1e4) <= 1e-3
+        Wall { part: &part, rate, rendering, step: 0.0 }.oscillation(1e4) <= 1e-3
     });
     Row { rate, theory, measured, coupling }
 }

@@ -41,7 +41,7 @@ impl Big {
     }
 
     /// Returns decimal digits that keep all of its bits.
-    pub fn written(&self) -> String {
+    pub fn to_decimal_string(&self) -> String {
         let decimal = self.0.clone().with_base_and_precision::<10>(90).value();
         decimal.to_string()
     }
@@ -127,7 +127,7 @@ mod tests {
         let two = Big::exactly(2.0);
         let difference = &(&two.sqrt() * &two.sqrt()) - &two;
         assert!(difference.abs() < Big::exactly(2f64.powi(-250)));
-        assert_eq!(Big::decimal(-12.75).written(), "-12.75");
+        assert_eq!(Big::decimal(-12.75).to_decimal_string(), "-12.75");
         let tiny = Big::exactly(5e-324);
         assert_eq!((&tiny * &tiny).sqrt().to_f64(), 5e-324);
         assert!((Big::tan_deg(45.0) - 1.0).abs() < Big::exactly(2f64.powi(-250)));

@@ -1,8 +1,8 @@
 //! Solids without an axis: a block, and an L-bracket with a hole. Their surfaces are patches. The depth of a point
 //! is its distance to the nearest patch, found by clamping to each. Splitting surfaces are used only to bound
-//! [`Oracle::border`].
+//! [`Oracle::border_distance`].
 
-use super::draw::Rng;
+use super::rng::Rng;
 use super::{Oracle, OracleEvaluation};
 use std::sync::OnceLock;
 
@@ -64,8 +64,8 @@ impl Patch {
         match *self {
             // More accurate than by the foot.
             Patch::Bore { hole, height } => {
-                let beyond = p[2] - p[2].clamp(0.0, height);
-                (length2(hole.offset(p)) - hole.radius).abs().hypot(beyond)
+                let height_outside = p[2] - p[2].clamp(0.0, height);
+                (length2(hole.offset(p)) - hole.radius).abs().hypot(height_outside)
             }
             Patch::Plate { .. } => {
                 let foot = self.foot(p);
@@ -110,10 +110,10 @@ type Winner = (usize, Patch, f64);
 fn nearest(candidates: impl Iterator<Item = (usize, Patch)>, p: P3) -> Option<(Winner, f64)> {
     let all: Vec<Winner> =
         candidates.map(|(region, patch)| (region, patch, patch.distance(p))).collect();
-    let won = *all.iter().min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.cmp(&b.0)))?;
-    let others = all.iter().filter(|other| other.0 != won.0);
-    let lag = others.fold(f64::INFINITY, |m, other| m.min(other.2 - won.2));
-    Some((won, lag))
+    let winner = *all.iter().min_by(|a, b| a.2.total_cmp(&b.2).then(a.0.cmp(&b.0)))?;
+    let others = all.iter().filter(|other| other.0 != winner.0);
+    let margin = others.fold(f64::INFINITY, |m, other| m.min(other.2 - winner.2));
+    Some((winner, margin))
 }
 
 /// The queries of the two solids.
@@ -124,25 +124,25 @@ trait Body {
     /// Returns the regions that may own a point inside, each with its patch.
     fn candidates(&self, p: P3) -> Vec<(usize, Patch)>;
     /// Returns the distance to points that other regions may own.
-    fn zone(&self, p: P3) -> f64;
+    fn distance_to_other_regions(&self, p: P3) -> f64;
 
     fn distance(&self, p: P3) -> f64 {
         self.patches().iter().fold(f64::INFINITY, |m, patch| m.min(patch.distance(p)))
     }
 
-    fn won(&self, p: P3) -> Option<(Winner, f64)> {
+    fn winner(&self, p: P3) -> Option<(Winner, f64)> {
         if self.inside(p) { nearest(self.candidates(p).into_iter(), p) } else { None }
     }
 
     /// Returns points on borders, found by bisection between points of which one is inside and the other has
     /// another owner or none.
     fn borders(&self, low: P3, high: P3) -> Vec<Vec<P3>> {
-        let owner = |p: P3| self.won(p).map(|((region, ..), _)| region);
-        let mut draw = Rng::new(77);
-        let mut any = || [0, 1, 2].map(|k| draw.between(low[k] - 1.0, high[k] + 1.0));
+        let owner = |p: P3| self.winner(p).map(|((region, ..), _)| region);
+        let mut rng = Rng::new(77);
+        let mut random_point = || [0, 1, 2].map(|k| rng.between(low[k] - 1.0, high[k] + 1.0));
         let mut points = Vec::new();
         while points.len() < 16 * 66 {
-            let (mut a, mut b) = (any(), any());
+            let (mut a, mut b) = (random_point(), random_point());
             let first = owner(a);
             if first == owner(b) {
                 continue;
@@ -157,7 +157,7 @@ trait Body {
     }
 }
 
-macro_rules! ask_the_body {
+macro_rules! body_oracle {
     ($name:literal, $extent:expr, $low:expr, $high:expr) => {
         fn name(&self) -> &'static str {
             $name
@@ -165,8 +165,8 @@ macro_rules! ask_the_body {
         fn regions(&self) -> Vec<&str> {
             Self::REGIONS.to_vec()
         }
-        fn sense(&self, p: P3) -> Option<OracleEvaluation> {
-            let ((owner, patch, depth), _) = self.won(p)?;
+        fn evaluate(&self, p: P3) -> Option<OracleEvaluation> {
+            let ((owner, patch, depth), _) = self.winner(p)?;
             Some(OracleEvaluation {
                 owner,
                 depth,
@@ -176,19 +176,21 @@ macro_rules! ask_the_body {
             })
         }
         fn gradient(&self, p: P3) -> Option<P3> {
-            Some(self.sense(p)?.direction.map(|c| -c))
+            Some(self.evaluate(p)?.direction.map(|c| -c))
         }
         fn signed_distance(&self, p: P3) -> f64 {
             if self.inside(p) { -self.distance(p) } else { self.distance(p) }
         }
-        fn border(&self, p: P3) -> f64 {
+        fn border_distance(&self, p: P3) -> f64 {
             // A step changes each distance by at most its own length.
-            match self.won(p) {
-                Some(((.., depth), lag)) => depth.min(lag / 2.0).min(self.zone(p)),
+            match self.winner(p) {
+                Some(((.., depth), margin)) => {
+                    depth.min(margin / 2.0).min(self.distance_to_other_regions(p))
+                }
                 None => self.distance(p),
             }
         }
-        fn revolved(&self) -> bool {
+        fn is_revolved(&self) -> bool {
             false
         }
         fn curve_points(&self) -> Vec<Vec<P3>> {
@@ -203,8 +205,8 @@ macro_rules! ask_the_body {
 
 /// Returns every combination of one number per axis.
 fn grid(x: &[f64], y: &[f64], z: &[f64]) -> Vec<P3> {
-    let over = |x: f64, y: f64| z.iter().map(move |z| [x, y, *z]);
-    x.iter().flat_map(|x| y.iter().flat_map(move |y| over(*x, *y))).collect()
+    let column = |x: f64, y: f64| z.iter().map(move |z| [x, y, *z]);
+    x.iter().flat_map(|x| y.iter().flat_map(move |y| column(*x, *y))).collect()
 }
 
 /// The block of 40 × 30 × 20, standing on the middle of its underside.
@@ -237,15 +239,15 @@ impl Body for Block {
         self.patches().into_iter().enumerate().collect()
     }
 
-    fn zone(&self, _: P3) -> f64 {
+    fn distance_to_other_regions(&self, _: P3) -> f64 {
         f64::INFINITY
     }
 }
 
 impl Oracle for Block {
-    ask_the_body!("Block", [25.0, 20.0], [-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
+    body_oracle!("Block", [25.0, 20.0], [-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]);
 
-    fn singular(&self, _: P3) -> f64 {
+    fn singularity_distance(&self, _: P3) -> f64 {
         f64::INFINITY
     }
 
@@ -354,7 +356,7 @@ impl Body for LBracket {
         all
     }
 
-    fn zone(&self, [x, _, z]: P3) -> f64 {
+    fn distance_to_other_regions(&self, [x, _, z]: P3) -> f64 {
         (x - WALL_POSITION).abs().min(if x <= WALL_POSITION {
             (z - LEDGE_HEIGHT).abs()
         } else {
@@ -364,10 +366,10 @@ impl Body for LBracket {
 }
 
 impl Oracle for LBracket {
-    ask_the_body!("LBracket", [500f64.sqrt(), 24.0], [-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]);
+    body_oracle!("LBracket", [500f64.sqrt(), 24.0], [-10.0, -10.0, 0.0], [20.0, 10.0, 24.0]);
 
-    fn singular(&self, p: P3) -> f64 {
-        match self.won(p) {
+    fn singularity_distance(&self, p: P3) -> f64 {
+        match self.winner(p) {
             Some(((4, ..), _)) => length2(HOLE.offset(p)),
             Some(((8, ..), _)) => (p[0] - WALL_POSITION).hypot(p[2] - LEDGE_HEIGHT),
             _ => f64::INFINITY,
@@ -396,7 +398,7 @@ mod tests {
 
     #[test]
     fn the_block_at_a_few_points() {
-        let at = |p| Block.sense(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
+        let at = |p| Block.evaluate(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
         assert_eq!(at([18.0, 0.0, 10.0]), Some(("right", 2.0, [1.0, 0.0, 0.0])));
         assert_eq!(at([0.0, -14.5, 10.0]), Some(("front", 0.5, [0.0, -1.0, 0.0])));
         assert_eq!(at([0.0, 0.0, 10.0]), Some(("bottom", 10.0, [0.0, 0.0, -1.0])));
@@ -407,7 +409,7 @@ mod tests {
 
     #[test]
     fn the_bracket_at_a_few_points() {
-        let at = |p| LBracket.sense(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
+        let at = |p| LBracket.evaluate(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
         assert_eq!(at([0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
         assert_eq!(at([-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
         assert_eq!(at([-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));

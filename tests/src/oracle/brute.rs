@@ -20,15 +20,15 @@ impl Pose {
         Self { tip: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
 
     /// Returns the pose with its tip at `tip` and the spindle along `spindle` (any length but 0), spun arbitrarily.
-    pub fn along(tip: [f64; 3], spindle: [f64; 3]) -> Self {
+    pub fn from_axis(tip: [f64; 3], spindle: [f64; 3]) -> Self {
         let z = unit(spindle);
-        let across = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-        let x = unit(cross(across, z));
+        let reference_axis = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let x = unit(cross(reference_axis, z));
         Self { tip, axes: [x, cross(z, x), z] }
     }
 
     /// Rotates a vector from the tool's frame to the world.
-    pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
+    pub fn to_world_frame(&self, v: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| v[0] * self.axes[0][k] + v[1] * self.axes[1][k] + v[2] * self.axes[2][k])
     }
 }
@@ -118,7 +118,7 @@ impl<'a> Query<'a> {
     }
 
     /// Returns the point in the tool's frame and unit: `scale Rᵀ (p - tip)`, subtracting first.
-    pub fn in_tool(&self, p: [f64; 3]) -> [f64; 3] {
+    pub fn to_tool_frame(&self, p: [f64; 3]) -> [f64; 3] {
         let from_tip = sub(p, self.pose.tip);
         self.pose.axes.map(|axis| self.scale * dot(axis, from_tip))
     }
@@ -132,8 +132,8 @@ impl<'a> Query<'a> {
         let (mut integral, mut energy) = (Sum::default(), Sum::default());
         let mut size = [Sum::default(); 2];
         for (i, &p) in self.points.iter().enumerate() {
-            let q = self.in_tool(p);
-            let Some(s) = self.oracle.sense(q) else {
+            let q = self.to_tool_frame(p);
+            let Some(s) = self.oracle.evaluate(q) else {
                 continue;
             };
             contacts.push(i);
@@ -153,13 +153,13 @@ impl<'a> Query<'a> {
             integral.add(w * m);
             energy.add(0.5 * w * m * m);
 
-            let (n, u) = (self.normals[i], self.pose.turn(s.direction));
+            let (n, u) = (self.normals[i], self.pose.to_world_frame(s.direction));
             let push = match self.law {
                 Law::Facing if dot(u, n) > 0.0 => continue,
                 Law::Thesis | Law::Facing => sub(n, u),
                 Law::Gradient => {
-                    let slope = self.oracle.gradient(q).unwrap_or_default();
-                    self.pose.turn(slope).map(|c| steep * c)
+                    let gradient = self.oracle.gradient(q).unwrap_or_default();
+                    self.pose.to_world_frame(gradient).map(|c| steep * c)
                 }
             };
             let f = push.map(|c| w * m * c);

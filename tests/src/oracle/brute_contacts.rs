@@ -4,7 +4,7 @@ use super::brute::{Answer, Law, Pose, Query, Sum};
 use super::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use super::draw::Rng;
+use super::rng::Rng;
 use super::{Fig73, Oracle, UnitSphere, fig_7_3_exact};
 
 /// A weighted cloud.
@@ -89,7 +89,7 @@ fn a_ball_in_a_plane() {
         let axis = [tilt.sin() * 0.6, tilt.sin() * 0.8, tilt.cos()];
         // The ball's centre is 1 above the tip along the axis, and stays at height 1 - h.
         let tip = [-axis[0], -axis[1], 1.0 - h - axis[2]];
-        let mut query = cloud.query(tool, Pose::along(tip, axis));
+        let mut query = cloud.query(tool, Pose::from_axis(tip, axis));
         query.centre = [0.3, 0.0, 1.0 - h];
         let a = compare(query, ball_in_plane(1.0, h), up, 1e-5);
         let (depth, at) = a.deepest.expect("a contact");
@@ -108,7 +108,7 @@ fn a_shank_along_a_plane() {
     let cloud = Cloud::plane(1000, 1.0);
     let h = 0.3;
     // The shank lies along x between z = 1 and z = 5 of the tool.
-    let query = cloud.query(&tool, Pose::along([-3.0, 0.0, 1.0 - h], [1.0, 0.0, 0.0]));
+    let query = cloud.query(&tool, Pose::from_axis([-3.0, 0.0, 1.0 - h], [1.0, 0.0, 0.0]));
     let c = cylinder_in_plane(1.0, h);
     let two = Contact {
         integral: 2.0 * c.integral,
@@ -125,7 +125,7 @@ fn a_shank_along_a_plane() {
 fn a_ball_on_a_ball_and_in_a_cavity() {
     let (h, part) = (0.3, 4.0);
     let down = [0.0, 0.0, -1.0];
-    let point = |dist: f64| Pose::along([0.0, 0.0, -dist - 1.0], [0.0, 0.0, 1.0]);
+    let point = |dist: f64| Pose::from_axis([0.0, 0.0, -dist - 1.0], [0.0, 0.0, 1.0]);
     let outside = Cloud::cap(1000, part, 0.4, 1.0);
     compare(
         outside.query(&UnitSphere, point(1.0 + part - h)),
@@ -151,7 +151,7 @@ fn a_shank_in_a_bore() {
         ([bore * cos, bore * sin, 2.5 + t], [-cos, -sin, 0.0], 1.2 * bore)
     });
     let tool = fig_7_3_exact();
-    let query = cloud.query(&tool, Pose::along([offset, 0.0, 0.0], [0.0, 0.0, 1.0]));
+    let query = cloud.query(&tool, Pose::from_axis([offset, 0.0, 0.0], [0.0, 0.0, 1.0]));
     compare(query, cylinder_in_bore(1.0, bore, offset), [1.0, 0.0, 0.0], 1e-5);
 }
 
@@ -159,7 +159,7 @@ fn a_shank_in_a_bore() {
 #[test]
 fn units_scale() {
     let cloud = Cloud::plane(200, 1.0);
-    let pose = Pose::along([0.1, 0.2, -0.1], [0.1, 0.0, 1.0]);
+    let pose = Pose::from_axis([0.1, 0.2, -0.1], [0.1, 0.0, 1.0]);
     let one = cloud.query(&UnitSphere, pose).answer();
     let mm = |v: [f64; 3]| v.map(|c| 25.4 * c);
     let points: Vec<_> = cloud.points.iter().map(|p| mm(*p)).collect();
@@ -181,21 +181,17 @@ fn units_scale() {
 /// unit.
 #[test]
 fn the_gradient_law_is_conservative() {
-    let mut draw = Rng::new(8);
+    let mut rng = Rng::new(8);
     let mut cloud = Cloud::default();
     for _ in 0..3000 {
-        cloud.points.push([
-            draw.between(-5.0, 5.0),
-            draw.between(-5.0, 5.0),
-            draw.between(2.0, 18.0),
-        ]);
+        cloud.points.push([rng.between(-5.0, 5.0), rng.between(-5.0, 5.0), rng.between(2.0, 18.0)]);
         cloud.normals.push([0.0, 0.0, 1.0]);
-        cloud.weights.push(draw.between(0.0, 1.0));
+        cloud.weights.push(rng.between(0.0, 1.0));
     }
     let tool = Fig73::default();
     for (is_depth, scale) in [(false, 1.0), (false, 0.5), (true, 0.5)] {
         let at = |dx: f64| {
-            let mut query = cloud.query(&tool, Pose::along([dx, 0.1, -0.3], [0.2, 0.1, 1.0]));
+            let mut query = cloud.query(&tool, Pose::from_axis([dx, 0.1, -0.3], [0.2, 0.1, 1.0]));
             query.scale = scale;
             query.magnitude_is_depth = is_depth;
             query.law = Law::Gradient;
@@ -211,13 +207,13 @@ fn the_gradient_law_is_conservative() {
 #[test]
 fn the_facing_law_ignores_the_far_side() {
     let mut cloud = Cloud::plane(100, 1.0);
-    let top = cloud.query(&UnitSphere, Pose::along([0.0, 0.0, -0.2], [0.0, 0.0, 1.0])).answer();
+    let top = cloud.query(&UnitSphere, Pose::from_axis([0.0, 0.0, -0.2], [0.0, 0.0, 1.0])).answer();
     // A second skin just below, facing down: the far side of a sheet.
     let below: Vec<_> = cloud.points.iter().map(|p| [p[0], p[1], -0.01]).collect();
     cloud.points.extend(below);
     cloud.normals.extend(vec![[0.0, 0.0, -1.0]; 10_000]);
     cloud.weights.extend(cloud.weights.clone());
-    let mut query = cloud.query(&UnitSphere, Pose::along([0.0, 0.0, -0.2], [0.0, 0.0, 1.0]));
+    let mut query = cloud.query(&UnitSphere, Pose::from_axis([0.0, 0.0, -0.2], [0.0, 0.0, 1.0]));
     query.law = Law::Facing;
     let facing = query.answer();
     assert_eq!(facing.force, top.force);

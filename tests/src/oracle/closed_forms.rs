@@ -91,26 +91,26 @@ pub fn cylinder_in_bore(r: f64, bore: f64, offset: f64) -> Contact {
     if offset + r <= bore {
         return Contact::NONE;
     }
-    let reach = bore_half_angle(r, bore, offset);
+    let half_angle = bore_half_angle(r, bore, offset);
     let gap = bore - offset;
     let kappa = 4.0 * bore * offset / (gap * gap);
-    let integral = 2.0 * bore * (r * reach - 2.0 * gap * elliptic_e(reach / 2.0, -kappa));
+    let integral = 2.0 * bore * (r * half_angle - 2.0 * gap * elliptic_e(half_angle / 2.0, -kappa));
     // Over half the contact: `s` is the distance from the tool's axis to the point at angle `phi` of the bore.
-    let over = |f: &dyn Fn(f64, f64, f64) -> f64| {
+    let integrate = |f: &dyn Fn(f64, f64, f64) -> f64| {
         2.0 * bore
-            * quadrature(0.0, reach, |phi| {
+            * quadrature(0.0, half_angle, |phi| {
                 let half = (phi / 2.0).sin();
                 let s = (gap * gap + 4.0 * bore * offset * half * half).sqrt();
                 f(phi, s, r - s)
             })
     };
-    let along_u = over(&|phi, s, m| m * (bore * phi.cos() - offset) / s);
-    let along_n = over(&|phi, _, m| -m * phi.cos());
+    let along_u = integrate(&|phi, s, m| m * (bore * phi.cos() - offset) / s);
+    let along_n = integrate(&|phi, _, m| -m * phi.cos());
     Contact {
         integral,
         force: along_n - along_u,
         gradient_force: -along_u,
-        energy: over(&|_, _, m| m * m / 2.0),
+        energy: integrate(&|_, _, m| m * m / 2.0),
     }
 }
 

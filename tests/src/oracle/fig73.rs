@@ -3,7 +3,7 @@
 //! The thesis measures z from the back of the housing, with the tip at 20. The magnitudes of IV, VI and VII are not
 //! distances. The splits are where the thesis's magnitudes meet without a jump.
 
-use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, straight, unit_or_z};
+use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, sample_line, unit_or_z};
 
 /// The thesis's names of the regions, in its order.
 const REGIONS: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
@@ -75,7 +75,7 @@ impl Oracle for Fig73 {
         REGIONS.to_vec()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
+    fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let m = Meridian::of(p);
         let (d, z) = (m.dz[0], 20.0 - m.dz[1]);
         let owner = owner(d, z)?;
@@ -100,9 +100,9 @@ impl Oracle for Fig73 {
         self.exact.signed_distance(p)
     }
 
-    fn border(&self, p: [f64; 3]) -> f64 {
+    fn border_distance(&self, p: [f64; 3]) -> f64 {
         let surface = self.signed_distance(p).abs();
-        if self.sense(p).is_none() {
+        if self.evaluate(p).is_none() {
             return surface;
         }
         let Meridian { dz: [d, z], .. } = Meridian::of(p);
@@ -115,7 +115,7 @@ impl Oracle for Fig73 {
         level.chain(sloped).fold(surface, f64::min)
     }
 
-    fn singular(&self, p: [f64; 3]) -> f64 {
+    fn singularity_distance(&self, p: [f64; 3]) -> f64 {
         let [d, z] = Meridian::of(p).dz;
         match owner(d, 20.0 - z) {
             None | Some(0 | 2) => f64::INFINITY,
@@ -164,7 +164,7 @@ impl Oracle for Fig73 {
             ([1.0, 19.0], [0.0, 19.0]), // VIII | IX
         ];
         let mut all: Vec<_> = self.exact.curves().into_iter().take(7).collect(); // the seven pieces of the surface
-        all.extend(thesis.map(|(a, b)| straight([a[0], 20.0 - a[1]], [b[0], 20.0 - b[1]])));
+        all.extend(thesis.map(|(a, b)| sample_line([a[0], 20.0 - a[1]], [b[0], 20.0 - b[1]])));
         all
     }
 

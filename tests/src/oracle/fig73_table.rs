@@ -1,6 +1,6 @@
 //! The oracles of fig. 7.3 against the table of their exact regions (`fig73-exact.md`), sections 1 to 4.
 
-use super::draw::Rng;
+use super::rng::Rng;
 use super::{Fig73, Meridian, Oracle, fig_7_3_exact};
 
 const S2: f64 = std::f64::consts::SQRT_2;
@@ -25,7 +25,7 @@ fn integrate(o: &dyn Oracle, n: u32) -> [[f64; 3]; 9] {
     for i in 0..5 * n {
         for k in 0..20 * (n + 1) {
             let p = [(f64::from(i) + 0.5) * h_d, 0.0, (f64::from(k) + 0.5) * h_z];
-            if let Some(s) = o.sense(p) {
+            if let Some(s) = o.evaluate(p) {
                 let row: &mut [f64; 3] = &mut sums[s.owner];
                 row[0] += h_d * h_z;
                 row[1] += h_d * h_z * s.depth;
@@ -116,16 +116,16 @@ fn by_splits(d: f64, z: f64) -> (usize, f64, [f64; 2]) {
 #[test]
 fn the_splits_find_the_nearest_feature() {
     let tool = fig_7_3_exact();
-    let mut draw = Rng::new(73);
+    let mut rng = Rng::new(73);
     let (mut inside, mut skipped) = (0, 0);
     while inside < 100_000 {
-        let (d, z) = (draw.between(0.0, 5.0), draw.between(0.0, 20.0));
+        let (d, z) = (rng.between(0.0, 5.0), rng.between(0.0, 20.0));
         let p = at(d, z);
-        let Some(s) = tool.sense(p) else { continue };
+        let Some(s) = tool.evaluate(p) else { continue };
         inside += 1;
         let (owner, m, u) = by_splits(d, z);
         assert!((s.depth - m).abs() < 1e-14, "{d} {z} {s:?}");
-        if tool.border(p) < 1e-9 {
+        if tool.border_distance(p) < 1e-9 {
             skipped += 1;
             continue;
         }
@@ -141,7 +141,7 @@ fn the_axis_has_the_owners_of_the_table() {
     let ends = [0.0, 5.0, 7.0, 11.0, 16.0 - 3.0 * S2, 14.0, 15.0, 19.0, 20.0];
     for (w, owner) in ends.windows(2).zip([0, 1, 3, 4, 5, 6, 7, 8]) {
         for t in [0.01, 0.5, 0.99] {
-            let s = tool.sense(at(0.0, w[0] + t * (w[1] - w[0]))).expect("inside");
+            let s = tool.evaluate(at(0.0, w[0] + t * (w[1] - w[0]))).expect("inside");
             assert_eq!(table_row(s.owner), owner);
         }
     }
@@ -151,12 +151,12 @@ fn the_axis_has_the_owners_of_the_table() {
 #[test]
 fn the_thesis_overestimates_by_at_most_root_five() {
     let (thesis, exact) = (Fig73::default(), fig_7_3_exact());
-    let mut draw = Rng::new(3);
+    let mut rng = Rng::new(3);
     let (mut most, mut ratio) = (0.0f64, 0.0f64);
     for _ in 0..400_000 {
-        let p = at(draw.between(0.0, 5.0), draw.between(0.0, 20.0));
-        let (Some(t), Some(e)) = (thesis.sense(p), exact.sense(p)) else {
-            assert!(thesis.sense(p).is_none() && exact.sense(p).is_none(), "{p:?}");
+        let p = at(rng.between(0.0, 5.0), rng.between(0.0, 20.0));
+        let (Some(t), Some(e)) = (thesis.evaluate(p), exact.evaluate(p)) else {
+            assert!(thesis.evaluate(p).is_none() && exact.evaluate(p).is_none(), "{p:?}");
             continue;
         };
         assert!(
@@ -167,7 +167,7 @@ fn the_thesis_overestimates_by_at_most_root_five() {
         ratio = ratio.max(t.magnitude / e.depth);
     }
     // On the axis at 14 the thesis has 3, and the corner (1, 15) is √2 away; no point is worse.
-    let axis = |o: &dyn Oracle| o.sense(at(0.0, 14.0)).map_or(0.0, |s| s.magnitude);
+    let axis = |o: &dyn Oracle| o.evaluate(at(0.0, 14.0)).map_or(0.0, |s| s.magnitude);
     assert!((axis(&thesis) - 3.0).abs() < 1e-15 && (axis(&exact) - S2).abs() < 1e-15);
     assert!(most > 1.5 && most <= 3.0 - S2);
     assert!(ratio > 2.2);
@@ -182,7 +182,8 @@ fn the_thesis_magnitudes_meet_without_a_jump() {
     let tool = Fig73::default();
     for curve in tool.curves().iter().skip(7) {
         for c in curve {
-            let m = |dd: f64, dz: f64| tool.sense([c[0] + dd, 0.0, c[1] + dz]).map(|s| s.magnitude);
+            let m =
+                |dd: f64, dz: f64| tool.evaluate([c[0] + dd, 0.0, c[1] + dz]).map(|s| s.magnitude);
             let neighbourhood = [m(1e-9, 0.0), m(-1e-9, 0.0), m(0.0, 1e-9), m(0.0, -1e-9)];
             let found = neighbourhood.into_iter().flatten();
             let (low, high) = found.fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m), h.max(m)));
@@ -194,7 +195,7 @@ fn the_thesis_magnitudes_meet_without_a_jump() {
 #[test]
 fn niceness_of_equation_7_3() {
     for o in [&Fig73::default() as &dyn Oracle, &fig_7_3_exact()] {
-        let nice = |d, z| o.sense(at(d, z)).map(|s| s.niceness);
+        let nice = |d, z| o.evaluate(at(d, z)).map(|s| s.niceness);
         assert_eq!(nice(1.0, 19.0), Some(2.0));
         assert_eq!(nice(0.0, 20.0), Some(1.0));
         assert_eq!(nice(0.5, 17.0), Some(0.5));
@@ -205,7 +206,7 @@ fn niceness_of_equation_7_3() {
 #[test]
 fn directions_of_equation_7_2() {
     let tool = Fig73::default();
-    let u = |d, z| tool.sense(at(d, z)).expect("inside").direction;
+    let u = |d, z| tool.evaluate(at(d, z)).expect("inside").direction;
     let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-15);
     assert!(near(u(1.0, 10.0), [1.0 / S2, 0.0, -1.0 / S2])); // IV
     assert!(near(u(1.5, 14.0), [1.0 / S2, 0.0, -1.0 / S2])); // VI
@@ -247,11 +248,11 @@ fn outside(d: f64, z: f64) -> f64 {
 #[test]
 fn the_outside_of_the_table() {
     let tool = fig_7_3_exact();
-    let mut draw = Rng::new(4);
+    let mut rng = Rng::new(4);
     for _ in 0..100_000 {
-        let (d, z) = (draw.between(0.0, 40.0), draw.between(-20.0, 60.0));
+        let (d, z) = (rng.between(0.0, 40.0), rng.between(-20.0, 60.0));
         let p = at(d, z);
-        if tool.sense(p).is_none() {
+        if tool.evaluate(p).is_none() {
             let got = tool.signed_distance(p);
             assert!((got - outside(d, z)).abs() < 1e-13, "{:?} {got}", Meridian::of(p));
         }

@@ -17,7 +17,6 @@ pub mod brute;
 #[cfg(test)]
 mod brute_contacts;
 pub mod closed_forms;
-pub mod draw;
 pub mod fig73;
 #[cfg(test)]
 mod fig73_table;
@@ -27,6 +26,7 @@ mod piece;
 pub mod profile;
 pub mod reference;
 pub mod restated;
+pub mod rng;
 pub mod solids;
 
 pub use bodies::{Block, LBracket};
@@ -59,7 +59,7 @@ pub trait Oracle {
     fn regions(&self) -> Vec<&str>;
 
     /// Evaluates the tool at `p`; `None` outside. The surface belongs to the solid.
-    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation>;
+    fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation>;
 
     /// Returns the gradient of the magnitude inside, in the tool's frame, per unit of the tool's file. For a
     /// magnitude that is the distance this is minus the direction; on the axis it follows the same convention.
@@ -70,12 +70,12 @@ pub trait Oracle {
 
     /// Returns a lower bound of the distance in the half plane from `p` to the surface and to every splitting
     /// curve. Where it exceeds rounding, the side and the owner are beyond doubt. It is 0 on the curves themselves.
-    fn border(&self, p: [f64; 3]) -> f64;
+    fn border_distance(&self, p: [f64; 3]) -> f64;
 
     /// Returns the distance from `p` to the nearest point at which its owner's direction does not exist: the axis
     /// where the direction has a radial part, the centre of an arc, the owning corner. Infinite where there is
     /// none, and outside.
-    fn singular(&self, p: [f64; 3]) -> f64;
+    fn singularity_distance(&self, p: [f64; 3]) -> f64;
 
     /// Returns whether the magnitude is the depth itself, so that it is a length and comes out in the part's unit.
     /// A magnitude that the file writes is a number in the file's unit.
@@ -84,7 +84,7 @@ pub trait Oracle {
     }
 
     /// Returns whether the solid is symmetric under all rotations about z.
-    fn revolved(&self) -> bool {
+    fn is_revolved(&self) -> bool {
         true
     }
 
@@ -141,8 +141,8 @@ pub fn thesis() -> Vec<Box<dyn Oracle>> {
 
 /// Moves a point by `step`: in space, or for a solid of revolution within the half plane, after which the point is
 /// turned about z by `angle` (rad).
-pub fn moved(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64) -> [f64; 3] {
-    if !o.revolved() {
+pub fn displaced(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64) -> [f64; 3] {
+    if !o.is_revolved() {
         return [x + step[0], y + step[1], z + step[2]];
     }
     let (sin, cos) = angle.sin_cos();
@@ -184,43 +184,43 @@ pub fn unit_or_z(v: [f64; 2]) -> [f64; 2] {
 }
 
 /// Returns points evenly spaced from `a` to `b`, both included.
-pub fn straight(a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
-    sampled(|t| {
+pub fn sample_line(a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
+    sample_curve(|t| {
         // Exact at both ends, and in z along level lines.
         [a[0] * (1.0 - t) + b[0] * t, if a[1] == b[1] { a[1] } else { a[1] * (1.0 - t) + b[1] * t }]
     })
 }
 
 /// Returns 65 points of a curve given on `0..=1`.
-pub fn sampled(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+pub fn sample_curve(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 64;
     (0..=STEPS).map(|i| at(f64::from(i) / f64::from(STEPS))).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::draw::Rng;
+    use super::rng::Rng;
     use super::*;
 
     /// Returns a point of space over `[d, z]`, at a random angle.
-    fn at_random_azimuth([d, z]: [f64; 2], draw: &mut Rng) -> [f64; 3] {
-        let a = draw.between(0.0, std::f64::consts::TAU);
+    fn at_random_azimuth([d, z]: [f64; 2], rng: &mut Rng) -> [f64; 3] {
+        let a = rng.between(0.0, std::f64::consts::TAU);
         [d * a.cos(), d * a.sin(), z]
     }
 
-    fn random_point(o: &dyn Oracle, draw: &mut Rng) -> [f64; 3] {
+    fn random_point(o: &dyn Oracle, rng: &mut Rng) -> [f64; 3] {
         let [d, z] = o.extent();
-        at_random_azimuth([draw.between(0.0, 1.2 * d), draw.between(-0.2 * d, z + 0.2 * d)], draw)
+        at_random_azimuth([rng.between(0.0, 1.2 * d), rng.between(-0.2 * d, z + 0.2 * d)], rng)
     }
 
     #[test]
     fn evaluations_are_consistent() {
         for o in all() {
-            let mut draw = Rng::new(1);
+            let mut rng = Rng::new(1);
             for _ in 0..20_000 {
-                let p = random_point(&*o, &mut draw);
+                let p = random_point(&*o, &mut rng);
                 let sd = o.signed_distance(p);
-                let Some(s) = o.sense(p) else {
+                let Some(s) = o.evaluate(p) else {
                     assert!(sd > -1e-12, "{} {p:?} {sd}", o.name());
                     continue;
                 };
@@ -240,22 +240,22 @@ mod tests {
     #[test]
     fn borders_are_lower_bounds() {
         for o in all() {
-            let mut draw = Rng::new(2);
+            let mut rng = Rng::new(2);
             for _ in 0..20_000 {
-                let p = random_point(&*o, &mut draw);
-                let reach = o.border(p) * 0.999_999;
-                let owner = o.sense(p).map(|s| s.owner);
+                let p = random_point(&*o, &mut rng);
+                let reach = o.border_distance(p) * 0.999_999;
+                let owner = o.evaluate(p).map(|s| s.owner);
                 let m = Meridian::of(p);
                 for k in 0..8 {
                     let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
                     let d = m.dz[0] + reach * cos;
-                    let q = if o.revolved() {
+                    let q = if o.is_revolved() {
                         [d * m.radial[0], d * m.radial[1], p[2] + reach * sin]
                     } else {
-                        let direction = draw.direction();
+                        let direction = rng.direction();
                         [0, 1, 2].map(|axis| p[axis] + reach * direction[axis])
                     };
-                    let other_owner = o.sense(q).map(|s| s.owner);
+                    let other_owner = o.evaluate(q).map(|s| s.owner);
                     assert_eq!(owner, other_owner, "{} {p:?} {q:?}", o.name());
                 }
             }
@@ -265,19 +265,20 @@ mod tests {
     /// On each curve the border is 0 to rounding, and some owner or side changes close by.
     #[test]
     fn curves_and_corners_lie_on_borders() {
-        let mut draw = Rng::new(5);
+        let mut rng = Rng::new(5);
         for o in all() {
             for curve in o.curve_points() {
                 let inner = curve.iter().skip(1).take(curve.len().saturating_sub(2));
                 for &p in inner {
                     let rounding = 1e-14 * o.extent()[1].max(1.0);
-                    assert!(o.border(p) < rounding, "{} {p:?}", o.name());
+                    assert!(o.border_distance(p) < rounding, "{} {p:?}", o.name());
                     let mut owners = (0..32).map(|k| {
                         let (sin, cos) =
                             (0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
                         let direction =
-                            if o.revolved() { [cos, 0.0, sin] } else { draw.direction() };
-                        o.sense(moved(&*o, p, direction.map(|c| 1e-6 * c), 0.0)).map(|s| s.owner)
+                            if o.is_revolved() { [cos, 0.0, sin] } else { rng.direction() };
+                        o.evaluate(displaced(&*o, p, direction.map(|c| 1e-6 * c), 0.0))
+                            .map(|s| s.owner)
                     });
                     let first = owners.next().expect("many of them");
                     assert!(owners.any(|other| other != first), "{} {p:?}", o.name());
@@ -289,15 +290,15 @@ mod tests {
     #[test]
     fn no_owner_is_lost_between_the_curves() {
         // Every change of owner that random short steps find has a listed curve nearby.
-        for o in thesis().into_iter().filter(|o| o.revolved()) {
+        for o in thesis().into_iter().filter(|o| o.is_revolved()) {
             let [width, height] = o.extent();
             let all: Vec<_> = o.curves().into_iter().flatten().collect();
             let step = 0.05;
-            let mut draw = Rng::new(3);
+            let mut rng = Rng::new(3);
             for _ in 0..2_000 {
-                let a = [draw.between(0.0, width), draw.between(0.0, height)];
-                let b = [a[0] + step, a[1] + draw.between(-step, step)];
-                let owner = |q: [f64; 2]| o.sense([q[0], 0.0, q[1]]).map(|s| s.owner);
+                let a = [rng.between(0.0, width), rng.between(0.0, height)];
+                let b = [a[0] + step, a[1] + rng.between(-step, step)];
+                let owner = |q: [f64; 2]| o.evaluate([q[0], 0.0, q[1]]).map(|s| s.owner);
                 if owner(a) == owner(b) {
                     continue;
                 }
@@ -314,22 +315,22 @@ mod tests {
     #[test]
     fn the_gradient_is_the_slope_of_the_magnitude() {
         for o in all() {
-            let mut draw = Rng::new(4);
+            let mut rng = Rng::new(4);
             for _ in 0..20_000 {
-                let p = random_point(&*o, &mut draw);
+                let p = random_point(&*o, &mut rng);
                 let h = 1e-5;
-                if o.border(p) < 3.0 * h || o.singular(p) < 1e-2 {
+                if o.border_distance(p) < 3.0 * h || o.singularity_distance(p) < 1e-2 {
                     continue;
                 }
                 let Some(g) = o.gradient(p) else {
-                    assert!(o.sense(p).is_none());
+                    assert!(o.evaluate(p).is_none());
                     continue;
                 };
                 for k in 0..3 {
                     let m = |s: f64| {
                         let mut q = p;
                         q[k] += s;
-                        o.sense(q).expect("inside its border").magnitude
+                        o.evaluate(q).expect("inside its border").magnitude
                     };
                     let slope = (m(h) - m(-h)) / (2.0 * h);
                     assert!((slope - g[k]).abs() < 1e-6, "{} {p:?} {k}", o.name());
@@ -340,7 +341,7 @@ mod tests {
 
     #[test]
     fn the_axis_has_evaluations() {
-        for o in all().into_iter().filter(|o| o.revolved()) {
+        for o in all().into_iter().filter(|o| o.is_revolved()) {
             // Some are hollow below.
             let on_axis = o.corners().into_iter().filter(|c| c[0] == 0.0);
             let low = on_axis.map(|c| c[1]).fold(f64::INFINITY, f64::min);
@@ -352,7 +353,7 @@ mod tests {
                         continue;
                     }
                     for p in [[tiny, 0.0, z], [tiny, tiny, z], [0.0, -tiny, z]] {
-                        let s = o.sense(p).expect("the axis is inside");
+                        let s = o.evaluate(p).expect("the axis is inside");
                         let norm = s.direction.iter().map(|c| c * c).sum::<f64>().sqrt();
                         assert!(
                             (norm - 1.0).abs() < 4.0 * f64::EPSILON,
@@ -360,7 +361,7 @@ mod tests {
                             o.name()
                         );
                     }
-                    let on = o.sense([0.0, 0.0, z]).expect("the axis is inside");
+                    let on = o.evaluate([0.0, 0.0, z]).expect("the axis is inside");
                     assert!(on.direction[0] >= 0.0 && on.direction[1] == 0.0);
                 }
             }

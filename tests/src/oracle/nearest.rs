@@ -1,9 +1,9 @@
 //! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides.
 
-use super::draw::Rng;
 use super::profile::{Feature, Profile};
 use super::restated::{self, Niceness, Restated};
-use super::{Meridian, Oracle, OracleEvaluation, sampled, straight};
+use super::rng::Rng;
+use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line};
 
 /// Points along a curve.
 type Points = Vec<[f64; 2]>;
@@ -32,9 +32,12 @@ impl Nearest {
     /// Creates the oracle of a restated tool.
     pub fn new(tool: &Restated) -> Self {
         let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
-        let drafts: Vec<_> =
-            tool.ways.iter().map(|way| (point(&way.to), way.centre.as_ref().map(point))).collect();
-        let profile = Profile::new(point(&tool.start), &drafts);
+        let segments: Vec<_> = tool
+            .segments
+            .iter()
+            .map(|segment| (point(&segment.to), segment.centre.as_ref().map(point)))
+            .collect();
+        let profile = Profile::new(point(&tool.start), &segments);
         let surface = profile.surface();
         let largest =
             |axis: usize| surface.iter().flatten().fold(0.0f64, |largest, p| largest.max(p[axis]));
@@ -73,26 +76,26 @@ impl Nearest {
     }
 
     /// Returns the distance to the pieces of a surface, from either side.
-    pub fn away(&self, surface: &str, p: [f64; 3]) -> f64 {
+    pub fn distance_to_surface(&self, surface: &str, p: [f64; 3]) -> f64 {
         let at = Meridian::of(p).dz;
         let owned = self.profile.owners().iter().zip(&self.regions);
         let pieces = owned.filter_map(|(feature, region)| match feature {
             Feature::Piece(piece) if region.surface == surface => Some(*piece),
             _ => None,
         });
-        pieces.map(|piece| self.profile.away(piece, at)).fold(f64::INFINITY, f64::min)
+        pieces.map(|piece| self.profile.distance_to_piece(piece, at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns points at which the nearest feature changes, found by bisection; one list per pair of owners.
-    fn found(&self) -> Vec<Points> {
-        const STRETCHES: usize = 4_000;
-        let owner = |q: [f64; 2]| self.sense([q[0], 0.0, q[1]]).map(|s| s.owner);
+    fn sample_splits(&self) -> Vec<Points> {
+        const BISECTED_SEGMENTS: usize = 4_000;
+        let owner = |q: [f64; 2]| self.evaluate([q[0], 0.0, q[1]]).map(|s| s.owner);
         let [radius, height] = self.extent;
-        let mut draw = Rng::new(27);
+        let mut rng = Rng::new(27);
         let mut all = std::collections::BTreeMap::<_, Points>::new();
-        for _ in 0..STRETCHES {
-            let a = [draw.between(0.0, radius), draw.between(0.0, height)];
-            let mut step = || draw.between(-0.3 * radius, 0.3 * radius);
+        for _ in 0..BISECTED_SEGMENTS {
+            let a = [rng.between(0.0, radius), rng.between(0.0, height)];
+            let mut step = || rng.between(-0.3 * radius, 0.3 * radius);
             let b = [(a[0] + step()).abs(), a[1] + step()];
             let (Some(first), Some(last)) = (owner(a), owner(b)) else { continue };
             if first == last {
@@ -122,17 +125,18 @@ fn regions(tool: &Restated, profile: &Profile) -> Vec<Region> {
     let mut fans: Vec<String> = Vec::new();
     let of = |feature: &Feature| match *feature {
         Feature::Piece(piece) => {
-            let surface = tool.ways[piece].surface;
-            let mine =
-                |ways: &[restated::Way]| ways.iter().filter(|w| w.surface == surface).count();
-            let name = match mine(&tool.ways) {
+            let surface = tool.segments[piece].surface;
+            let count_on_surface = |segments: &[restated::Segment]| {
+                segments.iter().filter(|segment| segment.surface == surface).count()
+            };
+            let name = match count_on_surface(&tool.segments) {
                 1 => surface.to_owned(),
-                _ => format!("{surface}.{}", mine(&tool.ways[..=piece])),
+                _ => format!("{surface}.{}", count_on_surface(&tool.segments[..=piece])),
             };
             Region { name, surface, cutting: cuts(surface) }
         }
         Feature::Corner(piece) => {
-            let [a, b] = [piece, piece + 1].map(|piece| tool.ways[piece].surface);
+            let [a, b] = [piece, piece + 1].map(|piece| tool.segments[piece].surface);
             let surface = if cuts(a) && !cuts(b) { b } else { a };
             let pair = format!("{a}/{b}");
             fans.push(pair.clone());
@@ -152,38 +156,38 @@ impl Oracle for Nearest {
         self.regions.iter().map(|region| region.name.as_str()).collect()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
+    fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let m = Meridian::of(p);
         let [d, z] = m.dz;
         if d > self.extent[0] || z < 0.0 || z > self.extent[1] {
             return None; // most points of most clouds
         }
-        let (near, toward) = self.profile.sense(m.dz)?;
-        let region = &self.regions[near.owner];
-        let nice = || (self.niceness)(region.surface, near.distance, m.dz).max(0.0);
+        let (nearest, outward) = self.profile.evaluate(m.dz)?;
+        let region = &self.regions[nearest.owner];
+        let niceness = || (self.niceness)(region.surface, nearest.distance, m.dz).max(0.0);
         Some(OracleEvaluation {
-            owner: near.owner,
-            depth: near.distance,
-            magnitude: near.distance,
-            direction: m.lift(toward),
-            niceness: if region.cutting { nice() } else { 0.0 },
+            owner: nearest.owner,
+            depth: nearest.distance,
+            magnitude: nearest.distance,
+            direction: m.lift(outward),
+            niceness: if region.cutting { niceness() } else { 0.0 },
         })
     }
 
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-        Some(self.sense(p)?.direction.map(|c| -c))
+        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {
         self.profile.signed_distance(Meridian::of(p).dz)
     }
 
-    fn border(&self, p: [f64; 3]) -> f64 {
-        self.profile.border(Meridian::of(p).dz)
+    fn border_distance(&self, p: [f64; 3]) -> f64 {
+        self.profile.border_distance(Meridian::of(p).dz)
     }
 
-    fn singular(&self, p: [f64; 3]) -> f64 {
-        self.profile.singular(Meridian::of(p).dz)
+    fn singularity_distance(&self, p: [f64; 3]) -> f64 {
+        self.profile.singularity_distance(Meridian::of(p).dz)
     }
 
     fn corners(&self) -> Vec<[f64; 2]> {
@@ -196,7 +200,7 @@ impl Oracle for Nearest {
 
     fn curves(&self) -> Vec<Points> {
         let mut all = self.profile.surface();
-        all.extend(self.splits.clone().unwrap_or_else(|| self.found()));
+        all.extend(self.splits.clone().unwrap_or_else(|| self.sample_splits()));
         all
     }
 
@@ -209,18 +213,18 @@ impl Oracle for Nearest {
 pub fn half_sphere_cylinder() -> Nearest {
     Nearest::of("HalfSphereCylinder").with(vec![
         // ball | step: 2 - |p - c| = 2 - z, a parabola.
-        sampled(|t| {
+        sample_curve(|t| {
             let d = 2.0 - t;
             [d, 1.0 + d * d / 4.0]
         }),
         // ball | corner: |p - c| + |p - q| = 2, an ellipse with foci (0, 2) and (1, 2).
-        sampled(|t| {
+        sample_curve(|t| {
             let d = 1.0 - t;
             [d, 2.0 - (0.75 * (1.0 - (d - 0.5) * (d - 0.5))).sqrt()]
         }),
-        straight([1.0, 1.25], [1.0, 2.0]), // step | corner
-        straight([1.0, 2.0], [0.0, 2.0]),  // corner | stem
-        straight([1.0, 8.0], [0.0, 7.0]),  // stem | end
+        sample_line([1.0, 1.25], [1.0, 2.0]), // step | corner
+        sample_line([1.0, 2.0], [0.0, 2.0]),  // corner | stem
+        sample_line([1.0, 8.0], [0.0, 7.0]),  // stem | end
     ])
 }
 
@@ -229,28 +233,28 @@ pub fn half_sphere_cylinder() -> Nearest {
 pub fn fig_7_3_exact() -> Nearest {
     let s2 = std::f64::consts::SQRT_2;
     Nearest::of("Fig73Exact").with(vec![
-        straight([5.0, 20.0], [0.0, 15.0]), // I | II
-        straight([5.0, 9.0], [3.0, 11.0]),  // II | III
+        sample_line([5.0, 20.0], [0.0, 15.0]), // I | II
+        sample_line([5.0, 9.0], [3.0, 11.0]),  // II | III
         // II | IV, the parabola with focus (3, 9) and directrix d = 5.
-        sampled(|t| {
+        sample_curve(|t| {
             let up = 2.0 + 2.0 * t;
             [4.0 - up * up / 4.0, 9.0 + up]
         }),
-        straight([3.0, 11.0], [3.0, 9.0]),           // III | IV
-        straight([3.0, 9.0], [0.0, 9.0]),            // IV | V
-        straight([3.0, 7.0], [0.0, 4.0 + 3.0 * s2]), // V | VI
-        straight([1.0, 5.0], [0.0, 6.0]),            // VI | VII
-        straight([1.0, 5.0], [0.0, 5.0]),            // VII | VIII
-        straight([1.0, 1.0], [0.0, 1.0]),            // VIII | IX
+        sample_line([3.0, 11.0], [3.0, 9.0]), // III | IV
+        sample_line([3.0, 9.0], [0.0, 9.0]),  // IV | V
+        sample_line([3.0, 7.0], [0.0, 4.0 + 3.0 * s2]), // V | VI
+        sample_line([1.0, 5.0], [0.0, 6.0]),  // VI | VII
+        sample_line([1.0, 5.0], [0.0, 5.0]),  // VII | VIII
+        sample_line([1.0, 1.0], [0.0, 1.0]),  // VIII | IX
     ])
 }
 
 /// Returns a plain 2 mm ball end mill, 40 long, its flute up to 5: ball and flute cut, with niceness `1 - depth`.
 pub fn d2_ball() -> Nearest {
     Nearest::of("D2Ball").with(vec![
-        straight([1.0, 1.0], [0.0, 1.0]),   // ball | flute
-        straight([1.0, 5.0], [0.0, 5.0]),   // flute | shank
-        straight([1.0, 40.0], [0.0, 39.0]), // shank | end
+        sample_line([1.0, 1.0], [0.0, 1.0]),   // ball | flute
+        sample_line([1.0, 5.0], [0.0, 5.0]),   // flute | shank
+        sample_line([1.0, 40.0], [0.0, 39.0]), // shank | end
     ])
 }
 
@@ -261,7 +265,7 @@ mod tests {
     #[test]
     fn borders_go_to_the_first_listed() {
         let ball = d2_ball();
-        let region = |d: f64, z: f64| ball.sense([d, 0.0, z]).map(|s| ball.regions()[s.owner]);
+        let region = |d: f64, z: f64| ball.evaluate([d, 0.0, z]).map(|s| ball.regions()[s.owner]);
         for d in [0.0, 0.3, 1.0] {
             assert_eq!(region(d, 1.0), Some("ball"));
             assert_eq!(region(d, 5.0), Some("flute"));
@@ -276,7 +280,7 @@ mod tests {
     fn the_half_sphere_is_mostly_its_step_and_corner() {
         let tool = half_sphere_cylinder();
         let at = |d: f64, z: f64| {
-            let s = tool.sense([0.0, d, z]).expect("inside");
+            let s = tool.evaluate([0.0, d, z]).expect("inside");
             (tool.regions()[s.owner], s)
         };
         let (region, s) = at(0.0, 2.0); // the arc's centre: the corner is nearer than the ball

@@ -4,17 +4,17 @@
 use super::restated::Restated;
 
 /// A point `[d, z]`.
-pub type Flat = [f64; 2];
+pub type MeridianPoint = [f64; 2];
 
 /// A segment of a profile: its ends, and its centre if it is an arc.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     /// Its lower end.
-    pub from: Flat,
+    pub from: MeridianPoint,
     /// Its upper end.
-    pub to: Flat,
+    pub to: MeridianPoint,
     /// The centre of an arc.
-    pub centre: Option<Flat>,
+    pub centre: Option<MeridianPoint>,
 }
 
 /// A profile from the tip up.
@@ -24,7 +24,7 @@ pub struct Outline {
     pub segments: Vec<Segment>,
 }
 
-fn length(v: Flat) -> f64 {
+fn length(v: MeridianPoint) -> f64 {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }
 
@@ -43,16 +43,16 @@ impl Outline {
         let double = |[d, z]: &[super::big::Big; 2]| [d.to_f64(), z.to_f64()];
         let mut from = double(&tool.start);
         let mut segments = Vec::new();
-        for way in &tool.ways {
-            let to = double(&way.to);
-            segments.push(Segment { from, to, centre: way.centre.as_ref().map(double) });
+        for segment in &tool.segments {
+            let to = double(&segment.to);
+            segments.push(Segment { from, to, centre: segment.centre.as_ref().map(double) });
             from = to;
         }
         segments.iter().all(Segment::rises).then_some(Outline { segments })
     }
 
     /// Returns the depth of a point; below 0 outside.
-    pub fn depth(&self, p: Flat) -> f64 {
+    pub fn depth(&self, p: MeridianPoint) -> f64 {
         let distance = self.segments.iter().map(|segment| segment.distance(p));
         let distance = distance.fold(f64::INFINITY, f64::min);
         let inside = self.segments.iter().any(|segment| segment.covers(p));
@@ -62,7 +62,7 @@ impl Outline {
 
 impl Segment {
     /// Returns whether the segment is an arc that bulges into the material.
-    pub fn is_hollow(&self) -> bool {
+    pub fn is_concave(&self) -> bool {
         let Segment { from, to, centre } = self;
         centre.is_some_and(|[d, z]| (from[0] - d) * (to[1] - z) < (from[1] - z) * (to[0] - d))
     }
@@ -74,9 +74,9 @@ impl Segment {
         from[1] <= to[1] && one_side
     }
 
-    fn distance(&self, p: Flat) -> f64 {
+    fn distance(&self, p: MeridianPoint) -> f64 {
         let Segment { from, to, centre } = self;
-        let offset = |q: &Flat| length([p[0] - q[0], p[1] - q[1]]);
+        let offset = |q: &MeridianPoint| length([p[0] - q[0], p[1] - q[1]]);
         let Some(centre) = centre else {
             let along = [to[0] - from[0], to[1] - from[1]];
             let square = along[0] * along[0] + along[1] * along[1];
@@ -84,8 +84,8 @@ impl Segment {
             let part = (part / square).clamp(0.0, 1.0);
             return offset(&[from[0] + part * along[0], from[1] + part * along[1]]);
         };
-        let arm = |q: Flat| [q[0] - centre[0], q[1] - centre[1]];
-        let cross = |a: Flat, b: Flat| a[0] * b[1] - a[1] * b[0];
+        let arm = |q: MeridianPoint| [q[0] - centre[0], q[1] - centre[1]];
+        let cross = |a: MeridianPoint, b: MeridianPoint| a[0] * b[1] - a[1] * b[0];
         let (a, b, q) = (arm(*from), arm(*to), arm(p));
         let turn = cross(a, b).signum();
         if turn * cross(a, q) >= 0.0 && turn * cross(q, b) >= 0.0 {
@@ -96,7 +96,7 @@ impl Segment {
     }
 
     /// Returns whether the segment is level with a point, and the point lies between it and the axis.
-    fn covers(&self, [d, z]: Flat) -> bool {
+    fn covers(&self, [d, z]: MeridianPoint) -> bool {
         let Segment { from, to, centre } = self;
         if z < from[1] || z > to[1] || from[1] == to[1] {
             return false;
@@ -107,6 +107,6 @@ impl Segment {
         let radius = length([from[0] - centre[0], from[1] - centre[1]]);
         let up = z - centre[1];
         let across = ((radius - up) * (radius + up)).max(0.0).sqrt();
-        d <= centre[0] + if self.is_hollow() { -across } else { across }
+        d <= centre[0] + if self.is_concave() { -across } else { across }
     }
 }

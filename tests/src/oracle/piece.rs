@@ -1,6 +1,6 @@
 //! One line or arc of a profile.
 
-use super::{sampled, straight, unit_or_z};
+use super::{sample_curve, sample_line, unit_or_z};
 
 /// A point or vector of the half plane.
 pub(super) type P2 = [f64; 2];
@@ -144,9 +144,9 @@ impl Piece {
     /// Returns points along the piece, its ends included.
     pub(super) fn samples(&self) -> Vec<P2> {
         let Shape::Arc { centre, .. } = self.shape else {
-            return straight(self.a, self.b);
+            return sample_line(self.a, self.b);
         };
-        let mut points = sampled(|t| self.turned(centre, t));
+        let mut points = sample_curve(|t| self.turned(centre, t));
         if let Some(last) = points.last_mut() {
             *last = self.b;
         }

@@ -23,13 +23,13 @@ pub enum Turn {
 
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
-    at: P2,
+    point: P2,
     turn: Turn,
 }
 
 /// The nearest feature of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near {
+pub struct NearestFeature {
     /// Index in the order of listing. For a convex vertex (outside only), that of the piece listed first of the two
     /// that meet there.
     pub owner: usize,
@@ -50,7 +50,7 @@ pub struct Profile {
 }
 
 /// The specification of a piece: its end, and its centre if it is an arc.
-pub type Draft = ([f64; 2], Option<[f64; 2]>);
+pub type SegmentSpec = ([f64; 2], Option<[f64; 2]>);
 
 /// A feature that may own points inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,31 +64,31 @@ pub enum Feature {
 impl Profile {
     /// Creates the profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each
     /// reflex corner between its pieces; the first wins a tie.
-    pub fn new(start: P2, drafts: &[Draft]) -> Self {
+    pub fn new(start: P2, segments: &[SegmentSpec]) -> Self {
         let mut at = start;
         let mut pieces: Vec<Piece> = Vec::new();
-        let mut vertices = vec![Vertex { at: start, turn: Turn::Axis }];
+        let mut vertices = vec![Vertex { point: start, turn: Turn::Axis }];
         let mut owners = Vec::new();
-        for (place, &(to, centre)) in drafts.iter().enumerate() {
+        for (index, &(to, centre)) in segments.iter().enumerate() {
             let mut piece = Piece::new(at, to, centre, 0);
             if let Some(before) = pieces.last() {
                 let bend = cross(before.tangent(at), piece.tangent(at));
                 let turn = if bend < -1e-12 {
-                    owners.push(Feature::Corner(place - 1));
+                    owners.push(Feature::Corner(index - 1));
                     Turn::Reflex(owners.len() - 1)
                 } else if bend > 1e-12 {
                     Turn::Convex
                 } else {
                     Turn::Smooth
                 };
-                vertices.push(Vertex { at, turn });
+                vertices.push(Vertex { point: at, turn });
             }
             piece.rank = owners.len();
-            owners.push(Feature::Piece(place));
+            owners.push(Feature::Piece(index));
             pieces.push(piece);
             at = to;
         }
-        vertices.push(Vertex { at, turn: Turn::Axis });
+        vertices.push(Vertex { point: at, turn: Turn::Axis });
         Self { pieces, vertices, owners }
     }
 
@@ -107,19 +107,19 @@ impl Profile {
     /// Beside a fan or joint, the distances of two features differ only by the square of the distance from their
     /// border, far below rounding. Each feature therefore counts only on its own side, and ties are left for the
     /// borders themselves.
-    pub fn nearest(&self, p: P2) -> Near {
-        let mut best = Near { owner: 0, distance: f64::INFINITY, foot: p, corner: false };
+    pub fn nearest(&self, p: P2) -> NearestFeature {
+        let mut best = NearestFeature { owner: 0, distance: f64::INFINITY, foot: p, corner: false };
         for piece in self.pieces.iter().filter(|piece| piece.faces(p)) {
             let (owner, distance) = (piece.rank, piece.distance(p));
             if (distance, owner) < (best.distance, best.owner) {
-                best = Near { owner, distance, foot: piece.foot(p), corner: false };
+                best = NearestFeature { owner, distance, foot: piece.foot(p), corner: false };
             }
         }
         for (i, v) in self.vertices.iter().enumerate() {
             let neighbour = [i.checked_sub(1), Some(i)].map(|k| self.pieces.get(k?));
-            let from = sub(p, v.at);
+            let from = sub(p, v.point);
             let in_fan = neighbour.iter().zip([1.0, -1.0]).all(|(piece, sign)| {
-                piece.is_none_or(|piece| sign * dot(from, piece.tangent(v.at)) >= 0.0)
+                piece.is_none_or(|piece| sign * dot(from, piece.tangent(v.point)) >= 0.0)
             });
             let first = neighbour.iter().flatten().map(|piece| piece.rank).min();
             let (owner, corner) = match v.turn {
@@ -135,14 +135,14 @@ impl Profile {
                 Turn::Axis | Turn::Convex => distance < best.distance,
             };
             if wins {
-                best = Near { owner, distance, foot: v.at, corner };
+                best = NearestFeature { owner, distance, foot: v.point, corner };
             }
         }
         best
     }
 
     /// Returns the distance to a piece, its ends included, from either side.
-    pub fn away(&self, piece: usize, p: P2) -> f64 {
+    pub fn distance_to_piece(&self, piece: usize, p: P2) -> f64 {
         self.pieces[piece].clamped(p)
     }
 
@@ -153,7 +153,7 @@ impl Profile {
 
     /// Returns, for a point of the solid, its nearest feature and the unit vector `(radial, axial)` toward it;
     /// `None` outside.
-    pub fn sense(&self, p: P2) -> Option<(Near, P2)> {
+    pub fn evaluate(&self, p: P2) -> Option<(NearestFeature, P2)> {
         let near = self.nearest(p);
         (near.distance == 0.0 || self.encloses(p)).then(|| (near, self.direction(&near, p)))
     }
@@ -170,7 +170,7 @@ impl Profile {
         if self.contains(p) { -distance } else { distance }
     }
 
-    fn direction(&self, near: &Near, p: P2) -> P2 {
+    fn direction(&self, near: &NearestFeature, p: P2) -> P2 {
         if near.corner {
             return unit_or_z(sub(near.foot, p));
         }
@@ -182,7 +182,7 @@ impl Profile {
     ///
     /// Two features meet either at a shared fan line or joint, whose distance is plain, or on the curve where their
     /// distances agree. Distances are 1-Lipschitz, so that curve is at least half their difference away.
-    pub fn border(&self, p: P2) -> f64 {
+    pub fn border_distance(&self, p: P2) -> f64 {
         let near = self.nearest(p);
         if !self.contains(p) {
             return near.distance;
@@ -203,8 +203,8 @@ impl Profile {
             let owners = [Some(before.rank), fan, Some(after.rank)];
             if owners.contains(&Some(near.owner)) {
                 linked.extend(owners.into_iter().flatten());
-                for tangent in [before.tangent(v.at), after.tangent(v.at)] {
-                    min_distance = min_distance.min(dot(sub(p, v.at), tangent).abs());
+                for tangent in [before.tangent(v.point), after.tangent(v.point)] {
+                    min_distance = min_distance.min(dot(sub(p, v.point), tangent).abs());
                 }
             }
         }
@@ -213,15 +213,15 @@ impl Profile {
         }
         for v in &self.vertices {
             if matches!(v.turn, Turn::Reflex(rank) if !linked.contains(&rank)) {
-                min_distance = min_distance.min((len(sub(p, v.at)) - near.distance) / 2.0);
+                min_distance = min_distance.min((len(sub(p, v.point)) - near.distance) / 2.0);
             }
         }
         min_distance.max(0.0)
     }
 
-    /// Returns the distance defined at [`super::Oracle::singular`].
-    pub fn singular(&self, p: P2) -> f64 {
-        let Some((near, direction)) = self.sense(p) else {
+    /// Returns the distance defined at [`super::Oracle::singularity_distance`].
+    pub fn singularity_distance(&self, p: P2) -> f64 {
+        let Some((near, direction)) = self.evaluate(p) else {
             return f64::INFINITY;
         };
         let axis = if direction[0] == 0.0 { f64::INFINITY } else { p[0] };
@@ -229,14 +229,14 @@ impl Profile {
             near.distance
         } else {
             let centre = self.owner_piece(&near, p).centre();
-            centre.map_or(f64::INFINITY, |c| len(sub(p, c)))
+            centre.map_or(f64::INFINITY, |centre| len(sub(p, centre)))
         };
         axis.min(point)
     }
 
     /// Returns the vertices, and the centres of arcs.
     pub fn corners(&self) -> Vec<P2> {
-        let vertices = self.vertices.iter().map(|v| v.at);
+        let vertices = self.vertices.iter().map(|v| v.point);
         vertices.chain(self.pieces.iter().filter_map(Piece::centre)).collect()
     }
 
@@ -247,16 +247,16 @@ impl Profile {
 
     /// Returns the piece with the owner's rank whose foot is the nearest point; failing that, the first with that
     /// rank.
-    fn owner_piece(&self, near: &Near, p: P2) -> &Piece {
-        let mine = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
-        let facing = mine().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
-        facing.or_else(|| mine().next()).unwrap_or(&self.pieces[0])
+    fn owner_piece(&self, near: &NearestFeature, p: P2) -> &Piece {
+        let owned_pieces = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
+        let facing = owned_pieces().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
+        facing.or_else(|| owned_pieces().next()).unwrap_or(&self.pieces[0])
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Rng;
+    use super::super::rng::Rng;
     use super::*;
 
     /// A body with a neck: convex and concave arcs, a taper, both kinds of corner.
@@ -278,9 +278,9 @@ mod tests {
     fn distances_agree_with_a_fine_polyline() {
         let vase = vase();
         let fine: Vec<_> = vase.pieces.iter().flat_map(|piece| piece.chords(2000)).collect();
-        let mut draw = Rng::new(5);
+        let mut rng = Rng::new(5);
         for _ in 0..2_000 {
-            let p = [draw.between(0.0, 5.0), draw.between(-2.0, 8.0)];
+            let p = [rng.between(0.0, 5.0), rng.between(-2.0, 8.0)];
             let polyline = fine.iter().map(|&(a, b)| {
                 let e = sub(b, a);
                 let t = (dot(sub(p, a), e) / dot(e, e)).clamp(0.0, 1.0);
@@ -297,14 +297,14 @@ mod tests {
     #[test]
     fn inside_agrees_with_the_side_of_the_nearest_feature() {
         let vase = vase();
-        let mut draw = Rng::new(6);
+        let mut rng = Rng::new(6);
         for _ in 0..100_000 {
-            let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
+            let p = [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)];
             let near = vase.nearest(p);
             if near.distance < 1e-12 {
                 continue;
             }
-            let at_vertex = vase.vertices.iter().any(|v| v.at == near.foot);
+            let at_vertex = vase.vertices.iter().any(|v| v.point == near.foot);
             let inside = near.corner
                 || (!at_vertex && {
                     let piece = vase.owner_piece(&near, p);
@@ -317,10 +317,10 @@ mod tests {
     #[test]
     fn directions_step_onto_the_surface() {
         let vase = vase();
-        let mut draw = Rng::new(7);
+        let mut rng = Rng::new(7);
         for _ in 0..100_000 {
-            let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
-            let Some((near, u)) = vase.sense(p) else {
+            let p = [rng.between(0.0, 4.0), rng.between(-1.0, 7.0)];
+            let Some((near, u)) = vase.evaluate(p) else {
                 continue;
             };
             for k in 0..2 {

@@ -14,14 +14,14 @@ use super::{Meridian, Nearest};
 const BORDER_MARGIN: f64 = 1e-9;
 
 /// A point, and the half plane through it and the axis.
-pub struct At {
+pub struct QueryPoint {
     dz: Point,
     /// Unit vector away from the axis; +x on the axis.
     radial: [Big; 2],
-    rough: [f64; 2],
+    dz_f64: [f64; 2],
 }
 
-impl At {
+impl QueryPoint {
     /// Creates the point with these coordinates, taken exactly.
     pub fn new(p: [f64; 3]) -> Self {
         Self::of(p.map(Big::exactly))
@@ -29,26 +29,26 @@ impl At {
 
     /// Creates the point with coordinates of 256 bits.
     pub fn of([x, y, z]: [Big; 3]) -> Self {
-        let rough = Meridian::of([&x, &y, &z].map(Big::to_f64)).dz;
+        let dz_f64 = Meridian::of([&x, &y, &z].map(Big::to_f64)).dz;
         let d = (&(&x * &x) + &(&y * &y)).sqrt();
         let radial =
             if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [&x / &d, &y / &d] };
-        Self { dz: [d, z], radial, rough }
+        Self { dz: [d, z], radial, dz_f64 }
     }
 }
 
 /// A tool's profile with 256 bits.
 pub struct Reference {
     tool: Restated,
-    parts: Vec<Part>,
+    segments: Vec<ExactSegment>,
     /// The turn of the profile behind each piece.
     turns: Vec<Turn>,
     owners: Vec<Feature>,
     size: f64,
 }
 
-struct Part {
-    rough: Piece,
+struct ExactSegment {
+    piece: Piece,
     a: Point,
     b: Point,
     shape: Shape,
@@ -68,7 +68,7 @@ enum Shape {
 }
 
 /// The distance to a piece.
-struct Far {
+struct SegmentDistance {
     distance: Big,
     /// `None` if the foot is an end of the piece; otherwise true if the point is on its inner side.
     side: Option<bool>,
@@ -94,11 +94,11 @@ fn double(p: &Point) -> [f64; 2] {
     [p[0].to_f64(), p[1].to_f64()]
 }
 
-impl Part {
-    fn distance(&self, p: &Point) -> Far {
+impl ExactSegment {
+    fn distance(&self, p: &Point) -> SegmentDistance {
         let ends = || {
             let [a, b] = [&self.a, &self.b].map(|end| norm(&sub(p, end)));
-            Far { distance: if b < a { b } else { a }, side: None }
+            SegmentDistance { distance: if b < a { b } else { a }, side: None }
         };
         let zero = Big::zero();
         let faces = match &self.shape {
@@ -117,7 +117,7 @@ impl Part {
             return ends();
         }
         let inward = self.inward(p);
-        Far { distance: inward.abs(), side: Some(!inward.is_negative()) }
+        SegmentDistance { distance: inward.abs(), side: Some(!inward.is_negative()) }
     }
 
     /// Returns the distance of a point from the whole line or circle, positive on the inner side.
@@ -151,32 +151,32 @@ fn unit(v: &Point) -> Option<Point> {
 impl Reference {
     /// Creates the reference of a restated tool.
     pub fn new(tool: &Restated) -> Self {
-        let rough = Nearest::new(tool);
-        let profile: &Profile = rough.profile();
+        let oracle = Nearest::new(tool);
+        let profile: &Profile = oracle.profile();
         let mut at = tool.start.clone();
-        let mut parts: Vec<Part> = Vec::new();
-        for way in &tool.ways {
-            let shape = match &way.centre {
+        let mut segments: Vec<ExactSegment> = Vec::new();
+        for segment in &tool.segments {
+            let shape = match &segment.centre {
                 None => {
-                    let along = sub(&way.to, &at);
+                    let along = sub(&segment.to, &at);
                     let length = norm(&along);
                     Shape::Line { along, length }
                 }
                 Some(centre) => {
-                    let (a, b) = (sub(&at, centre), sub(&way.to, centre));
+                    let (a, b) = (sub(&at, centre), sub(&segment.to, centre));
                     let convex = !cross(&a, &b).is_negative();
                     Shape::Arc { centre: centre.clone(), radius: norm(&a), convex }
                 }
             };
-            let centre = way.centre.as_ref().map(double);
-            let rough = Piece::new(double(&at), double(&way.to), centre, parts.len());
-            parts.push(Part { rough, a: at, b: way.to.clone(), shape });
-            at = way.to.clone();
+            let centre = segment.centre.as_ref().map(double);
+            let piece = Piece::new(double(&at), double(&segment.to), centre, segments.len());
+            segments.push(ExactSegment { piece, a: at, b: segment.to.clone(), shape });
+            at = segment.to.clone();
         }
         let owners = profile.owners().to_vec();
-        let turns = (0..parts.len()).map(|piece| profile.turn(piece)).collect();
-        let largest = parts.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
-        Self { tool: tool.clone(), parts, turns, owners, size: largest }
+        let turns = (0..segments.len()).map(|piece| profile.turn(piece)).collect();
+        let largest = segments.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
+        Self { tool: tool.clone(), segments, turns, owners, size: largest }
     }
 
     /// Returns the restated tool.
@@ -185,22 +185,26 @@ impl Reference {
     }
 
     /// Returns the depth of a point: the distance to the surface, negative outside.
-    pub fn depth(&self, at: &At) -> Big {
-        let rough: Vec<f64> = self.parts.iter().map(|part| part.rough.clamped(at.rough)).collect();
-        let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + BORDER_MARGIN * self.size;
-        let mut best: Option<(Far, usize)> = None;
-        for (index, part) in self.parts.iter().enumerate().filter(|(k, _)| rough[*k] <= reach) {
+    pub fn depth(&self, at: &QueryPoint) -> Big {
+        let distances: Vec<f64> =
+            self.segments.iter().map(|part| part.piece.clamped(at.dz_f64)).collect();
+        let reach =
+            distances.iter().copied().fold(f64::INFINITY, f64::min) + BORDER_MARGIN * self.size;
+        let mut best: Option<(SegmentDistance, usize)> = None;
+        for (index, part) in
+            self.segments.iter().enumerate().filter(|(k, _)| distances[*k] <= reach)
+        {
             let distance = part.distance(&at.dz);
-            let nearer = best.as_ref().is_none_or(|(best, _)| {
+            let is_nearer = best.as_ref().is_none_or(|(best, _)| {
                 distance.distance < best.distance
                     || (distance.distance == best.distance && best.side.is_none())
             });
-            if nearer {
+            if is_nearer {
                 best = Some((distance, index));
             }
         }
         let Some((distance, index)) = best else { return Big::zero() };
-        if distance.side.unwrap_or_else(|| self.beside(at, index)) {
+        if distance.side.unwrap_or_else(|| self.is_inside_at_end(at, index)) {
             distance.distance
         } else {
             -&distance.distance
@@ -209,8 +213,8 @@ impl Reference {
 
     /// Returns whether a point is inside whose nearest point is an end of a piece: in the fan of a reflex corner,
     /// or where rounding alone keeps it from facing the piece.
-    fn beside(&self, at: &At, index: usize) -> bool {
-        let part = &self.parts[index];
+    fn is_inside_at_end(&self, at: &QueryPoint, index: usize) -> bool {
+        let part = &self.segments[index];
         let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
         let turn = if b < a { Some(index) } else { index.checked_sub(1) };
         match turn.map(|piece| self.turns[piece]) {
@@ -222,58 +226,59 @@ impl Reference {
 
     /// Returns the owner of a point of the solid: the nearest feature. Among equals a corner comes before the
     /// pieces that end in it, otherwise the first listed. `None` outside.
-    pub fn owner(&self, at: &At) -> Option<usize> {
+    pub fn owner(&self, at: &QueryPoint) -> Option<usize> {
         let depth = self.depth(at);
         if depth.is_negative() {
             return None;
         }
         let reach = depth.to_f64() + BORDER_MARGIN * self.size;
-        let near = |owner: &usize| match self.owners[*owner] {
+        let is_near = |owner: &usize| match self.owners[*owner] {
             Feature::Piece(piece) | Feature::Corner(piece) => {
-                self.parts[piece].rough.clamped(at.rough) <= reach
+                self.segments[piece].piece.clamped(at.dz_f64) <= reach
             }
         };
         let mut best: Option<(Big, bool, usize)> = None;
-        for owner in (0..self.owners.len()).filter(near) {
-            let piece = matches!(self.owners[owner], Feature::Piece(_));
+        for owner in (0..self.owners.len()).filter(is_near) {
+            let is_piece = matches!(self.owners[owner], Feature::Piece(_));
             let distance = self.distance_to(at, owner);
-            let nearer = best.as_ref().is_none_or(|(least, one, _)| {
-                distance < *least || (distance == *least && *one && !piece)
+            let is_nearer = best.as_ref().is_none_or(|(min_distance, is_best_piece, _)| {
+                distance < *min_distance
+                    || (distance == *min_distance && *is_best_piece && !is_piece)
             });
-            if nearer {
-                best = Some((distance, piece, owner));
+            if is_nearer {
+                best = Some((distance, is_piece, owner));
             }
         }
         best.map(|(.., owner)| owner)
     }
 
     /// Returns the distance to an owner: a piece with its ends, or a corner.
-    pub fn distance_to(&self, at: &At, owner: usize) -> Big {
+    pub fn distance_to(&self, at: &QueryPoint, owner: usize) -> Big {
         match self.owners[owner] {
-            Feature::Piece(piece) => self.parts[piece].distance(&at.dz).distance,
-            Feature::Corner(piece) => norm(&sub(&at.dz, &self.parts[piece].b)),
+            Feature::Piece(piece) => self.segments[piece].distance(&at.dz).distance,
+            Feature::Corner(piece) => norm(&sub(&at.dz, &self.segments[piece].b)),
         }
     }
 
     /// Returns the unit vector from a point that an owner owns to its nearest point of the surface; where there is
     /// none, +z.
-    pub fn direction(&self, at: &At, owner: usize) -> [Big; 3] {
-        let toward = match self.owners[owner] {
-            Feature::Piece(piece) => self.parts[piece].outward(&at.dz),
-            Feature::Corner(piece) => unit(&sub(&self.parts[piece].b, &at.dz)),
+    pub fn direction(&self, at: &QueryPoint, owner: usize) -> [Big; 3] {
+        let outward = match self.owners[owner] {
+            Feature::Piece(piece) => self.segments[piece].outward(&at.dz),
+            Feature::Corner(piece) => unit(&sub(&self.segments[piece].b, &at.dz)),
         };
-        let [d, z] = toward.unwrap_or_else(|| [Big::zero(), Big::exactly(1.0)]);
+        let [d, z] = outward.unwrap_or_else(|| [Big::zero(), Big::exactly(1.0)]);
         [&d * &at.radial[0], &d * &at.radial[1], z]
     }
 
     /// Returns the distance from a point to the nearest one at which its owner's direction does not exist.
-    pub fn singular(&self, at: &At, owner: usize) -> f64 {
+    pub fn singularity_distance(&self, at: &QueryPoint, owner: usize) -> f64 {
         let (distance, level) = match self.owners[owner] {
-            Feature::Piece(piece) => match &self.parts[piece].shape {
+            Feature::Piece(piece) => match &self.segments[piece].shape {
                 Shape::Line { along, .. } => (f64::INFINITY, along[1] == Big::zero()),
                 Shape::Arc { centre, .. } => (norm(&sub(&at.dz, centre)).to_f64(), false),
             },
-            Feature::Corner(piece) => (norm(&sub(&at.dz, &self.parts[piece].b)).to_f64(), false),
+            Feature::Corner(piece) => (norm(&sub(&at.dz, &self.segments[piece].b)).to_f64(), false),
         };
         if level { distance } else { distance.min(at.dz[0].to_f64()) }
     }
@@ -290,33 +295,36 @@ impl Reference {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Rng;
+    use super::super::rng::Rng;
     use super::super::{Oracle, restated};
     use super::*;
 
     #[test]
     fn doubles_agree_with_256_bits() {
         for tool in restated::all() {
-            let (rough, reference) = (Nearest::new(&tool), Reference::new(&tool));
-            let [radius, height] = rough.extent();
+            let (oracle, reference) = (Nearest::new(&tool), Reference::new(&tool));
+            let [radius, height] = oracle.extent();
             let size = radius.max(height);
-            let mut draw = Rng::new(8);
+            let mut rng = Rng::new(8);
             for _ in 0..300 {
-                let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
-                let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];
-                let at = At::new(p);
+                let [x, y] = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+                let p = [x, y, rng.between(-0.1 * height, 1.1 * height)];
+                let at = QueryPoint::new(p);
                 let depth = reference.depth(&at).to_f64();
-                let expected = -rough.signed_distance(p);
+                let expected = -oracle.signed_distance(p);
                 assert!((depth - expected).abs() < 1e-13 * size, "{} {p:?}", tool.name);
-                let Some(sense) = rough.sense(p) else { continue };
-                let distance = reference.distance_to(&at, sense.owner).to_f64();
+                let Some(evaluation) = oracle.evaluate(p) else { continue };
+                let distance = reference.distance_to(&at, evaluation.owner).to_f64();
                 assert!((distance - depth).abs() < 1e-13 * size, "{} {p:?}", tool.name);
                 assert!(
-                    (reference.singular(&at, sense.owner) - rough.singular(p)).abs() < 1e-12 * size
-                        || rough.singular(p) == f64::INFINITY
+                    (reference.singularity_distance(&at, evaluation.owner)
+                        - oracle.singularity_distance(p))
+                    .abs()
+                        < 1e-12 * size
+                        || oracle.singularity_distance(p) == f64::INFINITY
                 );
-                let u = reference.direction(&at, sense.owner);
-                for (u, v) in u.iter().zip(sense.direction) {
+                let u = reference.direction(&at, evaluation.owner);
+                for (u, v) in u.iter().zip(evaluation.direction) {
                     assert!((u.to_f64() - v).abs() < 1e-9, "{} {p:?}", tool.name);
                 }
             }

@@ -1,6 +1,6 @@
 //! The thesis's smallest solids, by their equations.
 
-use super::{Meridian, Oracle, OracleEvaluation, sampled, straight, unit_or_z};
+use super::{Meridian, Oracle, OracleEvaluation, sample_curve, sample_line, unit_or_z};
 
 /// The unit sphere (Ho 1999, eq. 4.1, 4.2), its lowest point at the origin: depth `1 - |p - c|`, direction away
 /// from the centre (0, 0, 1).
@@ -24,7 +24,7 @@ impl Oracle for UnitSphere {
         vec!["ball"]
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
+    fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let (m, arm, rho) = Self::from_centre(p);
         (rho <= 1.0).then(|| OracleEvaluation {
             owner: 0,
@@ -36,18 +36,18 @@ impl Oracle for UnitSphere {
     }
 
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-        Some(self.sense(p)?.direction.map(|c| -c))
+        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {
         Self::from_centre(p).2 - 1.0
     }
 
-    fn border(&self, p: [f64; 3]) -> f64 {
+    fn border_distance(&self, p: [f64; 3]) -> f64 {
         self.signed_distance(p).abs()
     }
 
-    fn singular(&self, p: [f64; 3]) -> f64 {
+    fn singularity_distance(&self, p: [f64; 3]) -> f64 {
         // Across the axis the direction continues smoothly, but `x / d` is still computed there.
         let (m, _, rho) = Self::from_centre(p);
         if rho <= 1.0 { rho.min(m.dz[0]) } else { f64::INFINITY }
@@ -58,7 +58,7 @@ impl Oracle for UnitSphere {
     }
 
     fn curves(&self) -> Vec<Vec<[f64; 2]>> {
-        vec![sampled(|t| {
+        vec![sample_curve(|t| {
             let (sin, cos) = (t * std::f64::consts::PI).sin_cos();
             [sin, 1.0 - cos]
         })]
@@ -93,7 +93,7 @@ impl Oracle for Cylinder {
         REGIONS.to_vec()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
+    fn evaluate(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let (m, [side, low, high]) = Self::inward(p);
         let (owner, depth, direction) = if side >= 0.0 && side <= low.min(high) {
             (0, side, [1.0, 0.0])
@@ -114,7 +114,7 @@ impl Oracle for Cylinder {
     }
 
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-        Some(self.sense(p)?.direction.map(|c| -c))
+        Some(self.evaluate(p)?.direction.map(|c| -c))
     }
 
     fn signed_distance(&self, p: [f64; 3]) -> f64 {
@@ -124,17 +124,17 @@ impl Oracle for Cylinder {
         inside + out[0].max(0.0).hypot(out[1].max(0.0))
     }
 
-    fn border(&self, p: [f64; 3]) -> f64 {
+    fn border_distance(&self, p: [f64; 3]) -> f64 {
         let (_, [side, low, high]) = Self::inward(p);
-        if self.sense(p).is_none() {
+        if self.evaluate(p).is_none() {
             return self.signed_distance(p).abs();
         }
         let diagonals = (side - low).abs().min((side - high).abs()) / std::f64::consts::SQRT_2;
         side.min(low).min(high).min(diagonals)
     }
 
-    fn singular(&self, p: [f64; 3]) -> f64 {
-        match self.sense(p) {
+    fn singularity_distance(&self, p: [f64; 3]) -> f64 {
+        match self.evaluate(p) {
             Some(OracleEvaluation { owner: 0, .. }) => Meridian::of(p).dz[0],
             _ => f64::INFINITY,
         }
@@ -150,11 +150,11 @@ impl Oracle for Cylinder {
 
     fn curves(&self) -> Vec<Vec<[f64; 2]>> {
         vec![
-            straight([0.0, 0.0], [2.0, 0.0]),
-            straight([2.0, 0.0], [2.0, 6.0]),
-            straight([2.0, 6.0], [0.0, 6.0]),
-            straight([2.0, 0.0], [0.0, 2.0]),
-            straight([2.0, 6.0], [0.0, 4.0]),
+            sample_line([0.0, 0.0], [2.0, 0.0]),
+            sample_line([2.0, 0.0], [2.0, 6.0]),
+            sample_line([2.0, 6.0], [0.0, 6.0]),
+            sample_line([2.0, 0.0], [0.0, 2.0]),
+            sample_line([2.0, 6.0], [0.0, 4.0]),
         ]
     }
 
@@ -169,23 +169,26 @@ mod tests {
 
     #[test]
     fn the_sphere_at_a_few_points() {
-        let s = UnitSphere.sense([0.3, 0.0, 0.6]).expect("inside");
+        let s = UnitSphere.evaluate([0.3, 0.0, 0.6]).expect("inside");
         assert!((s.depth - 0.5).abs() < 1e-15);
         assert!((s.direction[0] - 0.6).abs() < 1e-15 && (s.direction[2] + 0.8).abs() < 1e-15);
-        assert_eq!(UnitSphere.sense([0.0, 0.0, 1.0]).map(|s| s.direction), Some([0.0, 0.0, 1.0]));
-        assert_eq!(UnitSphere.sense([0.0, 0.0, 0.0]).map(|s| s.depth), Some(0.0));
-        assert!(UnitSphere.sense([0.0, 0.0, -1e-15]).is_none());
+        assert_eq!(
+            UnitSphere.evaluate([0.0, 0.0, 1.0]).map(|s| s.direction),
+            Some([0.0, 0.0, 1.0])
+        );
+        assert_eq!(UnitSphere.evaluate([0.0, 0.0, 0.0]).map(|s| s.depth), Some(0.0));
+        assert!(UnitSphere.evaluate([0.0, 0.0, -1e-15]).is_none());
     }
 
     #[test]
     fn the_cylinder_gives_its_borders_to_the_first_listed() {
-        let region = |p| Cylinder.sense(p).map(|s| REGIONS[s.owner]);
+        let region = |p| Cylinder.evaluate(p).map(|s| REGIONS[s.owner]);
         assert_eq!(region([1.0, 0.0, 1.0]), Some("side"));
         assert_eq!(region([1.0, 0.0, 5.0]), Some("side"));
         assert_eq!(region([0.5, 0.0, 1.0]), Some("bottom"));
         assert_eq!(region([0.5, 0.0, 5.0]), Some("top"));
         assert_eq!(region([0.0, 2.0, 0.0]), Some("side"));
         assert_eq!(region([0.0, 2.0, 6.5]), None);
-        assert_eq!(Cylinder.sense([0.0, 0.0, 3.0]).map(|s| s.direction), Some([1.0, 0.0, 0.0]));
+        assert_eq!(Cylinder.evaluate([0.0, 0.0, 3.0]).map(|s| s.direction), Some([1.0, 0.0, 0.0]));
     }
 }

@@ -12,8 +12,8 @@ use touchoff_tests::accuracy::{owners, tools};
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::rng::Rng;
 
 fn checked(source: &Source) -> Box<CheckedTool> {
     let compiled = compile(source);
@@ -140,13 +140,13 @@ fn sampled_values_keep_the_proved_bounds() {
         let tool = checked(&source);
         let proved = Certificate::of(&tool);
         let cell = tool.extent.cell();
-        let mut draw = Rng::new(7);
+        let mut rng = Rng::new(7);
         let mut interpreter = Interpreter::new(&tool);
         let slack = 1e-12 * tool.extent.scale();
         let mut before: Option<([f64; 3], f64)> = None;
         for k in 0..4_000 {
             let p =
-                cell.sides.map(|side| side.low + draw.between(0.0, 1.0) * (side.high - side.low));
+                cell.sides.map(|side| side.low + rng.between(0.0, 1.0) * (side.high - side.low));
             // Every second point lies close to the one before.
             let p = match before {
                 Some((last, _)) if k % 2 == 1 => {
@@ -166,10 +166,14 @@ fn sampled_values_keep_the_proved_bounds() {
             );
             assert!(evaluation.niceness <= facts.niceness.high.max(0.0) + 1e-12, "{name}");
             if let (Some(most), Some((last, depth))) = (proved.lipschitz(), before) {
-                let way = (0..3).map(|axis| (p[axis] - last[axis]).powi(2)).sum::<f64>().sqrt();
+                let step_length =
+                    (0..3).map(|axis| (p[axis] - last[axis]).powi(2)).sum::<f64>().sqrt();
                 let changed = (evaluation.depth - depth).abs();
                 // Regions that no border joins may lie between two points of different parts.
-                assert!(changed <= most * way + slack, "{name}: {changed} over {way}");
+                assert!(
+                    changed <= most * step_length + slack,
+                    "{name}: {changed} over {step_length}"
+                );
             }
             before = Some((p, evaluation.depth));
         }
@@ -221,14 +225,14 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
         let owners = owners(compiled, &Nearest::new(&restated));
         let mut worst = vec![0.0f64; proved.regions.len()];
         let mut counts = vec![0; proved.regions.len()];
-        let mut draw = Rng::new(11);
+        let mut rng = Rng::new(11);
         let [x, _, z] = tool.extent.cell().sides;
         let mut list = PointBatch::default();
         let points: Vec<[f64; 3]> = (0..40_000)
             .map(|_| {
                 let (d, turn) =
-                    (draw.between(x.low, x.high), draw.between(0.0, std::f64::consts::TAU));
-                [d * turn.cos(), d * turn.sin(), draw.between(z.low, z.high)]
+                    (rng.between(x.low, x.high), rng.between(0.0, std::f64::consts::TAU));
+                [d * turn.cos(), d * turn.sin(), rng.between(z.low, z.high)]
             })
             .collect();
         points.iter().for_each(|p| list.push(*p));
@@ -240,7 +244,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
             }
             let region = evaluation.region[k] as usize;
 
-            let at = At::new(*p);
+            let at = QueryPoint::new(*p);
             let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
             let off =
                 exact.map(|exact| (&Big::exactly(evaluation.depth[k]) - &exact).abs().to_f64());
@@ -357,20 +361,20 @@ fn slivers_beside_corners_have_their_own_depth() {
     // The distance to the arcs, which are less than half a turn; no line is near.
     let distance = |p: [f64; 2]| {
         let arcs = pieces.iter().filter_map(|piece| Some((piece.ends, piece.circle?)));
-        let away = arcs.map(|(ends, (centre, radius, _))| {
+        let arc_distances = arcs.map(|(ends, (centre, radius, _))| {
             let [from, to, way] = [ends[0], ends[1], p].map(|at| minus(at, centre));
             let within = cross(from, way) * cross(from, to) >= 0.0
                 && cross(way, to) * cross(from, to) >= 0.0;
-            let beside = ends.map(|end| norm(minus(p, end)));
-            if within { (norm(way) - radius).abs() } else { beside[0].min(beside[1]) }
+            let end_distances = ends.map(|end| norm(minus(p, end)));
+            if within { (norm(way) - radius).abs() } else { end_distances[0].min(end_distances[1]) }
         });
-        away.fold(f64::INFINITY, f64::min)
+        arc_distances.fold(f64::INFINITY, f64::min)
     };
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Rng::new(11);
+    let mut rng = Rng::new(11);
     let mut inside = 0;
     for _ in 0..20_000 {
-        let p = [draw.between(4.3, 4.45), 0.0, draw.between(5.5, 5.7)];
+        let p = [rng.between(4.3, 4.45), 0.0, rng.between(5.5, 5.7)];
         let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
         let distance = distance([p[0], p[2]]);
         assert!(

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use tools_library::{Ball, Fig73, Fig73Exact};
 use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Sampling, Wrench};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 const POSES: usize = 2_000;
 
@@ -136,11 +136,11 @@ fn a_tool_oscillating_around_its_budget_keeps_its_forces() {
 fn left<'a>(
     mesh: &'a Mesh,
     poses: &'a [Pose],
-    draw: &'a mut Rng,
+    rng: &'a mut Rng,
 ) -> impl Iterator<Item = Point3<f64>> + 'a {
     let cloud = Cloud::sample(
         mesh,
-        Sampling::monte_carlo(60_000).with_seed((1e9 * draw.between(0.0, 1.0)) as u64),
+        Sampling::monte_carlo(60_000).with_seed((1e9 * rng.between(0.0, 1.0)) as u64),
     )
     .expect("a cloud");
     cloud.points().to_vec().into_iter().filter(move |point| {
@@ -163,12 +163,12 @@ fn removed_material_has_no_contacts_and_the_rest_is_covered() {
     let mesh = tube();
     let mut part = detailed(20_000);
     let cover = part.tree().covering_radius().expect("a cover");
-    let mut draw = Rng::new(5);
+    let mut rng = Rng::new(5);
     let poses: Vec<Pose> = (0..12)
         .map(|_| {
-            let angle = draw.between(0.0, std::f64::consts::TAU);
-            let out = draw.between(3.5, 7.0);
-            let tip = Point3::new(out * angle.cos(), out * angle.sin(), draw.between(9.0, 12.5));
+            let angle = rng.between(0.0, std::f64::consts::TAU);
+            let out = rng.between(3.5, 7.0);
+            let tip = Point3::new(out * angle.cos(), out * angle.sin(), rng.between(9.0, 12.5));
             Pose::from_axis(tip, Vector3::z()).expect("a pose")
         })
         .collect();
@@ -187,7 +187,7 @@ fn removed_material_has_no_contacts_and_the_rest_is_covered() {
         (0..all).map(|index| part.tree().point(index)).filter(|point| !point.x.is_nan()).collect();
     assert_eq!(points.len(), part.tree().len());
     let mut looked = 0;
-    for remaining in left(&mesh, &poses, &mut draw).take(4_000) {
+    for remaining in left(&mesh, &poses, &mut rng).take(4_000) {
         let nearest = points.iter().map(|p| (p - remaining).norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest <= cover.radius * (1.0 + 1e-6), "{nearest} of {}", cover.radius);
         looked += 1;

@@ -9,7 +9,7 @@ use tools_library::{Block, LBracket};
 use touchoff::Interval;
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, Symmetry};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
 /// Returns the region and the depth at a point.
@@ -93,9 +93,9 @@ fn clearance_is_that_of_the_box() {
     for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
         let tool = tools_library::find(oracle.name()).expect("in the library");
         assert!(!tool.info().is_exact());
-        let mut draw = Rng::new(8);
+        let mut rng = Rng::new(8);
         for _ in 0..20_000 {
-            let p = [0; 3].map(|_| draw.between(-40.0, 40.0));
+            let p = [0; 3].map(|_| rng.between(-40.0, 40.0));
             let (clearance, distance) = (tool.clearance(p), oracle.signed_distance(p));
             assert!(clearance <= distance.max(0.0), "{clearance} > {distance} at {p:?}");
             if oracle.name() == "Block" {
@@ -117,10 +117,10 @@ fn a_block_with_other_dimensions() {
         assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
         let tool = compiled.into_tool().expect("a block");
         let mut reference = Interpreter::new(&tool);
-        let mut draw = Rng::new(7);
+        let mut rng = Rng::new(7);
         let half = [w, l, h].map(|side| f64::from(side) / 2.0);
         for _ in 0..2_000 {
-            let p = half.map(|half| draw.between(-half, half));
+            let p = half.map(|half| rng.between(-half, half));
             let depth = (0..3).map(|k| half[k] - p[k].abs()).fold(f64::INFINITY, f64::min);
             let evaluation = reference.at([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
             assert!(

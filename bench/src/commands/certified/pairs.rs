@@ -44,7 +44,7 @@ the witness, which does not zoom, falls short of the lower bound, *reached* at h
     Ok(Section {
         title: "Beside brute force",
         body: about + &table(&rows)?,
-        missed: rows.into_iter().flat_map(|row| row.violations).collect(),
+        missed_limits: rows.into_iter().flat_map(|row| row.violations).collect(),
     })
 }
 

@@ -4,7 +4,7 @@ use std::error::Error;
 use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 use touchoff_bench::rounding::cases::Family;
-use touchoff_bench::rounding::{Rounding as Cases, Row, table};
+use touchoff_bench::rounding::{RoundingCheck as Cases, Row, table};
 
 /// Number of cases that a thread takes at once.
 const CHUNK: u64 = 2000;
@@ -32,7 +32,11 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
     Ok(Section {
         title: "Beside 256 bits",
         body: about.to_owned() + &table(&rows)?,
-        missed: rows.iter().filter(|row| row.violations() > 0).map(describe_violations).collect(),
+        missed_limits: rows
+            .iter()
+            .filter(|row| row.violations() > 0)
+            .map(describe_violations)
+            .collect(),
     })
 }
 
@@ -40,7 +44,7 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
 pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
     let cases = Cases::new(seed);
     let mut rows = Family::ALL.map(Row::new).to_vec();
-    cases.ask(number, &mut rows);
+    cases.run_case(number, &mut rows);
     rows.retain(|row| row.cases > 0);
     println!("{}\n{}", cases.describe(number), table(&rows)?);
     Ok(())
@@ -48,9 +52,9 @@ pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
 
 /// Returns a description of the violations of a family.
 fn describe_violations(row: &Row) -> String {
-    let Row { family, exceeded, off, shallow, .. } = row;
+    let Row { family, upper_violations, off_triangle, too_shallow, .. } = row;
     format!(
-        "{family:?}: {exceeded} upper ends exceeded, {off} witnesses off their triangles, {shallow} shallow"
+        "{family:?}: {upper_violations} upper ends exceeded, {off_triangle} witnesses off their triangles, {too_shallow} shallow"
     )
 }
 
@@ -61,9 +65,9 @@ fn rows(cases: &Cases, count: u64) -> Result<Vec<Row>, std::num::TryFromIntError
         let from = k as u64 * CHUNK;
         let mut chunk_rows = Family::ALL.map(Row::new);
         for number in from..(from + CHUNK).min(count) {
-            cases.ask(number, &mut chunk_rows);
+            cases.run_case(number, &mut chunk_rows);
         }
-        chunk_rows.iter().flat_map(|row| &row.shown).for_each(|text| eprintln!("{text}"));
+        chunk_rows.iter().flat_map(|row| &row.descriptions).for_each(|text| eprintln!("{text}"));
         chunk_rows
     });
     let mut rows = Family::ALL.map(Row::new).to_vec();

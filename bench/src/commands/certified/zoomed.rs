@@ -2,8 +2,8 @@
 
 use std::error::Error;
 use touchoff::certify::TriangleBvh;
-use touchoff_bench::certified::subject::{FIELDS, PROFILES, Subject};
-use touchoff_bench::certified::{buried, poses, zoomed};
+use touchoff_bench::certified::depth_oracle::{DepthOracle, FIELDS, PROFILES};
+use touchoff_bench::certified::{enclosed, poses, zoomed};
 use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 
@@ -16,9 +16,9 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
     let rows = parallel::rows(parts.len() * names.len(), |k| {
         let ((part, mesh), name) = (&parts[k / names.len()], names[k % names.len()]);
         let tool = tools_library::find(name).expect("a tool of the library");
-        let subject = Subject::of(name);
+        let oracle = DepthOracle::of(name);
         let bvh = &bvh[k / names.len()];
-        let row = zoomed::Zoomed { part, mesh, bvh, tool, subject: &subject }.measure(
+        let row = zoomed::Zoomed { part, mesh, bvh, tool, depth_oracle: &oracle }.measure(
             poses_each,
             samples,
             seed + k as u64,
@@ -30,10 +30,10 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
     let round: Vec<&str> =
         names.into_iter().filter(|name| !["Block", "LBracket"].contains(name)).collect();
     let blocks = parallel::rows(round.len(), |k| {
-        let subject = Subject::of(round[k]);
+        let oracle = DepthOracle::of(round[k]);
         let tool = tools_library::find(round[k]).expect("a tool of the library");
-        let count = if matches!(subject, Subject::Profile(..)) { 1000 } else { 20 };
-        buried::measure(tool, &subject, count, seed)
+        let count = if matches!(oracle, DepthOracle::Profile(..)) { 1000 } else { 20 };
+        enclosed::measure(tool, &oracle, count, seed)
     });
 
     let about = format!(
@@ -44,11 +44,12 @@ their field or with overhangs, 1e-6. Tolerances are 1e-9 of the size, and of the
 
 "
     );
-    let buried = blocks.iter().flat_map(|row| row.violations.clone());
-    let missed = rows.iter().flat_map(|row| row.violations.clone()).chain(buried).collect();
+    let enclosed_violations = blocks.iter().flat_map(|row| row.violations.clone());
+    let missed_limits =
+        rows.iter().flat_map(|row| row.violations.clone()).chain(enclosed_violations).collect();
     Ok(Section {
         title: "Beside samples that zoom in",
         body: about + &zoomed::table(&rows, &blocks)?,
-        missed,
+        missed_limits,
     })
 }

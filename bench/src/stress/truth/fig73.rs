@@ -1,9 +1,9 @@
 //! The thesis's tool with its own magnitudes (Ho 1999, eq. 7.1 to 7.3), in 256 bits.
 
-use super::{Claim, Place, Truth};
+use super::{ExactPoint, RegionValues, Truth};
 use touchoff::Tool;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::restated::Restated;
 
 const NAMES: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
@@ -34,7 +34,7 @@ struct ThesisPoint {
 }
 
 impl ThesisPoint {
-    fn new([x, y, z]: &Place) -> ThesisPoint {
+    fn new([x, y, z]: &ExactPoint) -> ThesisPoint {
         let d = (&(x * x) + &(y * y)).sqrt();
         let radial =
             if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [x / &d, y / &d] };
@@ -96,7 +96,7 @@ impl ThesisPoint {
     }
 
     /// Returns the direction toward the surface by the thesis, in the tool's frame.
-    fn direction(&self, region: usize) -> Place {
+    fn direction(&self, region: usize) -> ExactPoint {
         let root = |n: f64| Big::exactly(n).sqrt();
         let one = || Big::exactly(1.0);
         let [e_d, e_z] = match region {
@@ -119,29 +119,29 @@ impl Truth for Magnitudes {
         self.solid.scale()
     }
 
-    fn depth(&self, p: &Place) -> Big {
+    fn depth(&self, p: &ExactPoint) -> Big {
         let point = ThesisPoint::new(p);
         match (0..9).find(|region| point.outside(*region) == Big::zero()) {
             Some(region) => point.magnitude(region),
-            None => -&self.solid.depth(&At::of(p.clone())).abs(),
+            None => -&self.solid.depth(&QueryPoint::of(p.clone())).abs(),
         }
     }
 
-    fn owner(&self, p: &Place) -> Option<usize> {
+    fn owner(&self, p: &ExactPoint) -> Option<usize> {
         let point = ThesisPoint::new(p);
         let owner = (0..9).find(|region| point.outside(*region) == Big::zero())?;
         self.indices.iter().position(|index| *index == Some(owner))
     }
 
-    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
         let region = (*self.indices.get(region)?)?;
         let point = ThesisPoint::new(p);
         let d = point.d.to_f64();
-        Some(Claim {
+        Some(RegionValues {
             depth: point.magnitude(region),
-            behind: point.outside(region).to_f64(),
+            excess_distance: point.outside(region).to_f64(),
             direction: point.direction(region),
-            singular: match region {
+            singularity_distance: match region {
                 0 | 2 => f64::INFINITY,
                 8 => d.min(point.arm().0.to_f64()),
                 _ => d,

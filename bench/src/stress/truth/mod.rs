@@ -13,19 +13,19 @@ use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::{Block, Fig73, LBracket, Nearest, Oracle, restated};
 
 /// A point of the tool's frame.
-pub type Place = [Big; 3];
+pub type ExactPoint = [Big; 3];
 
 /// The values of a region at a point, whether or not the region owns the point.
-pub struct Claim {
+pub struct RegionValues {
     /// The depth by the region's own formula, or the magnitude if the tool takes that as its depth.
     pub depth: Big,
     /// Distance by which the point misses the region: the excess of the distance to the region's surface over that to
     /// the nearest surface, or the violation of its conditions.
-    pub behind: f64,
+    pub excess_distance: f64,
     /// The unit vector toward the region's surface.
-    pub direction: Place,
+    pub direction: ExactPoint,
     /// The distance to the nearest point at which the direction is undefined.
-    pub singular: f64,
+    pub singularity_distance: f64,
 }
 
 /// The true values of a tool.
@@ -34,13 +34,13 @@ pub trait Truth: Send + Sync {
     fn scale(&self) -> f64;
 
     /// Returns the depth of a point inside, 0 on the surface, and minus the distance from the surface outside.
-    fn depth(&self, p: &Place) -> Big;
+    fn depth(&self, p: &ExactPoint) -> Big;
 
     /// Returns the index of the region that owns a point, in the tool's list. On a border it is one of the neighbours.
-    fn owner(&self, p: &Place) -> Option<usize>;
+    fn owner(&self, p: &ExactPoint) -> Option<usize>;
 
     /// Returns the values of a region at a point, or `None` if there is no such region.
-    fn claim(&self, p: &Place, region: usize) -> Option<Claim>;
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues>;
 }
 
 /// A library tool, its true values, and an oracle in doubles for finding points.
@@ -71,7 +71,7 @@ impl Subject {
 }
 
 /// Converts a point exactly.
-pub fn place(p: [f64; 3]) -> Place {
+pub fn to_exact(p: [f64; 3]) -> ExactPoint {
     p.map(Big::exactly)
 }
 
@@ -112,7 +112,7 @@ pub fn subjects() -> Vec<Subject> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Rng;
+    use touchoff_tests::oracle::rng::Rng;
 
     /// The true values agree with the oracles in doubles, which are implemented independently.
     #[test]
@@ -127,19 +127,22 @@ mod tests {
                 let [x, y] = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
                 let p = [x, y, rng.between(-0.1 * height, 1.1 * height)];
                 let name = subject.name();
-                let depth = subject.truth.depth(&place(p)).to_f64();
-                let sense = oracle.sense(p);
-                let expected = sense.map_or_else(|| -oracle.signed_distance(p), |s| s.magnitude);
+                let depth = subject.truth.depth(&to_exact(p)).to_f64();
+                let evaluation = oracle.evaluate(p);
+                let expected =
+                    evaluation.map_or_else(|| -oracle.signed_distance(p), |s| s.magnitude);
                 assert!((depth - expected).abs() < 1e-13 * scale, "{name} {p:?}");
-                let owner = subject.truth.owner(&place(p));
-                assert_eq!(owner.is_some(), sense.is_some(), "{name} {p:?}");
-                let (Some(owner), Some(sense)) = (owner, sense) else { continue };
-                let claim = subject.truth.claim(&place(p), owner).expect("it owns the point");
-                assert_eq!(claim.behind, 0.0, "{name} {p:?}");
-                assert!((claim.depth.to_f64() - expected).abs() < 1e-13 * scale, "{name} {p:?}");
-                let singular = oracle.singular(p).min(claim.singular);
-                for (u, v) in claim.direction.iter().zip(sense.direction) {
-                    let tolerance = 1e-13 * (1.0 + scale / singular);
+                let owner = subject.truth.owner(&to_exact(p));
+                assert_eq!(owner.is_some(), evaluation.is_some(), "{name} {p:?}");
+                let (Some(owner), Some(evaluation)) = (owner, evaluation) else { continue };
+                let values =
+                    subject.truth.region_values(&to_exact(p), owner).expect("it owns the point");
+                assert_eq!(values.excess_distance, 0.0, "{name} {p:?}");
+                assert!((values.depth.to_f64() - expected).abs() < 1e-13 * scale, "{name} {p:?}");
+                let singularity_distance =
+                    oracle.singularity_distance(p).min(values.singularity_distance);
+                for (u, v) in values.direction.iter().zip(evaluation.direction) {
+                    let tolerance = 1e-13 * (1.0 + scale / singularity_distance);
                     assert!((u.to_f64() - v).abs() < tolerance, "{name} {p:?}");
                 }
             }

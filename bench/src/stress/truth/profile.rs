@@ -1,10 +1,10 @@
 //! Tools defined by profiles: depth is the distance to the nearest feature.
 
-use super::{Claim, Place, Truth};
+use super::{ExactPoint, RegionValues, Truth};
 use touchoff::Tool;
 use touchoff_tests::accuracy;
 use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::restated::Restated;
 
 /// The true values of a profile tool, from its restatement.
@@ -27,17 +27,17 @@ impl Truth for Profiled {
         self.reference.scale()
     }
 
-    fn depth(&self, p: &Place) -> touchoff_tests::oracle::big::Big {
-        self.reference.depth(&At::of(p.clone()))
+    fn depth(&self, p: &ExactPoint) -> touchoff_tests::oracle::big::Big {
+        self.reference.depth(&QueryPoint::of(p.clone()))
     }
 
-    fn owner(&self, p: &Place) -> Option<usize> {
-        let owner = self.reference.owner(&At::of(p.clone()))?;
+    fn owner(&self, p: &ExactPoint) -> Option<usize> {
+        let owner = self.reference.owner(&QueryPoint::of(p.clone()))?;
         self.owners.iter().position(|owners| owners.contains(&owner))
     }
 
-    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
-        let point = At::of(p.clone());
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
+        let point = QueryPoint::of(p.clone());
         let distance_to = |owner: &usize| self.reference.distance_to(&point, *owner);
         let mut nearest = None;
         for owner in self.owners.get(region)? {
@@ -47,10 +47,10 @@ impl Truth for Profiled {
             }
         }
         let (depth, owner) = nearest?;
-        Some(Claim {
-            behind: (&depth - &self.reference.depth(&point).abs()).to_f64().max(0.0),
+        Some(RegionValues {
+            excess_distance: (&depth - &self.reference.depth(&point).abs()).to_f64().max(0.0),
             direction: self.reference.direction(&point, owner),
-            singular: self.reference.singular(&point, owner),
+            singularity_distance: self.reference.singularity_distance(&point, owner),
             depth,
         })
     }

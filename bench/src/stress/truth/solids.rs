@@ -1,6 +1,6 @@
 //! The block and the bracket in 256 bits: the distance to each face, and the faces that are relevant at each point.
 
-use super::{Claim, Place, Truth};
+use super::{ExactPoint, RegionValues, Truth};
 use touchoff::Tool;
 use touchoff_tests::oracle::big::Big;
 
@@ -89,18 +89,18 @@ fn length(a: &Big, b: &Big) -> Big {
 }
 
 /// Returns the vector from the hole's axis.
-fn from_bore_axis(p: &Place) -> [Big; 2] {
+fn from_bore_axis(p: &ExactPoint) -> [Big; 2] {
     [&p[0] - &Big::exactly(10.0), p[1].clone()]
 }
 
 /// Returns the vector from the inner edge.
-fn from_edge(p: &Place) -> [Big; 2] {
+fn from_edge(p: &ExactPoint) -> [Big; 2] {
     [&p[0] - &Big::exactly(WALL), &p[2] - &Big::exactly(LEDGE)]
 }
 
 impl Face {
     /// Returns the signed distance inside the face; for the edge, the distance from it.
-    fn inward(self, p: &Place) -> Big {
+    fn inward(self, p: &ExactPoint) -> Big {
         match self {
             Face::Plane { axis, at, sign } => &Big::exactly(sign) * &(&p[axis] - &Big::exactly(at)),
             Face::Sides { half } => &Big::exactly(half) - &p[1].abs(),
@@ -115,7 +115,7 @@ impl Face {
         }
     }
 
-    fn direction(self, p: &Place) -> Place {
+    fn direction(self, p: &ExactPoint) -> ExactPoint {
         let zero = Big::zero;
         match self {
             Face::Plane { axis, sign, .. } => {
@@ -142,7 +142,7 @@ impl Face {
 
     /// Returns the distance to the nearest point at which the direction is undefined, or for which another direction is
     /// equally good.
-    fn singular(self, p: &Place) -> f64 {
+    fn singularity_distance(self, p: &ExactPoint) -> f64 {
         match self {
             Face::Plane { .. } => f64::INFINITY,
             Face::Sides { .. } => f64::INFINITY,
@@ -156,7 +156,7 @@ impl Face {
 }
 
 /// Returns the distance by which a point is outside a zone.
-fn distance_from_zone(zone: Zone, p: &Place) -> Big {
+fn distance_from_zone(zone: Zone, p: &ExactPoint) -> Big {
     let [beyond_wall, above_ledge] = from_edge(p);
     let max = |a: Big, b: Big| if a > b { a } else { b };
     let signed = match zone {
@@ -185,7 +185,7 @@ impl Faces {
 
     /// Returns the nearest face in the point's zone, and the depth of the point, negative outside. Zones meet in
     /// planes; there the zone counts in which the point is deeper.
-    fn nearest(&self, p: &Place) -> (usize, Big) {
+    fn nearest(&self, p: &ExactPoint) -> (usize, Big) {
         let zones = [Zone::Anywhere, Zone::Lying, Zone::Heel, Zone::Standing];
         let containing =
             zones.into_iter().filter(|zone| distance_from_zone(*zone, p) == Big::zero());
@@ -198,7 +198,7 @@ impl Faces {
         best.expect("every place is in a zone that has faces")
     }
 
-    fn nearest_in(&self, selected_zone: Zone, p: &Place) -> Option<(usize, Big)> {
+    fn nearest_in(&self, selected_zone: Zone, p: &ExactPoint) -> Option<(usize, Big)> {
         let mut best: Option<(usize, Big)> = None;
         for (region, (_, zone, face)) in self.shape.regions().iter().enumerate() {
             if *zone != selected_zone {
@@ -213,7 +213,7 @@ impl Faces {
     }
 
     /// Returns the distance from a point outside to the boxes of the solid, or to the hole if that is nearest.
-    fn distance_outside(&self, p: &Place) -> Big {
+    fn distance_outside(&self, p: &ExactPoint) -> Big {
         let to_box = |low: [f64; 3], high: [f64; 3]| {
             let squares = (0..3).map(|k| {
                 let below = &Big::exactly(low[k]) - &p[k];
@@ -247,29 +247,30 @@ impl Truth for Faces {
         32.0
     }
 
-    fn depth(&self, p: &Place) -> Big {
+    fn depth(&self, p: &ExactPoint) -> Big {
         let (_, inward) = self.nearest(p);
         if inward.is_negative() { -&self.distance_outside(p) } else { inward }
     }
 
-    fn owner(&self, p: &Place) -> Option<usize> {
+    fn owner(&self, p: &ExactPoint) -> Option<usize> {
         let (region, inward) = self.nearest(p);
         let index = || self.indices.iter().position(|index| *index == Some(region));
         if inward.is_negative() { None } else { index() }
     }
 
-    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues> {
         let region = (*self.indices.get(region)?)?;
         let (_, zone, face) = self.shape.regions()[region];
         let depth = face.inward(p);
         // Beyond the border to a neighbouring zone, the point misses the region by at least its distance from the zone.
-        let behind = (&depth - &self.nearest(p).1).abs();
+        let excess_distance = (&depth - &self.nearest(p).1).abs();
         let zone_distance = distance_from_zone(zone, p);
-        let behind = if zone_distance > behind { zone_distance } else { behind };
-        Some(Claim {
-            behind: behind.to_f64(),
+        let excess_distance =
+            if zone_distance > excess_distance { zone_distance } else { excess_distance };
+        Some(RegionValues {
+            excess_distance: excess_distance.to_f64(),
             direction: face.direction(p),
-            singular: face.singular(p),
+            singularity_distance: face.singularity_distance(p),
             depth,
         })
     }

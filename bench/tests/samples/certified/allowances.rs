@@ -7,10 +7,10 @@ use touchoff::certify::{
 };
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_bench::certified::brute::Brute;
-use touchoff_bench::certified::owned::Owned;
-use touchoff_bench::certified::{poses, ways};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_bench::certified::allowances::SurfaceAllowances;
+use touchoff_bench::certified::brute::BruteForce;
+use touchoff_bench::certified::{motions, poses};
+use touchoff_tests::oracle::rng::Rng;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 const TOOLS: [&str; 10] = [
@@ -51,7 +51,7 @@ fn certifier_with<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)])
 /// Runs a check for all parts and tools.
 fn for_all_parts_and_tools(
     tools: &[&str],
-    mut check: impl FnMut(&str, &TriangleBvh, &Owned<'_>, &mut Rng),
+    mut check: impl FnMut(&str, &TriangleBvh, &SurfaceAllowances<'_>, &mut Rng),
 ) {
     let mut rng = Rng::new(5);
     for (_, mesh) in poses::parts().expect("parts") {
@@ -59,21 +59,25 @@ fn for_all_parts_and_tools(
         for name in tools {
             let oracle = oracle(name);
             let length = tool(name).info().unit.factor_to(mesh.unit());
-            let brute = Brute::new(&mesh, &oracle, length);
+            let brute = BruteForce::new(&mesh, &oracle, length);
             let names = names(tool(name));
-            let owned = Owned { brute: &brute, allowed: vec![0.0; names.len()], names };
+            let owned = SurfaceAllowances {
+                brute: &brute,
+                allowances: vec![0.0; names.len()],
+                surface_names: names,
+            };
             check(name, &bvh, &owned, &mut rng);
         }
     }
 }
 
-fn random_pose(owned: &Owned<'_>, rng: &mut Rng) -> Pose {
-    ways::way(owned.brute, "still", rng).from
+fn random_pose(owned: &SurfaceAllowances<'_>, rng: &mut Rng) -> Pose {
+    motions::random_motion(owned.brute, "still", rng).from
 }
 
 /// Sets random allowances of the order of the depths that occur.
-fn set_random_allowances(owned: &mut Owned<'_>, rng: &mut Rng) {
-    for allowed in &mut owned.allowed {
+fn set_random_allowances(owned: &mut SurfaceAllowances<'_>, rng: &mut Rng) {
+    for allowed in &mut owned.allowances {
         let size = 10f64.powf(rng.between(-3.0, 0.7));
         *allowed = match rng.bits() % 5 {
             0 => 0.0,
@@ -84,7 +88,7 @@ fn set_random_allowances(owned: &mut Owned<'_>, rng: &mut Rng) {
     }
 }
 
-fn rounding(owned: &Owned<'_>) -> f64 {
+fn rounding(owned: &SurfaceAllowances<'_>) -> f64 {
     64.0 * f64::EPSILON * owned.brute.size
 }
 
@@ -116,22 +120,25 @@ fn check_surface_depths(tools: &[&str]) -> usize {
             let (pose, tolerance) = (random_pose(owned, rng), [0.0, 1e-6, 1e-3][k % 3]);
             let samples = owned.samples(&pose, rng);
             let mut max_depths = [0.0f64; 2];
-            for surface in 0..owned.names.len() {
+            for surface in 0..owned.surface_names.len() {
                 let penetration =
                     certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
                 let text = format!("{name} {surface} at {pose:?}, {tolerance:e}: {penetration:?}");
                 let Interval { low, high } = penetration.depth;
                 assert!(0.0 <= low && low <= high, "{text}");
-                let best = owned.most(&pose, &samples, |p| owned.depth(surface, p), rng);
+                let best = owned.max_sample(&pose, &samples, |p| owned.depth(surface, p), rng);
                 if let Some(best) = best {
                     assert!(best.value <= high + rounding, "{text}, {best:?}");
                     owners += 1;
                 }
                 if let Some(witness) = penetration.witness {
-                    let p = owned.brute.inside(&pose, witness.point);
+                    let p = owned.brute.point_in_tool_frame(&pose, witness.point);
                     let depth = owned.brute.depth(p) * owned.brute.length;
                     assert!(depth >= low - rounding, "{text}: {depth}");
-                    assert!(owned.away(surface, p) <= depth.abs() + 4.0 * rounding, "{text}");
+                    assert!(
+                        owned.distance_to_surface(surface, p) <= depth.abs() + 4.0 * rounding,
+                        "{text}"
+                    );
                     assert_eq!(witness.surface, SurfaceId(surface), "{text}");
                 } else {
                     assert_eq!(low, 0.0, "{text}");
@@ -152,15 +159,17 @@ fn check_surface_depths(tools: &[&str]) -> usize {
 
 /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
 fn assert_witness_violates_allowance(
-    owned: &Owned<'_>,
+    owned: &SurfaceAllowances<'_>,
     pose: &Pose,
     witness: &Witness,
     text: &str,
 ) {
-    let p = owned.brute.inside(pose, witness.point);
-    let (slack, allowed) = (4.0 * rounding(owned), owned.allowed[witness.surface.0]);
-    let (depth, distance) =
-        (owned.brute.depth(p) * owned.brute.length, owned.away(witness.surface.0, p));
+    let p = owned.brute.point_in_tool_frame(pose, witness.point);
+    let (slack, allowed) = (4.0 * rounding(owned), owned.allowances[witness.surface.0]);
+    let (depth, distance) = (
+        owned.brute.depth(p) * owned.brute.length,
+        owned.distance_to_surface(witness.surface.0, p),
+    );
     let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
     assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
 }
@@ -170,18 +179,27 @@ fn pose_verdicts_respect_allowances() {
     let mut counts = [0; 2];
     for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
         for _ in 0..POSES {
-            let mut owned =
-                Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
+            let mut owned = SurfaceAllowances {
+                surface_names: owned.surface_names.clone(),
+                allowances: owned.allowances.clone(),
+                ..*owned
+            };
             set_random_allowances(&mut owned, rng);
-            let allowed: Vec<_> =
-                owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
+            let allowed: Vec<_> = owned
+                .surface_names
+                .iter()
+                .map(String::as_str)
+                .zip(owned.allowances.iter().copied())
+                .collect();
             let mut certifier = certifier_with(bvh, name, &allowed);
             let pose = random_pose(&owned, rng);
             let verdict = certifier.check_pose(&pose);
             let text = format!("{name} at {pose:?} with {allowed:?}: {verdict:?}");
             let max_excess = |rng: &mut Rng| {
                 let samples = owned.samples(&pose, rng);
-                owned.most(&pose, &samples, |p| owned.over(p), rng).map_or(0.0, |best| best.value)
+                owned
+                    .max_sample(&pose, &samples, |p| owned.max_excess(p), rng)
+                    .map_or(0.0, |best| best.value)
             };
             match verdict {
                 PoseVerdict::Clear | PoseVerdict::Inside(_) | PoseVerdict::SurfaceOnly => {
@@ -208,14 +226,25 @@ fn motion_verdicts_respect_allowances() {
     let mut counts = [0; 3];
     for_all_parts_and_tools(&TOOLS, |name, bvh, owned, rng| {
         for k in 0..MOTIONS {
-            let mut owned =
-                Owned { names: owned.names.clone(), allowed: owned.allowed.clone(), ..*owned };
+            let mut owned = SurfaceAllowances {
+                surface_names: owned.surface_names.clone(),
+                allowances: owned.allowances.clone(),
+                ..*owned
+            };
             set_random_allowances(&mut owned, rng);
-            let allowed: Vec<_> =
-                owned.names.iter().map(String::as_str).zip(owned.allowed.iter().copied()).collect();
+            let allowed: Vec<_> = owned
+                .surface_names
+                .iter()
+                .map(String::as_str)
+                .zip(owned.allowances.iter().copied())
+                .collect();
             let mut certifier = certifier_with(bvh, name, &allowed).with_budget(1 << 17);
-            let path = ways::way(owned.brute, ways::KINDS[(5 * k) % ways::KINDS.len()], rng);
-            let motion = Motion::new(&path.from, &path.to).expect("one way");
+            let path = motions::random_motion(
+                owned.brute,
+                motions::MOTION_KINDS[(5 * k) % motions::MOTION_KINDS.len()],
+                rng,
+            );
+            let motion = Motion::new(&path.from, &path.to).expect("an unambiguous rotation");
             let tolerance = [0.0, 1e-3][k % 2];
             let verdict = certifier.check_motion(&motion, tolerance);
             let text = format!("{name} on {path:?} with {allowed:?}, {tolerance:e}: {verdict:?}");
@@ -239,7 +268,7 @@ fn motion_verdicts_respect_allowances() {
                 let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
                 let pose = path.pose(t);
                 let samples = owned.samples(&pose, rng);
-                let excess = owned.most(&pose, &samples, |p| owned.over(p), rng);
+                let excess = owned.max_sample(&pose, &samples, |p| owned.max_excess(p), rng);
                 let excess = excess.map_or(0.0, |best| best.value);
                 assert!(
                     excess <= tolerance.max(16.0 * rounding) + 4.0 * rounding,
@@ -260,17 +289,17 @@ fn a_flute_may_cut_and_a_shank_may_not() {
         let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, top]);
         let bvh = TriangleBvh::new(&wall);
         let mut certifier = certifier_with(&bvh, "Flat", &[("flute", f64::INFINITY)]);
-        let found = certifier.check_pose(&upright);
-        let verdict_at_rest =
-            certifier.check_motion(&Motion::new(&upright, &upright).expect("one way"), 0.0);
+        let verdict = certifier.check_pose(&upright);
+        let verdict_at_rest = certifier
+            .check_motion(&Motion::new(&upright, &upright).expect("an unambiguous rotation"), 0.0);
         if clear {
             assert_eq!(
-                (found, verdict_at_rest),
+                (verdict, verdict_at_rest),
                 (PoseVerdict::Clear, MotionVerdict::Clear),
                 "{top}"
             );
         } else {
-            let PoseVerdict::Touching(witness) = found else { panic!("{top}: {found:?}") };
+            let PoseVerdict::Touching(witness) = verdict else { panic!("{top}: {verdict:?}") };
             assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
             assert!(
                 matches!(verdict_at_rest, MotionVerdict::Touching(..)),
@@ -284,14 +313,15 @@ fn a_flute_may_cut_and_a_shank_may_not() {
         let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
         assert_eq!(certifier.check_pose(&upright) == PoseVerdict::Clear, clear, "{allowed}");
         // Along the wall the depth is constant.
-        let found = certifier.check_motion(&motion_along_wall(), 0.02);
-        assert_eq!(found == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {found:?}");
+        let verdict = certifier.check_motion(&motion_along_wall(), 0.02);
+        assert_eq!(verdict == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {verdict:?}");
     }
 }
 
 /// Returns a motion on which the flute stays 2 mm deep in a wall at x = 4.
 fn motion_along_wall() -> Motion {
-    Motion::new(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP)).expect("one way")
+    Motion::new(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP))
+        .expect("an unambiguous rotation")
 }
 
 #[test]
@@ -301,8 +331,8 @@ fn a_flute_cuts_along_a_wall() {
     for allowed in [2.01, 3.0, f64::INFINITY] {
         for tolerance in [0.0, 1e-6, 1e-3] {
             let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
-            let found = certifier.check_motion(&motion_along_wall(), tolerance);
-            assert_eq!(found, MotionVerdict::Clear, "{allowed} {tolerance:e}");
+            let verdict = certifier.check_motion(&motion_along_wall(), tolerance);
+            assert_eq!(verdict, MotionVerdict::Clear, "{allowed} {tolerance:e}");
         }
     }
 }
@@ -325,18 +355,19 @@ fn a_nut_keeps_its_margin_from_all_sides() {
             let bvh = TriangleBvh::new(&part(gap));
             let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
             let end_pose = pose([0.0; 3], UP);
-            let found = certifier.check_pose(&end_pose);
-            let rest = Motion::new(&pose([0.0; 3], UP), &end_pose).expect("one way");
+            let verdict = certifier.check_pose(&end_pose);
+            let rest =
+                Motion::new(&pose([0.0; 3], UP), &end_pose).expect("an unambiguous rotation");
             let verdict_at_rest = certifier.check_motion(&rest, 0.0);
             if clear {
                 assert_eq!(
-                    (found, verdict_at_rest),
+                    (verdict, verdict_at_rest),
                     (PoseVerdict::Clear, MotionVerdict::Clear),
                     "{case} {gap}"
                 );
             } else {
-                let PoseVerdict::Touching(witness) = found else {
-                    panic!("{case} {gap}: {found:?}")
+                let PoseVerdict::Touching(witness) = verdict else {
+                    panic!("{case} {gap}: {verdict:?}")
                 };
                 assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
                 assert!(
@@ -346,7 +377,8 @@ fn a_nut_keeps_its_margin_from_all_sides() {
             }
             // Approach from far away along the axis.
             let lift = if case == "end" { -30.0 } else { 3.0 };
-            let approach = Motion::new(&pose([0.0, 0.0, lift], UP), &end_pose).expect("one way");
+            let approach = Motion::new(&pose([0.0, 0.0, lift], UP), &end_pose)
+                .expect("an unambiguous rotation");
             let approach = certifier.check_motion(&approach, 0.0);
             if case != "side" {
                 assert_eq!(approach == MotionVerdict::Clear, clear, "{case} {gap}: {approach:?}");
@@ -368,31 +400,32 @@ fn a_level_face_alone_keeps_its_margin() {
     for (tip, clear) in [(0.4, false), (0.6, true), (0.5 + 1e-9, true), (0.5 - 1e-9, false)] {
         let mut certifier = certifier_with(&bvh, "Flat", &[("face", -0.5)]);
         let end_pose = pose([1.0, 2.0, tip], UP);
-        let found = certifier.check_pose(&end_pose);
-        assert_eq!(found == PoseVerdict::Clear, clear, "{tip}: {found:?}");
+        let verdict = certifier.check_pose(&end_pose);
+        assert_eq!(verdict == PoseVerdict::Clear, clear, "{tip}: {verdict:?}");
         for from in [[-60.0, 2.0, tip], [1.0, 2.0, 30.0]] {
-            let path = Motion::new(&pose(from, UP), &end_pose).expect("one way");
-            let found = certifier.check_motion(&path, 0.0);
-            assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
+            let path = Motion::new(&pose(from, UP), &end_pose).expect("an unambiguous rotation");
+            let verdict = certifier.check_motion(&path, 0.0);
+            assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
         }
         // A part inside the middle of the tool, with depth allowed for the flute.
         let inside = TriangleBvh::new(&block([-1.0, -1.0, tip], [1.0, 1.0, 5.0]));
         let allowed = [("face", -0.5), ("flute", f64::INFINITY), ("shank", f64::INFINITY)];
         let mut certifier = certifier_with(&inside, "Flat", &allowed);
         // The face is the nearest surface here, and it must not be in the part at all.
-        let found = certifier.check_pose(&pose([0.0; 3], UP));
-        assert!(matches!(found, PoseVerdict::Touching(_)), "{tip}: {found:?}");
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
+        assert!(matches!(verdict, PoseVerdict::Touching(_)), "{tip}: {verdict:?}");
         let above = TriangleBvh::new(&block([5.8, -0.1, tip], [5.9, 0.1, 5.0]));
         let mut certifier = certifier_with(&above, "Flat", &allowed);
-        let found = certifier.check_pose(&pose([0.0; 3], UP));
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
         assert_eq!(
-            matches!(found, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
+            matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
             clear,
-            "{tip}: {found:?}"
+            "{tip}: {verdict:?}"
         );
-        let path = Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("one way");
-        let found = certifier.check_motion(&path, 0.0);
-        assert_eq!(found == MotionVerdict::Clear, clear, "{tip}: {found:?}");
+        let path =
+            Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("an unambiguous rotation");
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
     }
 }
 
@@ -407,13 +440,18 @@ fn allowances_of_all_surfaces_permit_depth_or_require_a_margin() {
         let allowances: Vec<_> =
             allowances.iter().map(|(name, allowed)| (name.as_str(), *allowed)).collect();
         let mut certifier = certifier_with(&bvh, "Flat", &allowances);
-        let found = certifier.check_pose(&deep);
-        assert_eq!(matches!(found, PoseVerdict::Touching(_)), !clear, "{allowed}: {found:?}");
+        let verdict = certifier.check_pose(&deep);
+        assert_eq!(matches!(verdict, PoseVerdict::Touching(_)), !clear, "{allowed}: {verdict:?}");
         let high = certifier.check_pose(&pose([0.0, 0.0, 1.0 + 1e-6], UP));
         assert_eq!(high, PoseVerdict::Clear, "{allowed}");
-        let path = Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("one way");
-        let found = certifier.check_motion(&path, 0.0);
-        assert_eq!(matches!(found, MotionVerdict::Touching(..)), !clear, "{allowed}: {found:?}");
+        let path =
+            Motion::new(&deep, &pose([3.0, 0.0, -5.0], UP)).expect("an unambiguous rotation");
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(
+            matches!(verdict, MotionVerdict::Touching(..)),
+            !clear,
+            "{allowed}: {verdict:?}"
+        );
     }
 }
 

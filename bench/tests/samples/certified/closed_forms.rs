@@ -58,8 +58,8 @@ fn a_flush_flat_end_has_no_depth() {
 fn depth_of_a_side_in_a_plane() {
     // BullNose is a cylinder of 6 mm radius from z = 2 to 14.
     for depth in [0.0, 1e-9, 1e-3, 0.5] {
-        let beside = pose([26.0 - depth, 0.0, -12.0], UP);
-        assert_interval_contains(&plate(), "BullNose", &beside, depth);
+        let side_pose = pose([26.0 - depth, 0.0, -12.0], UP);
+        assert_interval_contains(&plate(), "BullNose", &side_pose, depth);
     }
 }
 
@@ -102,7 +102,7 @@ fn pose_verdicts_tell_inside_from_outside() {
     let mut in_block = Certifier::new(&block, tool("D2Ball")).expect("a profile");
     let plane = TriangleBvh::new(&shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"));
     let mut on_plane = Certifier::new(&plane, tool("D2Ball")).expect("a profile");
-    let mut rng = touchoff_tests::oracle::draw::Rng::new(3);
+    let mut rng = touchoff_tests::oracle::rng::Rng::new(3);
     for _ in 0..200 {
         let axis = rng.direction();
         let inside_tip = [0; 3].map(|_| rng.between(-100.0, 100.0));
@@ -146,6 +146,6 @@ fn a_neck_corner_limits_depth_above_the_ball_centre() {
     let depth = 13f64.sqrt();
     let bvh = TriangleBvh::new(&mesh);
     let mut certifier = Certifier::new(&bvh, tool("Lollipop")).expect("a profile");
-    let found = certifier.deepest(&pose([0.0; 3], UP), 1e-9);
-    assert!(found.depth.high >= depth - 1e-12, "{depth} in {found:?}");
+    let penetration = certifier.deepest(&pose([0.0; 3], UP), 1e-9);
+    assert!(penetration.depth.high >= depth - 1e-12, "{depth} in {penetration:?}");
 }

@@ -17,7 +17,8 @@ fn upside_down(depth: f64) -> touchoff::Pose {
 fn an_end_within_the_tolerance_is_not_inside() {
     let bvh = TriangleBvh::new(&plate());
     let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
-    let at_rest = Motion::new(&upside_down(1e-4), &upside_down(1e-4)).expect("one way");
+    let at_rest =
+        Motion::new(&upside_down(1e-4), &upside_down(1e-4)).expect("an unambiguous rotation");
     assert_eq!(certifier.check_motion(&at_rest, 1e-3), MotionVerdict::Clear);
 }
 
@@ -35,7 +36,7 @@ fn a_tool_entirely_inside_is_inside_with_any_allowance() {
         shapes::cuboid(Point3::from([-100.0; 3]), Point3::from([100.0; 3]), Unit::Millimetre);
     let bvh = TriangleBvh::new(&block.expect("a cuboid"));
     let pose = pose([0.0; 3], [0.0, 0.0, 1.0]);
-    let at_rest = Motion::new(&pose, &pose).expect("one way");
+    let at_rest = Motion::new(&pose, &pose).expect("an unambiguous rotation");
     let mut certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
     for surface in &*tool("Flat").info().surfaces {
         certifier = certifier.with_allowance(&surface.name, 3.0).expect("a surface");
@@ -61,14 +62,14 @@ fn the_margin_of_a_surface_smaller_than_the_tolerance_is_kept() {
     let mut certifier = allow("chamfer", -1.0, certifier);
     let at_rest = |z: f64| {
         let pose = pose([0.0, 0.0, z], [0.0, 0.0, 1.0]);
-        Motion::new(&pose, &pose).expect("one way")
+        Motion::new(&pose, &pose).expect("an unambiguous rotation")
     };
     for (z, clear) in [(1.1, true), (0.97, true), (0.9, false), (0.3, false)] {
-        let found = certifier.check_motion(&at_rest(z), 0.05);
+        let verdict = certifier.check_motion(&at_rest(z), 0.05);
         assert_eq!(
-            found == MotionVerdict::Clear || found == MotionVerdict::SurfaceOnly,
+            verdict == MotionVerdict::Clear || verdict == MotionVerdict::SurfaceOnly,
             clear,
-            "{z}: {found:?}"
+            "{z}: {verdict:?}"
         );
     }
 }

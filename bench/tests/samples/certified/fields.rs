@@ -8,7 +8,7 @@ use touchoff::certify::{
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Interval, Mesh, Motion, Pose, SurfaceId, TriangleId, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
 
 /// Returns every library tool without a profile, and its oracle.
@@ -55,9 +55,10 @@ fn max_sampled_depth(
     length: f64,
     rng: &mut Rng,
 ) -> f64 {
-    let evaluations =
-        random_points(mesh, rng).into_iter().filter_map(|p| oracle.sense(to_tool(pose, length, p)));
-    evaluations.map(|sense| sense.depth * length).fold(0.0, f64::max)
+    let evaluations = random_points(mesh, rng)
+        .into_iter()
+        .filter_map(|p| oracle.evaluate(to_tool(pose, length, p)));
+    evaluations.map(|evaluation| evaluation.depth * length).fold(0.0, f64::max)
 }
 
 #[test]
@@ -85,7 +86,7 @@ fn sampled_depths_of_fields_are_within_the_interval() {
             if let Some(witness) = penetration.witness {
                 touching += 1;
                 let depth =
-                    oracle.sense(to_tool(&pose, length, witness.point)).expect("inside").depth;
+                    oracle.evaluate(to_tool(&pose, length, witness.point)).expect("inside").depth;
                 assert!(low <= depth * length + 1e-9, "{name} {pose:?}: {depth} in {low}..{high}");
             }
             decided += usize::from(high - low <= 1.01 * TOLERANCE * size);
@@ -154,8 +155,8 @@ fn samples_of_a_field_are_within_the_certified_depth_of_their_surface() {
                 max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
                 wide += usize::from(high - low > 1.01 * TOLERANCE);
                 let depth_and_owner = |p: Point3<f64>| {
-                    let sense = oracle.sense(to_tool(&pose, length, p))?;
-                    Some((sense.depth * length, info.regions[sense.owner].surface))
+                    let evaluation = oracle.evaluate(to_tool(&pose, length, p))?;
+                    Some((evaluation.depth * length, info.regions[evaluation.owner].surface))
                 };
                 for point in random_points(&mesh, &mut rng) {
                     if let Some((depth, owner)) = depth_and_owner(point)
@@ -194,11 +195,12 @@ fn allowances_apply_to_each_surface_of_a_field() {
     assert_eq!(side.check_pose(&at(0.0, 0.0)), PoseVerdict::Clear);
     let slide = Motion::new(&at(-1.0, 0.0), &at(1.0, 0.0)).expect("upright");
     assert_eq!(side.check_motion(&slide, 1e-6), MotionVerdict::Clear);
-    let found = certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
-    let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = found else {
-        panic!("{found:?}")
+    let motion_depth =
+        certifier().motion_depth(SurfaceId(0), &slide, 0.4, 1e-6).expect("a surface");
+    let MotionDepth::Deeper { depth: Interval { low, high }, max_depth, .. } = motion_depth else {
+        panic!("{motion_depth:?}")
     };
-    assert!(low <= 0.5 && 0.5 <= high + 1e-9 && max_depth < 0.52, "{found:?}");
+    assert!(low <= 0.5 && 0.5 <= high + 1e-9 && max_depth < 0.52, "{motion_depth:?}");
     assert_eq!(
         certifier().motion_depth(SurfaceId(1), &slide, 0.0, 1e-6).expect("a surface"),
         MotionDepth::Within

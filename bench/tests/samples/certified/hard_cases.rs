@@ -4,9 +4,9 @@ use super::{plate, pose, soup, tool};
 use nalgebra::Point3;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::{Interval, Level, Mesh, Pose, TriangleId, Unit};
-use touchoff_bench::certified::{brute::Brute, poses};
+use touchoff_bench::certified::{brute::BruteForce, poses};
 use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
@@ -172,10 +172,10 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     for id in 0..mesh.triangles().len() as u32 {
         let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
         let single = soup(&[corners]);
-        let brute = Brute::new(&single, &oracle, 1.0);
-        let found = brute.deepest(&brute.seen(&above), &mut rng, &mut samples);
-        if found > high + 1e-9 {
-            deeper.push((id, corners, found, depth(&single, "BullNose", &above, 1e-6)));
+        let brute = BruteForce::new(&single, &oracle, 1.0);
+        let sampled_depth = brute.deepest(&brute.tool_frame(&above), &mut rng, &mut samples);
+        if sampled_depth > high + 1e-9 {
+            deeper.push((id, corners, sampled_depth, depth(&single, "BullNose", &above, 1e-6)));
         }
     }
     assert!(deeper.is_empty(), "{high}, but {deeper:?}");

@@ -3,9 +3,9 @@
 //! `cargo run --release -p touchoff-bench -- certified` checks 100,000 poses.
 
 mod allowances;
-mod apart;
-mod buried;
+mod clearance;
 mod closed_forms;
+mod enclosed;
 mod end_in_part;
 mod fields;
 mod hard_cases;

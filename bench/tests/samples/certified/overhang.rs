@@ -167,7 +167,7 @@ fn a_rim_is_as_deep_as_its_circle() {
         let samples = (0..=250).flat_map(|i| (0..=250 - i).map(move |j| (i, j)));
         let depth = |(i, j): (i32, i32)| {
             let p = a + (b - a) * (f64::from(i) / 250.0) + (c - a) * (f64::from(j) / 250.0);
-            oracle.sense(p.into()).map_or(0.0, |sense| sense.depth)
+            oracle.evaluate(p.into()).map_or(0.0, |evaluation| evaluation.depth)
         };
         let sampled = samples.map(depth).fold(0.0, f64::max);
         let Interval { low, high } =
@@ -201,7 +201,7 @@ fn a_zone_of_a_corner_on_the_axis_is_found_inside() {
         for (surface, limit) in [("dimple", limit), ("flute", unlimited), ("top", unlimited)] {
             certifier = certifier.with_allowance(surface, limit).expect("a surface");
         }
-        let found = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
-        assert_eq!(found, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
+        let verdict = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
+        assert_eq!(verdict, PoseVerdict::Inside(SurfaceId(0)), "{limit}");
     }
 }

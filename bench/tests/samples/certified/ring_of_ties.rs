@@ -24,9 +24,9 @@ const MAX_DEPTH: f64 = 4.5;
 fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
     let bvh = TriangleBvh::new(&wall());
     let mut certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
-    let found = certifier.deepest_on(SurfaceId(1), &upright(), 1e-9).expect("a surface");
-    let Interval { low, high } = found.depth;
-    assert!(low <= MAX_DEPTH && MAX_DEPTH <= high, "{found:?}");
+    let penetration = certifier.deepest_on(SurfaceId(1), &upright(), 1e-9).expect("a surface");
+    let Interval { low, high } = penetration.depth;
+    assert!(low <= MAX_DEPTH && MAX_DEPTH <= high, "{penetration:?}");
 }
 
 #[test]
@@ -36,11 +36,11 @@ fn the_allowance_of_a_flute_deepest_on_a_ring_is_checked() {
     let mut certifier = ["face", "back", "neck", "shank"]
         .into_iter()
         .fold(certifier, |c, other| c.with_allowance(other, f64::INFINITY).expect("a surface"));
-    let found = certifier.check_pose(&upright());
-    assert!(matches!(found, PoseVerdict::Touching(_)), "{found:?}");
-    let at_rest = Motion::new(&upright(), &upright()).expect("one way");
-    let found = certifier.check_motion(&at_rest, 0.0);
-    assert!(matches!(found, MotionVerdict::Touching(..)), "{found:?}");
+    let verdict = certifier.check_pose(&upright());
+    assert!(matches!(verdict, PoseVerdict::Touching(_)), "{verdict:?}");
+    let at_rest = Motion::new(&upright(), &upright()).expect("an unambiguous rotation");
+    let verdict = certifier.check_motion(&at_rest, 0.0);
+    assert!(matches!(verdict, MotionVerdict::Touching(..)), "{verdict:?}");
 }
 
 /// The centre of the corner's arc is (4, 2). It is 2 away from all of the arc, from the face and from the flute.

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, SurfaceId, TriangleId, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Block, LBracket, Oracle};
 
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
@@ -38,8 +38,8 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     let mut certifier = Certifier::new(&wall, super::tool("Block")).expect("proved");
     assert_eq!(certifier.check_motion(&rotation_at(-25.003), 1e-6), MotionVerdict::Clear);
     for reach in [24.9, 24.0, 21.0] {
-        let found = certifier.check_motion(&rotation_at(-reach), 1e-6);
-        let MotionVerdict::Touching(at, witness) = found else { panic!("{found:?}") };
+        let verdict = certifier.check_motion(&rotation_at(-reach), 1e-6);
+        let MotionVerdict::Touching(at, witness) = verdict else { panic!("{verdict:?}") };
         // The corner at (20, -15) points at the wall after 36.87 degrees. It is in the wall while 25 mm times the
         // cosine of the deviation exceeds the wall's distance.
         let (corner, half) = (0.75f64.atan(), (reach / 25.0).acos());
@@ -48,7 +48,7 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
         assert!(witness.point.x.abs() < 1e-9, "{witness:?}");
     }
     // During the motion the deepest point is on the wall beside the corner. At both ends the block is outside.
-    let most = (0..6)
+    let bounds = (0..6)
         .filter_map(|surface| {
             match certifier
                 .motion_depth(SurfaceId(surface), &rotation_at(-24.5), 0.0, 1e-6)
@@ -59,7 +59,9 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
                 other => panic!("{other:?}"),
             }
         })
-        .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth.low), high.max(most)]);
+        .fold([0.0f64; 2], |[low, high], (depth, max_depth)| {
+            [low.max(depth.low), high.max(max_depth)]
+        });
     // With `a` the angle between the wall's normal and a side's, the wall's point equally far from both sides has depth
     // `h / (cos a + sin a)` if the corner extends `h` beyond the wall. It is largest when the corner points slightly
     // past the wall's normal.
@@ -70,8 +72,8 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     });
     let depth = depths.fold(0.0, f64::max);
     assert!(
-        most[0] <= depth + 1e-6 && depth <= most[1] + 1e-6 && most[1] < 1.6 * depth,
-        "{most:?}"
+        bounds[0] <= depth + 1e-6 && depth <= bounds[1] + 1e-6 && bounds[1] < 1.6 * depth,
+        "{bounds:?}"
     );
 }
 
@@ -138,8 +140,8 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                             a + ((b - a) + (c - a)) / 3.0,
                         ]
                     });
-                    let evaluations = points.filter_map(move |p| oracle.sense(to_tool(p)));
-                    evaluations.map(|sense| sense.depth).fold(0.0, f64::max)
+                    let evaluations = points.filter_map(move |p| oracle.evaluate(to_tool(p)));
+                    evaluations.map(|evaluation| evaluation.depth).fold(0.0, f64::max)
                 };
                 let times = (0..=60).map(|step| f64::from(step) / 60.0);
                 let sampled = times.map(depths).fold(0.0, f64::max);
@@ -154,7 +156,7 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                         let contact_pose = motion.pose(at);
                         let p = contact_pose.rotation().transpose()
                             * (witness.point - contact_pose.tip());
-                        assert!(oracle.sense(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
+                        assert!(oracle.evaluate(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
                     }
                     MotionVerdict::Inside(_) => assert_eq!(sampled, 0.0, "{text}"),
                     MotionVerdict::Undecided(_) => undecided += 1,
@@ -162,7 +164,7 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                 }
                 if k % 3 == 0 {
                     let surfaces = 0..tool.info().surfaces.len();
-                    let most = surfaces.map(|surface| {
+                    let max_bound = surfaces.map(|surface| {
                         match certifier
                             .motion_depth(SurfaceId(surface), &motion, 0.0, TOLERANCE)
                             .expect("a surface")
@@ -172,9 +174,9 @@ fn samples_of_spinning_motions_are_within_the_bounds() {
                             MotionDepth::Undecided(_) => f64::INFINITY,
                         }
                     });
-                    let most = most.fold(0.0, f64::max);
-                    assert!(sampled <= most + 1e-9, "{text}: {most}");
-                    bounded += usize::from(most.is_finite());
+                    let max_bound = max_bound.fold(0.0, f64::max);
+                    assert!(sampled <= max_bound + 1e-9, "{text}: {max_bound}");
+                    bounded += usize::from(max_bound.is_finite());
                 }
             }
         }

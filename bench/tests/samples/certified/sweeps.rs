@@ -11,7 +11,7 @@ use touchoff_tests::oracle::Nearest;
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 fn motion(from: &Pose, to: &Pose) -> Motion {
-    Motion::new(from, to).expect("one way")
+    Motion::new(from, to).expect("an unambiguous rotation")
 }
 
 fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
@@ -46,13 +46,15 @@ fn a_ball_slides_along_a_plate_at_any_height() {
         }
     }
     for depth in [0.5, 1e-3, 1e-6, 1e-9] {
-        let found = sweep(&plate(), "D2Ball", &level(-depth), 0.0);
-        let MotionVerdict::Touching(at, witness) = found else { panic!("{depth:e}: {found:?}") };
-        assert!((0.0..=1.0).contains(&at) && witness.point.z.abs() < 1e-12, "{found:?}");
-        let found = sweep(&plate(), "D2Ball", &slide(sinks - depth), 0.0);
-        let MotionVerdict::Touching(at, _) = found else { panic!("{depth:e}: {found:?}") };
+        let verdict = sweep(&plate(), "D2Ball", &level(-depth), 0.0);
+        let MotionVerdict::Touching(at, witness) = verdict else {
+            panic!("{depth:e}: {verdict:?}")
+        };
+        assert!((0.0..=1.0).contains(&at) && witness.point.z.abs() < 1e-12, "{verdict:?}");
+        let verdict = sweep(&plate(), "D2Ball", &slide(sinks - depth), 0.0);
+        let MotionVerdict::Touching(at, _) = verdict else { panic!("{depth:e}: {verdict:?}") };
         let lean = (1.0 - (sinks - depth).max(0.0)).acos().to_degrees();
-        assert!(at >= lean / 40.0 - 1e-6, "{found:?}");
+        assert!(at >= lean / 40.0 - 1e-6, "{verdict:?}");
     }
     // Flush contact is no deeper than rounding.
     assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 1e-6), MotionVerdict::Clear);
@@ -64,8 +66,8 @@ fn a_ball_slides_along_a_plate_at_any_height() {
 fn contact_deeper_than_the_tolerance_is_found() {
     let path = |depth: f64| motion(&pose([-9.0, 0.0, 2.0], UP), &pose([3.0, 1.0, -depth], UP));
     for tolerance in [1e-6, 1e-3, 0.1] {
-        let found = sweep(&plate(), "BullNose", &path(1.001 * tolerance), tolerance);
-        assert!(matches!(found, MotionVerdict::Touching(..)), "{tolerance:e}: {found:?}");
+        let verdict = sweep(&plate(), "BullNose", &path(1.001 * tolerance), tolerance);
+        assert!(matches!(verdict, MotionVerdict::Touching(..)), "{tolerance:e}: {verdict:?}");
         assert_eq!(sweep(&plate(), "BullNose", &path(-1e-9), tolerance), MotionVerdict::Clear);
     }
 }
@@ -74,22 +76,22 @@ fn contact_deeper_than_the_tolerance_is_found() {
 fn a_plunge_touches_at_the_end_of_its_descent() {
     let plunge = |to: f64| motion(&pose([0.3, 0.1, 5.0], UP), &pose([0.3, 0.1, to], UP));
     for name in ["D2Ball", "Flat", "BullNose", "TSlot", "Lollipop"] {
-        let found = sweep(&plate(), name, &plunge(-1.0), 0.0);
-        let MotionVerdict::Touching(at, witness) = found else { panic!("{name}: {found:?}") };
-        assert!((5.0 / 6.0..=1.0).contains(&at), "{name}: {found:?}");
+        let verdict = sweep(&plate(), name, &plunge(-1.0), 0.0);
+        let MotionVerdict::Touching(at, witness) = verdict else { panic!("{name}: {verdict:?}") };
+        assert!((5.0 / 6.0..=1.0).contains(&at), "{name}: {verdict:?}");
         assert!(
             witness.point.z.abs() < 1e-12 && witness.point.xy().coords.norm() < 11.0,
-            "{found:?}"
+            "{verdict:?}"
         );
         for gap in [1e-3, 1e-9] {
             assert_eq!(sweep(&plate(), name, &plunge(gap), 0.0), MotionVerdict::Clear, "{name}");
             let back = motion(&plunge(gap).pose(1.0), &plunge(gap).pose(0.0));
             assert_eq!(sweep(&plate(), name, &back, 0.0), MotionVerdict::Clear, "{name}");
         }
-        let found = sweep(&plate(), name, &plunge(-1e-9), 0.0);
+        let verdict = sweep(&plate(), name, &plunge(-1e-9), 0.0);
         assert!(
-            matches!(found, MotionVerdict::Touching(at, _) if at > 1.0 - 1e-9),
-            "{name}: {found:?}"
+            matches!(verdict, MotionVerdict::Touching(at, _) if at > 1.0 - 1e-9),
+            "{name}: {verdict:?}"
         );
     }
 }
@@ -103,10 +105,12 @@ fn a_long_cylinder_swings_against_a_wall() {
     let swing = |to: f64| motion(&pose([0.0; 3], leaning(-70.0)), &pose([0.0; 3], leaning(to)));
     for short in [1.0, 1e-3, 1e-6] {
         assert_eq!(sweep(&wall, "Flat", &swing(contact - short), 0.0), MotionVerdict::Clear);
-        let found = sweep(&wall, "Flat", &swing(contact + short), 0.0);
-        let MotionVerdict::Touching(at, witness) = found else { panic!("{short:e}: {found:?}") };
+        let verdict = sweep(&wall, "Flat", &swing(contact + short), 0.0);
+        let MotionVerdict::Touching(at, witness) = verdict else {
+            panic!("{short:e}: {verdict:?}")
+        };
         let first = (70.0 + contact) / (70.0 + contact + short);
-        assert!((first - 1e-12..=1.0).contains(&at), "{short:e}: {found:?}");
+        assert!((first - 1e-12..=1.0).contains(&at), "{short:e}: {verdict:?}");
         assert!((witness.point.x - 20.0).abs() < 1e-12, "{witness:?}");
     }
 }
@@ -120,8 +124,8 @@ fn a_long_cylinder_swings_below_a_ceiling() {
         let ceiling = block([-300.0, -300.0, top + gap], [300.0, 300.0, 200.0]);
         assert_eq!(sweep(&ceiling, "Flat", &swing, 0.0), MotionVerdict::Clear, "{gap:e}");
         let ceiling = block([-300.0, -300.0, top - gap], [300.0, 300.0, 200.0]);
-        let found = sweep(&ceiling, "Flat", &swing, 0.0);
-        assert!(matches!(found, MotionVerdict::Touching(..)), "{gap:e}: {found:?}");
+        let verdict = sweep(&ceiling, "Flat", &swing, 0.0);
+        assert!(matches!(verdict, MotionVerdict::Touching(..)), "{gap:e}: {verdict:?}");
         // The motion also passes over an edge at that height.
         let fence = soup(&[[[0.0, 0.0, top + gap], [-5.0, 100.0, 100.0], [5.0, 100.0, 100.0]]]);
         assert_eq!(sweep(&fence, "Flat", &swing, 0.0), MotionVerdict::SurfaceOnly, "{gap:e}");
@@ -165,10 +169,10 @@ fn without_a_budget_nothing_is_decided() {
     let path = motion(&pose([-9.0, 0.0, 1e-6], UP), &pose([9.0, 0.0, 1e-6], UP));
     for budget in [0, 1, 3] {
         let certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
-        let found = certifier.with_budget(budget).check_motion(&path, 0.0);
+        let verdict = certifier.with_budget(budget).check_motion(&path, 0.0);
         assert!(
-            matches!(found, MotionVerdict::Undecided(at) if (0.0..1.0).contains(&at)),
-            "{found:?}"
+            matches!(verdict, MotionVerdict::Undecided(at) if (0.0..1.0).contains(&at)),
+            "{verdict:?}"
         );
     }
 }
@@ -196,9 +200,9 @@ fn long_rapid_motions_are_decided() {
         assert_eq!(sweep(&plate(), "D2Ball", &rapid(height, UP), 0.0), MotionVerdict::Clear);
     }
     for depth in [1e-3, 0.5, 5.0] {
-        let found = sweep(&plate(), "D2Ball", &rapid(-depth, UP), 0.0);
-        let MotionVerdict::Touching(at, _) = found else { panic!("{depth}: {found:?}") };
-        assert!((at - 0.5).abs() < 1.1e-5, "{found:?}");
+        let verdict = sweep(&plate(), "D2Ball", &rapid(-depth, UP), 0.0);
+        let MotionVerdict::Touching(at, _) = verdict else { panic!("{depth}: {verdict:?}") };
+        assert!((at - 0.5).abs() < 1.1e-5, "{verdict:?}");
     }
     let turning = sweep(&plate(), "D2Ball", &rapid(30.0, leaning(150.0)), 0.0);
     assert_eq!(turning, MotionVerdict::Clear);

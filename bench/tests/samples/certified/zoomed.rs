@@ -2,9 +2,9 @@
 
 use super::tool;
 use touchoff::certify::TriangleBvh;
-use touchoff_bench::certified::subject::{PROFILES, Subject};
+use touchoff_bench::certified::depth_oracle::{DepthOracle, PROFILES};
 use touchoff_bench::certified::zoomed::Zoomed;
-use touchoff_bench::certified::{buried, poses};
+use touchoff_bench::certified::{enclosed, poses};
 
 const SAMPLES: u64 = 40_000;
 
@@ -16,10 +16,10 @@ fn samples_that_zoom_in_are_within_the_interval() {
     for (part, mesh) in parts.iter().filter(|(part, _)| *part != "tube") {
         let bvh = TriangleBvh::new(mesh);
         for name in PROFILES.iter().chain(&["Fig73", "UnitSphere", "Block"]) {
-            let subject = Subject::of(name);
-            let zoomed = Zoomed { part, mesh, bvh: &bvh, tool: tool(name), subject: &subject };
+            let subject = DepthOracle::of(name);
+            let zoomed = Zoomed { part, mesh, bvh: &bvh, tool: tool(name), depth_oracle: &subject };
             let row = zoomed.measure(4, SAMPLES, 3);
-            assert!(row.violations.is_empty() && row.wider == 0, "{row:?}");
+            assert!(row.violations.is_empty() && row.too_wide == 0, "{row:?}");
             queried += row.poses;
             reached += row.reached;
         }
@@ -30,7 +30,7 @@ fn samples_that_zoom_in_are_within_the_interval() {
 #[test]
 fn a_tool_in_a_block_is_inside_unless_a_face_cuts_it() {
     for name in PROFILES {
-        let row = buried::measure(tool(name), &Subject::of(name), 40, 5);
+        let row = enclosed::measure(tool(name), &DepthOracle::of(name), 40, 5);
         assert!(row.violations.is_empty(), "{row:?}");
         assert!(row.inside[1] > 10 && row.cut[1] > 10, "{row:?}");
     }

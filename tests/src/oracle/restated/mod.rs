@@ -1,9 +1,9 @@
 //! The library's tools restated: each profile in the tool's frame and the file's unit, from its drawing's numbers
 //! and not from its file. Points are exact to 256 bits, so that no part of an error comes from the restatement.
 
+mod assemblies;
 mod form;
-mod held;
-mod hole;
+mod hole_making;
 mod plain;
 mod thesis;
 
@@ -17,7 +17,7 @@ pub type Niceness = fn(&str, f64, [f64; 2]) -> f64;
 
 /// A line, or an arc of less than 180°, to a point.
 #[derive(Clone, Debug)]
-pub struct Way {
+pub struct Segment {
     /// Its end.
     pub to: Point,
     /// The centre if it is an arc.
@@ -34,7 +34,7 @@ pub struct Restated {
     /// The start of the profile.
     pub start: Point,
     /// Its pieces.
-    pub ways: Vec<Way>,
+    pub segments: Vec<Segment>,
     /// Surfaces that cut.
     pub cutting: Vec<&'static str>,
     /// Niceness of a contact where the tool cuts.
@@ -45,12 +45,12 @@ impl Restated {
     /// Creates a tool whose profile begins on the axis at `z`.
     pub fn new(name: &'static str, z: f64) -> Restated {
         let start = [Big::zero(), Big::decimal(z)];
-        Restated { name, start, ways: Vec::new(), cutting: Vec::new(), niceness: |_, _, _| 1.0 }
+        Restated { name, start, segments: Vec::new(), cutting: Vec::new(), niceness: |_, _, _| 1.0 }
     }
 
     /// Adds a line to a point.
     pub fn line(mut self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
-        self.ways.push(Way { to: [d.into(), z.into()], centre: None, surface });
+        self.segments.push(Segment { to: [d.into(), z.into()], centre: None, surface });
         self
     }
 
@@ -70,7 +70,7 @@ impl Restated {
         [cd, cz]: [impl Into<Big>; 2],
     ) -> Restated {
         let centre = Some([cd.into(), cz.into()]);
-        self.ways.push(Way { to: [d.into(), z.into()], centre, surface });
+        self.segments.push(Segment { to: [d.into(), z.into()], centre, surface });
         self
     }
 
@@ -96,7 +96,7 @@ pub fn thesis() -> Vec<Restated> {
 
 /// Returns the cutters with a catalogue's dimensions.
 pub fn catalogue() -> Vec<Restated> {
-    [plain::all(), form::all(), hole::all(), held::all()].concat()
+    [plain::all(), form::all(), hole_making::all(), assemblies::all()].concat()
 }
 
 /// Returns the restated tool of a name.

@@ -10,7 +10,7 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, Compiled, compile};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a text that lies among the tools beside these tests.
 fn source(text: &str) -> Source {
@@ -53,11 +53,11 @@ fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
             && (a.extent.low - b.extent.low).abs() <= 1e-3
     );
     let (mut first, mut second) = (Interpreter::new(a), Interpreter::new(b));
-    let mut draw = Rng::new(5);
+    let mut rng = Rng::new(5);
     let mut evaluation = 0;
     for _ in 0..20_000 {
-        let [x, y] = [0, 1].map(|_| draw.between(-1.1 * a.extent.radius, 1.1 * a.extent.radius));
-        let p = [x, y, draw.between(-0.05 * a.extent.high, 1.05 * a.extent.high)];
+        let [x, y] = [0, 1].map(|_| rng.between(-1.1 * a.extent.radius, 1.1 * a.extent.radius));
+        let p = [x, y, rng.between(-0.05 * a.extent.high, 1.05 * a.extent.high)];
         match (first.at(p, 1.0), second.at(p, 1.0)) {
             (None, None) => {}
             (Some(a), Some(b)) if part == 0.0 => {

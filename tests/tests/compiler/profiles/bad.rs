@@ -6,7 +6,7 @@ use super::{said, tool};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 fn text(profile: &str) -> String {
     format!("tool T {{ units mm; profile {{ start {profile} }} }}")
@@ -305,38 +305,38 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
 }
 
 /// Returns a profile with corners on a small grid, some moved by next to nothing, joined by lines and arcs.
-fn nearly(draw: &mut Rng) -> Outline {
-    let pick = |draw: &mut Rng, count: u64| draw.bits() % count;
-    let little = |draw: &mut Rng| match pick(draw, 3) {
-        0 => draw.between(-1.0, 1.0) * 10f64.powf(draw.between(-16.0, -5.0)),
+fn nearly(rng: &mut Rng) -> Outline {
+    let pick = |rng: &mut Rng, count: u64| rng.bits() % count;
+    let little = |rng: &mut Rng| match pick(rng, 3) {
+        0 => rng.between(-1.0, 1.0) * 10f64.powf(rng.between(-16.0, -5.0)),
         _ => 0.0,
     };
-    let count = 1 + pick(draw, 6);
+    let count = 1 + pick(rng, 6);
     let mut points = vec![[0.0, 0.0]];
     for k in 0..count {
         let [_, z] = points[points.len() - 1];
-        let up = [0.0, 0.0, 1.0, 1.0, 2.0, -1.0][pick(draw, 6) as usize];
-        let d = (pick(draw, 4) + u64::from(k == 0)) as f64;
-        points.push([d + little(draw).abs(), z + up + little(draw)]);
+        let up = [0.0, 0.0, 1.0, 1.0, 2.0, -1.0][pick(rng, 6) as usize];
+        let d = (pick(rng, 4) + u64::from(k == 0)) as f64;
+        points.push([d + little(rng).abs(), z + up + little(rng)]);
     }
-    let end = points[points.len() - 1][1] + (pick(draw, 3) as f64) + little(draw);
+    let end = points[points.len() - 1][1] + (pick(rng, 3) as f64) + little(rng);
     points.push([0.0, end]);
     let mut pieces = Vec::new();
     for pair in points.windows(2) {
         let chord = len(sub(pair[1], pair[0]));
-        if pick(draw, 3) > 0 || chord == 0.0 {
+        if pick(rng, 3) > 0 || chord == 0.0 {
             pieces.push(Piece::line(pair[0], pair[1]));
             continue;
         }
         let radius =
-            chord / 2.0 * (1.0 + [0.0, 0.5, 2.0, 1e6][pick(draw, 4) as usize] + little(draw).abs());
-        let mut arc = Piece::by_radius(pair[0], pair[1], radius, pick(draw, 2) == 0);
+            chord / 2.0 * (1.0 + [0.0, 0.5, 2.0, 1e6][pick(rng, 4) as usize] + little(rng).abs());
+        let mut arc = Piece::by_radius(pair[0], pair[1], radius, pick(rng, 2) == 0);
         if let Some(round) = &mut arc.round {
-            round.by_radius = pick(draw, 2) == 0;
+            round.by_radius = pick(rng, 2) == 0;
         }
         pieces.push(arc);
     }
-    Outline { pieces, down: pick(draw, 4) == 0 }
+    Outline { pieces, down: pick(rng, 4) == 0 }
 }
 
 /// Corners from a small grid, some moved by next to nothing: nearly touching, nearly tangent, nearly without
@@ -344,10 +344,10 @@ fn nearly(draw: &mut Rng) -> Outline {
 #[test]
 fn nearly_bad_profiles_never_panic() {
     let count = super::profiles();
-    let mut draw = Rng::new(43);
+    let mut rng = Rng::new(43);
     let (mut taken, mut vague, mut flawed) = (0, 0, Vec::new());
     for _ in 0..10 * count {
-        let outline = nearly(&mut draw);
+        let outline = nearly(&mut rng);
         match catch_unwind(AssertUnwindSafe(|| refused_or_exact(&outline))) {
             Ok(shown) => {
                 taken += usize::from(shown.is_none());

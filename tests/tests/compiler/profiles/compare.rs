@@ -5,11 +5,11 @@ use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Evaluation, Interpreter};
 use touchoff::Level;
 use touchoff::tool::{Evaluations as Lists, Interpreted, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The results of a comparison.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tally {
+pub(crate) struct ErrorStats {
     pub(crate) inside: usize,
     pub(crate) outside: usize,
     pub(crate) directions: usize,
@@ -17,9 +17,9 @@ pub(crate) struct Tally {
     pub(crate) worst: f64,
 }
 
-impl Tally {
-    pub(crate) fn and(self, other: Tally) -> Tally {
-        Tally {
+impl ErrorStats {
+    pub(crate) fn and(self, other: ErrorStats) -> ErrorStats {
+        ErrorStats {
             inside: self.inside + other.inside,
             outside: self.outside + other.outside,
             directions: self.directions + other.directions,
@@ -32,36 +32,37 @@ impl Tally {
 pub(crate) type Flaw = (&'static str, String);
 
 /// Returns points anywhere, beside the surface, beside borders, on the axis and at the corners.
-pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Rng) -> Vec<P2> {
+pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
     let size = outline.size();
     let [low, high] = outline.reach();
     let span = sub(high, low).map(|part| part.max(0.05 * size));
-    let anywhere = |draw: &mut Rng| {
-        let d = draw.between(0.0, high[0] + 0.2 * span[0]);
-        [d, draw.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
+    let random_point = |rng: &mut Rng| {
+        let d = rng.between(0.0, high[0] + 0.2 * span[0]);
+        [d, rng.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
     };
-    let a_little = |draw: &mut Rng| size * 10f64.powf(draw.between(-6.0, -2.0));
+    let random_small_distance = |rng: &mut Rng| size * 10f64.powf(rng.between(-6.0, -2.0));
     let mut all: Vec<P2> = (0..=outline.pieces.len()).map(|k| outline.vertex(k)).collect();
     for k in 0..count {
         all.push(match k % 8 {
-            0..3 => anywhere(draw),
-            3 => [0.0, anywhere(draw)[1]],
+            0..3 => random_point(rng),
+            3 => [0.0, random_point(rng)[1]],
             4 | 5 => {
-                let piece = &outline.pieces[draw.bits() as usize % outline.pieces.len()];
-                let on = piece.at(draw.between(0.0, 1.0));
-                let off = a_little(draw) * if draw.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
-                add(on, piece.outward(on), off)
+                let piece = &outline.pieces[rng.bits() as usize % outline.pieces.len()];
+                let on = piece.at(rng.between(0.0, 1.0));
+                let offset = random_small_distance(rng)
+                    * if rng.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
+                add(on, piece.outward(on), offset)
             }
             _ => {
-                let (mut a, mut b) = (anywhere(draw), anywhere(draw));
+                let (mut a, mut b) = (random_point(rng), random_point(rng));
                 let kind = |p: P2| (outline.nearest(p).0, outline.contains(p));
                 let from = kind(a);
                 for _ in 0..40 {
                     let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
                     if kind(middle) == from { a = middle } else { b = middle }
                 }
-                let way = draw.direction();
-                add(a, [way[0], way[1]], a_little(draw))
+                let direction = rng.direction();
+                add(a, [direction[0], direction[1]], random_small_distance(rng))
             }
         });
     }
@@ -74,11 +75,11 @@ pub(crate) fn compare(
     outline: &Outline,
     (tool, planned): (&CheckedTool, &Interpreted),
     count: usize,
-    draw: &mut Rng,
-) -> Result<Tally, Flaw> {
+    rng: &mut Rng,
+) -> Result<ErrorStats, Flaw> {
     let mut reference = Interpreter::new(tool);
-    let mut tally = Tally::default();
-    let wanted: Vec<[f64; 3]> = points(outline, count, draw)
+    let mut stats = ErrorStats::default();
+    let points_in_space: Vec<[f64; 3]> = points(outline, count, rng)
         .into_iter()
         .map(|p| {
             let [d, z] = outline.turned(p);
@@ -86,9 +87,9 @@ pub(crate) fn compare(
         })
         .collect();
     let (mut list, mut evaluation) = (PointBatch::default(), Lists::default());
-    wanted.iter().for_each(|p| list.push(*p));
+    points_in_space.iter().for_each(|p| list.push(*p));
     planned.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
-    for (k, point) in wanted.into_iter().enumerate() {
+    for (k, point) in points_in_space.into_iter().enumerate() {
         let tape = (evaluation.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Evaluation {
             region: evaluation.region[k] as usize,
             depth: evaluation.depth[k],
@@ -108,18 +109,19 @@ pub(crate) fn compare(
             (kind, format!("{who}, at {p:?}: {text}"))
         };
         let clearance = planned.clearance(point);
-        let told = |evaluation: Option<Evaluation>| {
+        let describe_evaluation = |evaluation: Option<Evaluation>| {
             evaluation
                 .map_or("outside", |evaluation| tool.model.regions[evaluation.region].name.as_str())
         };
         let evaluation = [("reference", reference.at(point, 1.0)), ("tape", tape)];
         for (who, got) in evaluation {
-            let who = || format!("{who} says {}", told(got));
-            let one = judge(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
-            tally = tally.and(one);
+            let who = || format!("{who} says {}", describe_evaluation(got));
+            let one =
+                check_point(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
+            stats = stats.and(one);
         }
     }
-    Ok(tally)
+    Ok(stats)
 }
 
 /// Returns the feature that a region is named after.
@@ -137,13 +139,13 @@ pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
     }
 }
 
-fn judge(
+fn check_point(
     outline: &Outline,
     tool: &CheckedTool,
     p: P2,
     got: Option<Evaluation>,
     clearance: f64,
-) -> Result<Tally, Flaw> {
+) -> Result<ErrorStats, Flaw> {
     let size = outline.size();
     let tolerance = 1e-12 * size;
     let (_, least) = outline.nearest(p);
@@ -158,13 +160,13 @@ fn judge(
     if clearance < -tolerance || clearance.is_nan() {
         return Err(("wrong clearance", format!("{clearance} is below 0")));
     }
-    let worst = |error: f64| Tally { worst: error / size, ..Tally::default() };
+    let worst = |error: f64| ErrorStats { worst: error / size, ..ErrorStats::default() };
     let Some(got) = got else {
         let error = (clearance - least).abs();
         if sure && (error > tolerance || error.is_nan()) {
             return Err(("wrong clearance", format!("{clearance} is not {least}")));
         }
-        return Ok(Tally { outside: 1, ..worst(if sure { error } else { 0.0 }) });
+        return Ok(ErrorStats { outside: 1, ..worst(if sure { error } else { 0.0 }) });
     };
     let error = (got.depth - least).abs();
     if !(error <= tolerance && got.magnitude == got.depth) {
@@ -176,7 +178,7 @@ fn judge(
     let Some(owner) = owner.filter(|_| excess <= tolerance) else {
         return Err(("wrong owner", format!("{name} is {excess:e} farther than the nearest")));
     };
-    let tally = Tally { inside: 1, ..worst(error) };
+    let stats = ErrorStats { inside: 1, ..worst(error) };
     let (direction, singular) = match owner {
         Feature::Piece(k) => {
             let piece = &outline.pieces[k];
@@ -190,12 +192,12 @@ fn judge(
         return Err(("wrong direction", format!("{:?} is no unit vector", got.direction)));
     }
     if singular < 1e-9 * size {
-        return Ok(tally);
+        return Ok(stats);
     }
     let direction = if outline.down { [direction[0], -direction[1]] } else { direction };
     let off = len(sub([got.direction[0], got.direction[2]], direction));
     if off > 1e-13 + 1e-13 * size / singular {
         return Err(("wrong direction", format!("{:?} is not {direction:?}", got.direction)));
     }
-    Ok(Tally { directions: 1, ..tally })
+    Ok(ErrorStats { directions: 1, ..stats })
 }

@@ -4,7 +4,7 @@ use super::tool;
 use std::collections::BTreeSet;
 use tool_dsl::formula::Formula;
 use tool_dsl::interpret::Interpreter;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Oracle, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 
 pub(crate) const FIG_7_3: &str = "tool Fig73 { units mm; tip z = 20; spindle -z;
@@ -38,20 +38,20 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
     let tool = tool(text).expect("a good profile");
     assert_eq!(tool.model.regions.len(), order.len());
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Rng::new(3);
+    let mut rng = Rng::new(3);
     let [radius, height] = oracle.extent();
     let scale = radius.max(height);
     let mut evaluation = 0;
     for _ in 0..60_000 {
         let p = [
-            draw.between(-1.1 * radius, 1.1 * radius),
-            draw.between(-1.1 * radius, 1.1 * radius),
-            draw.between(-0.05 * height, 1.05 * height),
+            rng.between(-1.1 * radius, 1.1 * radius),
+            rng.between(-1.1 * radius, 1.1 * radius),
+            rng.between(-0.05 * height, 1.05 * height),
         ];
-        if oracle.border(p) < 1e-9 * scale {
+        if oracle.border_distance(p) < 1e-9 * scale {
             continue;
         }
-        let (got, expected) = (interpreter.at(p, 1.0), oracle.sense(p));
+        let (got, expected) = (interpreter.at(p, 1.0), oracle.evaluate(p));
         let (Some(got), Some(expected)) = (got, expected) else {
             assert_eq!(got.is_some(), expected.is_some(), "inside at {p:?}");
             continue;

@@ -7,7 +7,7 @@ use tool_dsl::interpret::{Evaluation, Interpreter};
 use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 const PROFILE: &str = "profile {
         start (0, 0);
@@ -55,7 +55,7 @@ fn foot(outline: &Outline, p: P2) -> P2 {
 }
 
 /// Returns the values of the table of the language: region, surface, magnitude, direction, niceness.
-fn wanted(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64) {
+fn expected_evaluation(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64) {
     let depth = outline.nearest(p).1;
     let foot = foot(outline, p);
     let nearest = unit(sub(foot, p));
@@ -82,13 +82,13 @@ fn each_region_has_the_tabulated_values() {
         let tool = warned(&text).expect("good regions");
         let planned = Interpreted::parse(&Source::new("t.tool", text.as_str())).expect("the same");
         let outline = outline(down);
-        let mut draw = Rng::new(31);
+        let mut rng = Rng::new(31);
         for _ in 0..30_000 {
-            let p = [draw.between(0.0, 7.0), draw.between(-1.0, 21.0)];
+            let p = [rng.between(0.0, 7.0), rng.between(-1.0, 21.0)];
             let borders = [p[1] - 1.0, p[1] - 3.0, p[1] - 8.0, p[1] - 13.0, p[0] - 1.0];
             let (_, depth) = outline.nearest(p);
             if depth > 1e-9 && borders.iter().all(|border| border.abs() > 1e-9) {
-                judge(&tool, &planned, &outline, p);
+                check_point(&tool, &planned, &outline, p);
             }
         }
         let names: std::collections::BTreeSet<&str> =
@@ -97,7 +97,7 @@ fn each_region_has_the_tabulated_values() {
     }
 }
 
-fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
+fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
     let (mut list, mut lists) = (PointBatch::default(), touchoff::tool::Evaluations::default());
@@ -118,7 +118,7 @@ fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
         assert!((planned.clearance(point) - outline.nearest(p).1).abs() < 1e-12, "at {p:?}");
         return;
     };
-    let (name, surface, magnitude, [e, f], niceness) = wanted(outline, p);
+    let (name, surface, magnitude, [e, f], niceness) = expected_evaluation(outline, p);
     let region = &tool.model.regions[evaluation.region];
     assert_eq!(
         (region.name.as_str(), tool.model.surfaces[region.surface].name.as_str()),
@@ -142,9 +142,9 @@ fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
 fn gradients_are_slopes() {
     let tool = warned(&text(false, REGIONS)).expect("good regions");
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Rng::new(32);
+    let mut rng = Rng::new(32);
     for _ in 0..5_000 {
-        let p = [draw.between(0.05, 6.0), 0.0, draw.between(0.0, 20.0)];
+        let p = [rng.between(0.05, 6.0), 0.0, rng.between(0.0, 20.0)];
         let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
         let h = 1e-6;
         let slopes = [0, 1, 2].map(|k| {

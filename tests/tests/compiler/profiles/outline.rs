@@ -287,13 +287,13 @@ impl Outline {
 
     /// Returns how much farther than the nearest a feature is, at most; infinite for one that owns nothing.
     pub(crate) fn excess(&self, feature: Feature, p: P2) -> f64 {
-        let least = self.nearest(p).1;
+        let min_distance = self.nearest(p).1;
         match feature {
             Feature::Piece(k) => {
                 let piece = &self.pieces[k];
-                (piece.signed(p).abs() - least).abs().max(piece.clamped(p).0 - least)
+                (piece.signed(p).abs() - min_distance).abs().max(piece.clamped(p).0 - min_distance)
             }
-            Feature::Corner(k) if self.turn(k) < 0.0 => len(sub(p, self.vertex(k))) - least,
+            Feature::Corner(k) if self.turn(k) < 0.0 => len(sub(p, self.vertex(k))) - min_distance,
             Feature::Corner(_) => f64::INFINITY,
         }
     }
@@ -306,12 +306,12 @@ impl Outline {
     /// Returns the sine of the turn at a vertex, negative at a reflex corner. At the axis the profile meets its
     /// mirror image.
     pub(crate) fn turn(&self, k: usize) -> f64 {
-        let [a, b] = self.ways(k);
+        let [a, b] = self.tangents_at_vertex(k);
         cross(a, b)
     }
 
     /// Returns the directions of travel into a vertex and out of it.
-    pub(crate) fn ways(&self, k: usize) -> [P2; 2] {
+    pub(crate) fn tangents_at_vertex(&self, k: usize) -> [P2; 2] {
         let at = self.vertex(k);
         let before = k.checked_sub(1).map(|k| self.pieces[k].tangent(at));
         let after = self.pieces.get(k).map(|piece| piece.tangent(at));

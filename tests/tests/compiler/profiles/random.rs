@@ -1,6 +1,6 @@
 //! Random profiles of every kind, shrunk where they fail.
 
-use super::compare::{Flaw, Tally, compare};
+use super::compare::{ErrorStats, Flaw, compare};
 use super::draw::{Recipe, recipe};
 use super::outline::{Outline, Piece, cross, dot, len, sub};
 use super::tool;
@@ -13,7 +13,7 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Points per profile.
 const POINTS: usize = 320;
@@ -23,7 +23,7 @@ const SHRINKS: usize = 250;
 const SHOWN: usize = 4;
 
 /// Compiles and compares one profile.
-fn tried(outline: &Outline) -> Result<Tally, Flaw> {
+fn tried(outline: &Outline) -> Result<ErrorStats, Flaw> {
     let text = outline.text();
     let run = || {
         let tool = tool(&text).map_err(|message| (refusal(&text), message))?;
@@ -95,7 +95,7 @@ fn kinds(outline: &Outline) -> Vec<&'static str> {
             all.push("arc about the axis");
         }
         if k > 0 {
-            let [a, b] = outline.ways(k);
+            let [a, b] = outline.tangents_at_vertex(k);
             let round = [k - 1, k].map(|k| outline.pieces[k].round.is_some());
             let tangent = cross(a, b).abs() < 1e-9 && dot(a, b) > 0.0;
             match (tangent, round) {
@@ -126,7 +126,7 @@ fn random_profiles_of_every_kind() {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let strategy = recipe();
-    let (mut valid, mut drawn, mut proved, mut tally) = (0, 0, 0, Tally::default());
+    let (mut valid, mut drawn, mut proved, mut tally) = (0, 0, 0, ErrorStats::default());
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     let mut flaws: BTreeMap<&str, usize> = BTreeMap::new();
     while valid < count {

@@ -7,7 +7,7 @@ use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Evaluation, Interpreter};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// A smoothed tool, and the same tool by nearest features.
 struct Pair {
@@ -91,11 +91,11 @@ impl Pair {
         let mut all: Vec<(f64, &Piece)> =
             facing.map(|piece| (piece.signed(p).abs(), piece)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let Some(&(least, owner)) = all.first() else { return ([0.0; 2], 0.0, 0.0) };
-        let way = owner.outward(p);
-        let other = all.iter().find(|(_, piece)| len(sub(piece.outward(p), way)) > 1e-6);
-        let away = owner.round.map_or(f64::INFINITY, |round| len(sub(p, round.centre)));
-        (way, away, other.map_or(f64::INFINITY, |other| other.0 - least))
+        let Some(&(min_distance, owner)) = all.first() else { return ([0.0; 2], 0.0, 0.0) };
+        let normal = owner.outward(p);
+        let other = all.iter().find(|(_, piece)| len(sub(piece.outward(p), normal)) > 1e-6);
+        let centre_distance = owner.round.map_or(f64::INFINITY, |round| len(sub(p, round.centre)));
+        (normal, centre_distance, other.map_or(f64::INFINITY, |other| other.0 - min_distance))
     }
 
     /// Asserts that depths are those of nearest features, bit by bit, and directions those of the rounded profile.
@@ -103,10 +103,10 @@ impl Pair {
     fn agrees(&self, count: u32) -> f64 {
         let (mut smooth, mut nearest) =
             (Interpreter::new(&self.smooth), Interpreter::new(&self.nearest));
-        let mut draw = Rng::new(21);
+        let mut rng = Rng::new(21);
         let (mut compared, mut inside, mut angles) = (0, 0u32, 0.0);
         for _ in 0..count {
-            let p = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
+            let p = [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
             let [d, z] = self.turned(p);
             let at = [d, 0.0, z];
             let (evaluation, plain) = (smooth.at(at, 1.0), nearest.at(at, 1.0));
@@ -123,14 +123,14 @@ impl Pair {
                 surface(&self.smooth, evaluation.region),
                 surface(&self.nearest, plain.region)
             );
-            let got = self.direction(&evaluation);
-            angles += angle(got, self.direction(&plain));
-            let (wanted, away, margin) = self.normal(p);
-            if margin > 1e-9 && away > 1e-6 {
+            let direction = self.direction(&evaluation);
+            angles += angle(direction, self.direction(&plain));
+            let (expected_normal, centre_distance, margin) = self.normal(p);
+            if margin > 1e-9 && centre_distance > 1e-6 {
                 compared += 1;
                 assert!(
-                    len(sub(got, wanted)) < 1e-12 + 1e-13 / away,
-                    "{got:?}, not {wanted:?} at {p:?}"
+                    len(sub(direction, expected_normal)) < 1e-12 + 1e-13 / centre_distance,
+                    "{direction:?}, not {expected_normal:?} at {p:?}"
                 );
             }
         }
@@ -141,7 +141,7 @@ impl Pair {
     /// Returns the largest turn of the direction from step to step along the surface, just below it.
     fn steps(&self, surface: &[Piece], step: f64) -> f64 {
         let mut interpreter = Interpreter::new(&self.smooth);
-        let (mut last, mut most) = (None, 0.0f64);
+        let (mut last, mut max_turn) = (None, 0.0f64);
         for piece in surface {
             let length = size(piece);
             let count = (length / step).ceil() as u32;
@@ -150,12 +150,12 @@ impl Pair {
                 let [d, z] = self.turned(add(on, piece.outward(on), -1e-9));
                 let Some(evaluation) = interpreter.at([d.abs(), 0.0, z], 1.0) else { continue };
                 assert!(evaluation.depth < 2e-9);
-                let way = self.direction(&evaluation);
-                most = most.max(last.map_or(0.0, |last| angle(last, way)));
-                last = Some(way);
+                let direction = self.direction(&evaluation);
+                max_turn = max_turn.max(last.map_or(0.0, |last| angle(last, direction)));
+                last = Some(direction);
             }
         }
-        most
+        max_turn
     }
 
     /// Returns depths at which the direction jumps, on straight ways through the inside.
@@ -167,11 +167,11 @@ impl Pair {
                 .at([d, 0.0, z], 1.0)
                 .map(|evaluation| (self.direction(&evaluation), evaluation.depth))
         };
-        let mut draw = Rng::new(22);
+        let mut rng = Rng::new(22);
         let mut depths = Vec::new();
         for _ in 0..count {
-            let a = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
-            let b = [(a[0] + draw.between(-0.1, 0.1)).abs(), a[1] + draw.between(-0.1, 0.1)];
+            let a = [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
+            let b = [(a[0] + rng.between(-0.1, 0.1)).abs(), a[1] + rng.between(-0.1, 0.1)];
             let (mut a, mut b) = (a, b);
             while len(sub(b, a)) > 1e-9 {
                 let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));

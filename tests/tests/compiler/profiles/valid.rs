@@ -27,7 +27,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
             && piece.sweep().abs() <= std::f64::consts::PI * (1.0 + 1e-9)
     };
     let sharp = |k: usize| {
-        let [a, b] = outline.ways(k);
+        let [a, b] = outline.tangents_at_vertex(k);
         dot(a, b) < 0.0 && cross(a, b).abs() < MIN_CORNER_SINE
     };
     if !pieces.iter().all(long) || (0..=count).any(sharp) || area(&lines) < margin * size {

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Pose, Sampling};
 use touchoff_tests::oracle::closed_forms::quadrature;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Compares the errors of the four figures on random clouds of a mesh with their standard deviations, over seeds
 /// and four numbers of points, each four times the last. `squares` are the integrals of the squares of the four
@@ -57,17 +57,17 @@ fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> S
 /// Computes `∫ f² dA` over a contact for the integrands of the four figures. `at` gives the depth and the
 /// components of `u` and `n` along the axis; `area` is the area per unit of the parameter.
 fn squares(area: f64, [from, to]: [f64; 2], at: impl Fn(f64) -> (f64, f64, f64)) -> Figures {
-    let over = |f: &dyn Fn(f64, f64, f64) -> f64| {
+    let integrate = |f: &dyn Fn(f64, f64, f64) -> f64| {
         area * quadrature(from, to, |s| {
             let (m, u, n) = at(s);
             f(m, u, n)
         })
     };
     [
-        over(&|m, _, _| m * m),
-        over(&|m, u, n| (m * (n - u)).powi(2)),
-        over(&|m, u, _| (m * u).powi(2)),
-        over(&|m, _, _| m.powi(4) / 4.0),
+        integrate(&|m, _, _| m * m),
+        integrate(&|m, u, n| (m * (n - u)).powi(2)),
+        integrate(&|m, u, _| (m * u).powi(2)),
+        integrate(&|m, _, _| m.powi(4) / 4.0),
     ]
 }
 
@@ -115,8 +115,8 @@ fn cf3_a_ball_on_a_ball_random() {
     let low = radius - cap_height(1.0, radius, h);
     let squares = squares(TAU * radius, [low, radius], at);
     scatters("CF3", &mesh, squares, |seed| {
-        let mut draw = Rng::new(seed);
-        let along = Vector3::from_fn(|_, _| draw.between(-1.0, 1.0)).normalize();
+        let mut rng = Rng::new(seed);
+        let along = Vector3::from_fn(|_, _| rng.between(-1.0, 1.0)).normalize();
         ball_on_a_ball(1.0, radius, h, along)
     });
 }

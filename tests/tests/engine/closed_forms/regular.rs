@@ -8,7 +8,7 @@ use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::TriangleId;
 use touchoff::{Cloud, Part};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the largest error of a measurement, relative to the figures. Forces across the axis and torques are
 /// relative to the thesis's force.
@@ -54,8 +54,8 @@ fn converges(what: &str, bounds: [f64; 2], band: f64, error: impl Fn(u32, &mut R
     const PLACEMENTS: u32 = 6;
     let cells = [120u32, 480];
     let rms = cells.map(|n| {
-        let mut draw = Rng::new(u64::from(n));
-        let squares = (0..PLACEMENTS).map(|_| error(n, &mut draw).powi(2));
+        let mut rng = Rng::new(u64::from(n));
+        let squares = (0..PLACEMENTS).map(|_| error(n, &mut rng).powi(2));
         (squares.sum::<f64>() / f64::from(PLACEMENTS)).sqrt()
     });
     let slope = (rms[1] / rms[0]).ln() / (16f64).ln();
@@ -80,10 +80,10 @@ const BALLS: [(&str, f64, f64); 8] = [
 fn cf1_a_ball_in_a_plane_regular() {
     for (name, h, tilt) in BALLS {
         let reach = 1.05 * (h * (2.0 - h)).sqrt();
-        converges(&format!("CF1 {name} {h} {tilt}"), [2e-5, 1e-6], 0.35, |n, draw| {
-            let middle = [draw.between(-3.0, 3.0), draw.between(-3.0, 3.0)];
-            let jitter = [0, 1].map(|k| middle[k] + 0.01 * reach * draw.between(-1.0, 1.0));
-            let part = plane([n, n], [reach; 2], middle, draw.between(0.0, TAU));
+        converges(&format!("CF1 {name} {h} {tilt}"), [2e-5, 1e-6], 0.35, |n, rng| {
+            let middle = [rng.between(-3.0, 3.0), rng.between(-3.0, 3.0)];
+            let jitter = [0, 1].map(|k| middle[k] + 0.01 * reach * rng.between(-1.0, 1.0));
+            let part = plane([n, n], [reach; 2], middle, rng.between(0.0, TAU));
             error(&ball_in_a_plane(name, h, tilt, jitter), &part)
         });
     }
@@ -108,9 +108,9 @@ const SIDES: [(&str, f64, f64, f64, f64); 6] = [
 fn cf2_a_side_in_a_plane() {
     for (name, radius, h, z, long) in SIDES {
         let half = 1.1 * (h * (2.0 * radius - h)).sqrt();
-        converges(&format!("CF2 {name} {radius}"), [2e-4, 6e-6], 0.35, |n, draw| {
-            let turn = draw.between(0.0, TAU);
-            let slip = 0.02 * half * draw.between(-1.0, 1.0);
+        converges(&format!("CF2 {name} {radius}"), [2e-4, 6e-6], 0.35, |n, rng| {
+            let turn = rng.between(0.0, TAU);
+            let slip = 0.02 * half * rng.between(-1.0, 1.0);
             let middle = [-slip * turn.sin(), slip * turn.cos()];
             // Nothing changes along the tool, so a few cells are enough.
             let part = plane([20, n], [long, half], middle, turn);
@@ -122,13 +122,13 @@ fn cf2_a_side_in_a_plane() {
 #[test]
 fn cf3_cf4_a_ball_on_a_ball_and_in_a_cavity() {
     for (sigma, radius, h) in [(1.0, 4.0, 0.3), (1.0, 10.0, 0.1), (-1.0, 4.0, 0.3)] {
-        converges(&format!("CF3 {sigma} {radius}"), [1e-4, 6e-6], 0.35, |n, draw| {
-            let along = Vector3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), 0.7);
+        converges(&format!("CF3 {sigma} {radius}"), [1e-4, 6e-6], 0.35, |n, rng| {
+            let along = Vector3::new(rng.between(-1.0, 1.0), rng.between(-1.0, 1.0), 0.7);
             let along = along.normalize();
             let turn = Rotation3::rotation_between(&Vector3::z(), &along).expect("not opposite");
             // The cap around the contact, a little wider, in cells of equal area by Archimedes: slices by height
             // and angle.
-            let (sin, cap) = (draw.between(0.0, TAU), 1.1 * cap_height(sigma, radius, h));
+            let (sin, cap) = (rng.between(0.0, TAU), 1.1 * cap_height(sigma, radius, h));
             let part = patch([n, n], |s, t| {
                 let z = radius - s * cap;
                 let r = ((radius - z) * (radius + z)).sqrt();
@@ -146,8 +146,8 @@ fn cf5_a_side_in_a_bore() {
     for (name, radius, h, z, long) in SIDES {
         for bore in [1.04 * radius, 3.0 * radius] {
             let h = h.min(bore - radius);
-            converges(&format!("CF5 {name} {radius} {bore}"), [1.5e-3, 1e-4], 0.35, |n, draw| {
-                let (at, slip) = (draw.between(0.0, TAU), draw.between(0.0, 1.0));
+            converges(&format!("CF5 {name} {radius} {bore}"), [1.5e-3, 1e-4], 0.35, |n, rng| {
+                let (at, slip) = (rng.between(0.0, TAU), rng.between(0.0, 1.0));
                 let part = patch([20, 4 * n], |s, t| {
                     let (sin, cos) = (t * TAU + slip).sin_cos();
                     let z = long * (2.0 * s - 1.0);

@@ -3,9 +3,9 @@
 //! largest coordinate, and ρ the distance to the nearest point at which the direction does not exist.
 
 use super::LENGTHS;
-use super::points::{scale, shown};
+use super::points::{format_point, scale};
 use touchoff::tool::Evaluators;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 
 /// Distance from a border, as a fraction of S, within which either neighbour may own a point.
@@ -24,7 +24,7 @@ struct Worst {
 impl Worst {
     fn see(&mut self, error: f64, p: [f64; 3], more: impl FnOnce() -> String) {
         if error.is_nan() || error > self.error {
-            *self = Worst { error, place: format!("{}; {}", shown(p), more()) };
+            *self = Worst { error, place: format!("{}; {}", format_point(p), more()) };
         }
     }
 
@@ -64,20 +64,21 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
         let distance = oracle.signed_distance(p);
         let contained = T::contains(p);
         if distance.abs() > 2.0 * ulp && contained != (distance < 0.0) {
-            found
-                .sides
-                .push(format!("contains = {contained}, distance {distance:e}: {}", shown(p)));
+            found.sides.push(format!(
+                "contains = {contained}, distance {distance:e}: {}",
+                format_point(p)
+            ));
         }
         let owner = T::owner(p);
-        let sense = oracle.sense(p);
-        if oracle.border(p) > BORDER_DISTANCE_FRACTION * s
-            && owner != sense.map(|sense| sense.owner)
+        let expected = oracle.evaluate(p);
+        if oracle.border_distance(p) > BORDER_DISTANCE_FRACTION * s
+            && owner != expected.map(|expected| expected.owner)
         {
-            found.owners.push(format!("{owner:?}, not {sense:?}: {}", shown(p)));
+            found.owners.push(format!("{owner:?}, not {expected:?}: {}", format_point(p)));
         }
         if let Some(owner) = owner.filter(|_| contained) {
             inside += 1;
-            evaluation::<T>(oracle, p, owner, sense, ulp, reference.as_ref(), &mut found);
+            evaluation::<T>(oracle, p, owner, expected, ulp, reference.as_ref(), &mut found);
         }
     }
     println!(
@@ -113,24 +114,29 @@ fn evaluation<T: Evaluators>(
     oracle: &dyn Oracle,
     p: [f64; 3],
     owner: usize,
-    sense: Option<OracleEvaluation>,
+    expected: Option<OracleEvaluation>,
     ulp: f64,
     reference: Option<&Reference>,
     found: &mut Findings,
 ) {
     let (depth, niceness, direction) = (T::depth(p), T::niceness(p), T::direction(p));
     let whole = [depth, niceness].into_iter().chain(direction);
-    assert!(whole.clone().all(f64::is_finite), "{:?} at {}", whole.collect::<Vec<_>>(), shown(p));
-    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
+    assert!(
+        whole.clone().all(f64::is_finite),
+        "{:?} at {}",
+        whole.collect::<Vec<_>>(),
+        format_point(p)
+    );
+    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", format_point(p));
     // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
-    let mut deep = sense.map_or(0.0, |sense| sense.depth);
+    let mut deep = expected.map_or(0.0, |expected| expected.depth);
     if (depth - deep).abs() > ULPS_IN_DOUBT * ulp
         && let Some(reference) = reference
     {
-        deep = reference.depth(&At::new(p)).to_f64().max(0.0);
+        deep = reference.depth(&QueryPoint::new(p)).to_f64().max(0.0);
     }
     let is_depth = magnitude_is_depth(oracle);
-    let hard = if is_depth { deep } else { sense.map_or(0.0, |sense| sense.magnitude) };
+    let hard = if is_depth { deep } else { expected.map_or(0.0, |expected| expected.magnitude) };
     found.depth.see((depth - deep).abs() / ulp, p, || format!("{depth:e}, not {deep:e}"));
     for length in LENGTHS {
         let magnitude = T::magnitude(p, length);
@@ -138,13 +144,13 @@ fn evaluation<T: Evaluators>(
         let error = (magnitude / unit - hard).abs() / ulp;
         found.magnitude.see(error, p, || format!("{magnitude:e} at length {length}"));
         let gradient = T::gradient(p, length);
-        assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", shown(p));
+        assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", format_point(p));
     }
     let size = norm(direction);
     found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));
     // On a border each of the two neighbours has its own direction.
-    let Some(sense) = sense.filter(|sense| sense.owner == owner) else { return };
-    let rho = oracle.singular(p);
+    let Some(expected) = expected.filter(|expected| expected.owner == owner) else { return };
+    let rho = oracle.singularity_distance(p);
     // Exactly where no direction exists, the one that the language fixes is required; but off the axes `hypot` only
     // rounds to such a point.
     let exact = p[0] == 0.0 || p[1] == 0.0;
@@ -153,11 +159,11 @@ fn evaluation<T: Evaluators>(
         rho => (ulp / f64::EPSILON / rho.max(ulp)).max(1.0),
     };
     let doubt = closeness * f64::EPSILON;
-    found.direction.see(distance(direction, sense.direction) / doubt, p, || {
-        format!("{direction:?}, not {:?}, rho {rho:e}", sense.direction)
+    found.direction.see(distance(direction, expected.direction) / doubt, p, || {
+        format!("{direction:?}, not {:?}, rho {rho:e}", expected.direction)
     });
-    let error = (niceness - sense.niceness).abs() / ulp;
-    found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", sense.niceness));
+    let error = (niceness - expected.niceness).abs() / ulp;
+    found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", expected.niceness));
     if rho == 0.0 {
         // A distance has no gradient at a centre; the language fixes a direction only.
         return;

@@ -1,7 +1,7 @@
 //! All evaluators of a tool have the bits of the reference, which follows the text region by region.
 
 use super::LENGTHS;
-use super::points::{scale, shown};
+use super::points::{format_point, scale};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
@@ -28,7 +28,7 @@ pub(crate) fn of<T: Evaluators>(
     let mut list = PointBatch::default();
     points.iter().for_each(|p| list.push(*p));
     for p in points {
-        assert_eq!(T::contains(*p), T::owner(*p).is_some(), "at {}", shown(*p));
+        assert_eq!(T::contains(*p), T::owner(*p).is_some(), "at {}", format_point(*p));
     }
     let mut corners = 0;
     for length in LENGTHS {
@@ -36,7 +36,7 @@ pub(crate) fn of<T: Evaluators>(
         let code: Vec<Answer> = points.iter().map(|p| scalar::<T>(*p, length)).collect();
         let assert_same_bits = |what: &str, got: &[Answer]| {
             for ((got, expected), p) in got.iter().zip(&code).zip(points) {
-                let message = || format!("{what} at {}: {:?}", shown(*p), numbers(*got));
+                let message = || format!("{what} at {}: {:?}", format_point(*p), numbers(*got));
                 assert_eq!(got, expected, "{}", message());
             }
         };
@@ -47,9 +47,9 @@ pub(crate) fn of<T: Evaluators>(
         for (p, code) in points.iter().zip(&code) {
             let expected = answer_of(reference.at(*p, length));
             if *code != expected {
-                let border = oracle.border(*p) / (scale(oracle) * f64::EPSILON);
+                let border = oracle.border_distance(*p) / (scale(oracle) * f64::EPSILON);
                 let (code, expected) = (numbers(*code), numbers(expected));
-                let point = shown(*p);
+                let point = format_point(*p);
                 assert!(border <= CORNER, "{code:?}, not {expected:?} as the reference at {point}");
                 corners += 1;
             }

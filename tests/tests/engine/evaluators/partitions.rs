@@ -5,7 +5,7 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Outputs, PointBatch, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a rod of radius 5 from z = 0 to 20 with these regions, which all have the same depth and direction.
 fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
@@ -21,12 +21,12 @@ fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
 fn agree(source: &Source) {
     let (checked, tape) = (super::checked(source), super::interpreted(source));
     let mut reference = Interpreter::new(&checked);
-    let mut draw = Rng::new(9);
+    let mut rng = Rng::new(9);
     let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());
     let mut list = Vec::new();
     for _ in 0..20_000 {
-        let mut across = || draw.between(-5.5, 5.5);
-        let p = [across(), across(), draw.between(-1.0, 21.0)];
+        let mut across = || rng.between(-5.5, 5.5);
+        let p = [across(), across(), rng.between(-1.0, 21.0)];
         points.push(p);
         list.push(p);
     }

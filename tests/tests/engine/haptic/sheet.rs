@@ -2,17 +2,17 @@
 
 use touchoff::Law;
 use touchoff::haptic::Rendering;
-use touchoff_tests::haptics::sheet::{pressed, sheet};
+use touchoff_tests::haptics::sheet::{press_on_sheet, sheet_part};
 
 /// The tip stays on its side: it is never below the middle of the sheet, where the other surface would be nearer.
 /// The hand feels its grip of 0.2 N/mm and the coupling of 1 N/mm in series, as far as it wants the tool below its
 /// position.
 #[test]
 fn a_coupled_tool_stays_on_its_side_of_the_sheet() {
-    let all = pressed(&sheet(), Law::Gradient, None);
-    for [wanted, tip, force] in &all {
-        assert!(*tip > -0.25, "{wanted}: {tip}");
-        assert!(*wanted < 4.0 || *force > 0.6, "{wanted}: {force}");
+    let all = press_on_sheet(&sheet_part(), Law::Gradient, None);
+    for [hand_depth, tip, force] in &all {
+        assert!(*tip > -0.25, "{hand_depth}: {tip}");
+        assert!(*hand_depth < 4.0 || *force > 0.6, "{hand_depth}: {force}");
     }
     let [wanted, tip, force] = all.last().expect("two seconds");
     let springs = (wanted - 0.2 + tip) * 0.2 / (0.2 + 1.0);
@@ -23,7 +23,7 @@ fn a_coupled_tool_stays_on_its_side_of_the_sheet() {
 #[test]
 fn without_a_coupling_the_tool_is_pulled_through_the_sheet() {
     let direct = Rendering::Direct { scaled: true, damping: 0.0 };
-    let all = pressed(&sheet(), Law::Thesis, Some(direct));
+    let all = press_on_sheet(&sheet_part(), Law::Thesis, Some(direct));
     let [_, tip, _] = all.last().expect("two seconds");
     assert!(*tip < -10.0, "{tip}");
 }

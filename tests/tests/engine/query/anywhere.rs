@@ -4,15 +4,15 @@ use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Checks every tool about a part; fails unless two fifths of the poses touch.
 fn all_tools(what: &str, part: &Part, count: usize) {
     for (at, (tool, oracle)) in tools().into_iter().enumerate() {
-        let mut draw = Rng::new(31 + at as u64);
+        let mut rng = Rng::new(31 + at as u64);
         let mut case = Case::new(part, tool, &*oracle);
         for k in 0..count {
-            case.check(&poses::about(part, &*oracle, k, &mut draw), k);
+            case.check(&poses::about(part, &*oracle, k, &mut rng), k);
         }
         println!("{what} {}: {:?}", oracle.name(), case.statistics);
         assert!(
@@ -53,10 +53,10 @@ fn repeated_points() {
 /// Points in a line and in a plane: boxes without a width.
 #[test]
 fn thin_parts() {
-    let mut draw = Rng::new(17);
+    let mut rng = Rng::new(17);
     let mut of = |keep: [f64; 3]| {
         let points = (0..1000).map(|_| {
-            Point3::from(parts::vector(&mut draw, 20.0).component_mul(&Vector3::from(keep)))
+            Point3::from(parts::vector(&mut rng, 20.0).component_mul(&Vector3::from(keep)))
         });
         parts::of(points.collect(), vec![Vector3::z(); 1000], vec![0.1; 1000])
     };
@@ -69,19 +69,19 @@ fn thin_parts() {
 #[test]
 fn clear_of_the_part() {
     let part = parts::cuboid(120.0, 3_000);
-    let mut draw = Rng::new(5);
+    let mut rng = Rng::new(5);
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
         for k in 0..60 {
-            let inside = Point3::from(parts::vector(&mut draw, 15.0));
-            let outside = inside + 200.0 * parts::direction(&mut draw);
-            let farther = inside + 1e6 * parts::direction(&mut draw);
+            let inside = Point3::from(parts::vector(&mut rng, 15.0));
+            let outside = inside + 200.0 * parts::direction(&mut rng);
+            let farther = inside + 1e6 * parts::direction(&mut rng);
             let [_, height] = oracle.extent();
             let at = [inside, outside, farther][k % 3];
             if (at - inside).norm() < 300.0 && k % 3 == 1 && at.coords.amax() < 130.0 + height {
                 continue;
             }
-            let pose = poses::bringing(Vector3::zeros(), at, &mut draw);
+            let pose = poses::bringing(Vector3::zeros(), at, &mut rng);
             assert_eq!(case.check(&pose, k), 0, "{}", oracle.name());
         }
     }
@@ -93,9 +93,9 @@ fn parts_inside_the_tool() {
     for (tool, oracle) in tools() {
         let part = parts::soup(0.2, 3_000, 3);
         let mut case = Case::new(&part, tool, &*oracle);
-        let mut draw = Rng::new(6);
+        let mut rng = Rng::new(6);
         for k in 0..30 {
-            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), &mut draw);
+            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), &mut rng);
             assert_eq!(case.check(&pose, k), 3_000);
         }
     }

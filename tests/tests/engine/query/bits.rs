@@ -6,7 +6,7 @@ use std::path::Path;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns every SIMD level of this machine.
 fn levels() -> Vec<Level> {
@@ -36,8 +36,8 @@ fn parts() -> Vec<Part> {
 
 /// Returns poses about a part.
 fn random_poses(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
-    let mut draw = Rng::new(seed);
-    (0..count).map(|k| poses::about(part, oracle, k, &mut draw)).collect()
+    let mut rng = Rng::new(seed);
+    (0..count).map(|k| poses::about(part, oracle, k, &mut rng)).collect()
 }
 
 #[test]

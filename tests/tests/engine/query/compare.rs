@@ -181,7 +181,7 @@ impl<'a> Case<'a> {
         let mut evaluation: BTreeMap<usize, &Contact> =
             checked_query.contacts.iter().map(|contact| (index(contact), contact)).collect();
         for &i in &checked_query.answer.contacts {
-            let q = checked_query.query.in_tool(self.points[i]);
+            let q = checked_query.query.to_tool_frame(self.points[i]);
             match evaluation.remove(&i) {
                 Some(contact) => self.compare_point(checked_query, i, q, contact),
                 None => self.check_doubtful_point(checked_query, q, "was not felt", statistics),
@@ -190,7 +190,7 @@ impl<'a> Case<'a> {
         for i in evaluation.into_keys() {
             self.check_doubtful_point(
                 checked_query,
-                checked_query.query.in_tool(self.points[i]),
+                checked_query.query.to_tool_frame(self.points[i]),
                 "should not be felt",
                 statistics,
             );
@@ -222,34 +222,35 @@ impl<'a> Case<'a> {
         contact: &Contact,
     ) {
         let tree = self.part.tree();
-        let sense = self.oracle.sense(q).expect("a contact");
+        let expected = self.oracle.evaluate(q).expect("a contact");
         let (name, query) = (self.oracle.name(), &checked_query.query);
         let near = |got: f64, want: f64, bound: f64, what: &str| {
             assert!((got - want).abs() <= bound, "{name} {what} at {q:?}: {got}, not {want}");
         };
         let level = self.steep * checked_query.noise;
-        near(contact.depth, sense.depth, level, "depth");
-        near(contact.magnitude, sense.magnitude, level, "magnitude");
+        near(contact.depth, expected.depth, level, "depth");
+        near(contact.magnitude, expected.magnitude, level, "magnitude");
         assert!((contact.point - Point3::from(self.points[i])).norm() <= checked_query.noise);
         assert_eq!(contact.normal, Vector3::from(tree.normal(i)));
         assert_eq!(contact.weight, query.weights[i]);
         assert_eq!(contact.surface, self.tool.info().regions[contact.region].surface);
-        let doubt = self.oracle.border(q) <= checked_query.band;
+        let doubt = self.oracle.border_distance(q) <= checked_query.band;
         if doubt {
             return;
         }
-        assert_eq!(contact.region, sense.owner, "{name} region at {q:?}");
-        near(contact.niceness, sense.niceness, 16.0 * checked_query.noise, "niceness");
+        assert_eq!(contact.region, expected.owner, "{name} region at {q:?}");
+        near(contact.niceness, expected.niceness, 16.0 * checked_query.noise, "niceness");
         let turn = self.turn(checked_query, q);
-        let along = Vector3::from(query.pose.turn(sense.direction));
+        let along = Vector3::from(query.pose.to_world_frame(expected.direction));
         near((contact.direction - along).norm(), 0.0, turn, "direction");
-        let slope = Vector3::from(query.pose.turn(self.oracle.gradient(q).expect("inside")));
+        let slope =
+            Vector3::from(query.pose.to_world_frame(self.oracle.gradient(q).expect("inside")));
         near((contact.gradient - slope).norm(), 0.0, self.steep * turn, "gradient");
     }
 
     /// Returns the bound on the difference of directions at a point.
     fn turn(&self, checked_query: &CheckedQuery<'_>, q: [f64; 3]) -> f64 {
-        (16.0 * f64::EPSILON + 2.0 * checked_query.noise / self.oracle.singular(q))
+        (16.0 * f64::EPSILON + 2.0 * checked_query.noise / self.oracle.singularity_distance(q))
             .min(MAX_FORCE_PER_MAGNITUDE)
     }
 
@@ -313,12 +314,12 @@ impl<'a> Case<'a> {
         let rounding = f64::EPSILON * (16.0 + checked_query.answer.count as f64 / 4.0);
         for &i in &checked_query.answer.contacts {
             let p = self.points[i];
-            let q = query.in_tool(p);
-            let s = self.oracle.sense(q).expect("a contact");
+            let q = query.to_tool_frame(p);
+            let s = self.oracle.evaluate(q).expect("a contact");
             let (w, m, turn) = (query.weights[i], s.magnitude, self.turn(checked_query, q));
-            let doubt = self.oracle.border(q) <= checked_query.band;
+            let doubt = self.oracle.border_distance(q) <= checked_query.band;
             let normal = Vector3::from(self.normals[i]);
-            let across = Vector3::from(query.pose.turn(s.direction)).dot(&normal).abs();
+            let across = Vector3::from(query.pose.to_world_frame(s.direction)).dot(&normal).abs();
             let dropped = query.law == brute::Law::Facing && across <= 1e-12 + turn;
             let swing = if doubt || dropped { 2.0 * MAX_FORCE_PER_MAGNITUDE } else { turn };
             let force = w * MAX_FORCE_PER_MAGNITUDE * (level + m * (swing + rounding));

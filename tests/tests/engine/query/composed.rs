@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const MAX_ORTHOGONALITY_ERROR: f64 = 4.0;
@@ -81,13 +81,13 @@ fn rotations_stay_rotations() {
 /// Any chain of poses, each composed with the last or taken relative to it.
 #[test]
 fn any_chain_of_poses_ends_in_a_rotation() {
-    let mut draw = Rng::new(12);
+    let mut rng = Rng::new(12);
     let mut any = || {
-        let [x, y, z] = draw.direction();
-        let [a, b, c] = draw.direction();
+        let [x, y, z] = rng.direction();
+        let [a, b, c] = rng.direction();
         let tip = Point3::new(a, b, c);
         let axis = Pose::from_axis(tip, Vector3::new(x, y, z)).expect("a unit vector");
-        let w = draw.between(-1.0, 1.0);
+        let w = rng.between(-1.0, 1.0);
         let size = (1.0 + w * w).sqrt();
         let full = Pose::from_quaternion(tip, [x, y, z, w].map(|part| part / size));
         [axis, full.expect("a unit quaternion")]
@@ -112,13 +112,13 @@ fn any_chain_of_poses_ends_in_a_rotation() {
 /// One motion after another is the product, point by point.
 #[test]
 fn composed_motions_agree_with_successive_ones() {
-    let mut draw = Rng::new(5);
+    let mut rng = Rng::new(5);
     for by in TURNS {
         let first = motion(by);
-        let second = motion((draw.direction(), 0.7));
+        let second = motion((rng.direction(), 0.7));
         let both = first.then(&second);
         let through = |pose: &Pose, p: Point3<f64>| pose.tip() + pose.rotation() * p.coords;
-        let p = Point3::from(draw.direction());
+        let p = Point3::from(rng.direction());
         let difference = through(&both, p) - through(&second, through(&first, p));
         assert!(difference.norm() < 1e-12, "{difference}");
         assert!(both.has_spin());

@@ -5,12 +5,12 @@ use touchoff::TriangleId;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
 use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::reference::{QueryPoint, Reference};
+use touchoff_tests::oracle::rng::Rng;
 
 #[test]
 fn depths_keep_the_stated_error_bound() {
-    let mut draw = Rng::new(3);
+    let mut rng = Rng::new(3);
     let mut tightest = f64::INFINITY;
     for (tool, restated) in tools() {
         let info = tool.info();
@@ -23,11 +23,11 @@ fn depths_keep_the_stated_error_bound() {
         // A box of points about the tool, each with a triangle id of its own, far from the world's origin.
         let far = Vector3::new(700.0, -300.0, 55.0);
         let count = 4_000;
-        let within = |draw: &mut Rng| {
-            let across = |draw: &mut Rng| draw.between(-info.radius(), info.radius());
-            Point3::new(across(draw), across(draw), draw.between(low, high)) + far
+        let within = |rng: &mut Rng| {
+            let across = |rng: &mut Rng| rng.between(-info.radius(), info.radius());
+            Point3::new(across(rng), across(rng), rng.between(low, high)) + far
         };
-        let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut draw)).collect();
+        let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut rng)).collect();
         let cloud = Cloud::new(
             points.clone(),
             vec![Vector3::z(); count],
@@ -44,7 +44,7 @@ fn depths_keep_the_stated_error_bound() {
         for contact in probe.contacts(&pose) {
             let given = points[contact.triangle.index()] - far;
             let at = [given.x, given.y, given.z];
-            let exact = reference.depth(&At::new(at));
+            let exact = reference.depth(&QueryPoint::new(at));
             worst = worst.max((&Big::exactly(contact.depth) - &exact).abs().to_f64());
         }
         assert!(worst <= stated, "{}: {worst:e} over {stated:e}", info.name);

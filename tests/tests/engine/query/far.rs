@@ -4,7 +4,7 @@ use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Rounds coordinates to multiples of 2^-10, so that sums with 2^40 are exact.
 fn on_a_grid(p: Point3<f64>) -> Point3<f64> {
@@ -30,9 +30,9 @@ fn exact_translations_do_not_change_the_result() {
         let by = 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5);
         let translated = moved(&part, by);
         for (tool, oracle) in tools() {
-            let mut draw = Rng::new(21);
+            let mut rng = Rng::new(21);
             for k in 0..30 {
-                let pose = poses::about(&original, &*oracle, k, &mut draw);
+                let pose = poses::about(&original, &*oracle, k, &mut rng);
                 let tip = on_a_grid(pose.tip());
                 if tip.coords.amax() > 1024.0 {
                     continue;
@@ -59,10 +59,10 @@ fn other_translations_change_results_by_rounding_only() {
         let by = distance * Vector3::new(1.0, -0.7, 0.3);
         let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
         for (tool, oracle) in tools() {
-            let mut draw = Rng::new(22);
+            let mut rng = Rng::new(22);
             let mut case = Case::new(&part, tool, &*oracle);
             for k in 0..48 {
-                case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
+                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
             }
             println!("{distance:e} {}: {:?}", oracle.name(), case.statistics);
             assert!(case.statistics.touching > 20);
@@ -76,10 +76,10 @@ fn tiny_and_huge_parts() {
     for size in [1e-30, 1e-9, 1e-4, 1e-2, 1e2, 1e4, 1e6, 1e9, 1e15, 1e30] {
         let part = parts::soup(size, 2_000, 23);
         for (tool, oracle) in tools() {
-            let mut draw = Rng::new(24);
+            let mut rng = Rng::new(24);
             let mut case = Case::new(&part, tool, &*oracle);
             for k in 0..24 {
-                case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
+                case.check(&poses::about(&part, &*oracle, k, &mut rng), k);
             }
             println!("{size:e} {}: {:?}", oracle.name(), case.statistics);
             assert!(case.statistics.touching > 8, "{size:e} {}", oracle.name());
@@ -92,21 +92,21 @@ fn tiny_and_huge_parts() {
 fn a_small_tool_on_a_large_part() {
     for size in [1e3, 1e5, 1e8, 1e12] {
         for offset in [0.0, 0.6 * size] {
-            let mut draw = Rng::new(25);
+            let mut rng = Rng::new(25);
             let original = Point3::new(offset, -offset, 0.5 * offset);
-            let close =
-                (0..1_000).map(|_| original + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
-            let wide = (0..1_000).map(|_| Point3::from(parts::vector(&mut draw, size)));
-            let points: Vec<_> = close.into_iter().chain(wide).collect();
-            let normals = (0..2_000).map(|_| parts::direction(&mut draw)).collect();
+            let near_points =
+                (0..1_000).map(|_| original + parts::vector(&mut rng, 8.0)).collect::<Vec<_>>();
+            let far_points = (0..1_000).map(|_| Point3::from(parts::vector(&mut rng, size)));
+            let points: Vec<_> = near_points.into_iter().chain(far_points).collect();
+            let normals = (0..2_000).map(|_| parts::direction(&mut rng)).collect();
             let part = parts::of(points, normals, vec![0.3; 2_000]);
             for (tool, oracle) in tools() {
                 let mut case = Case::new(&part, tool, &*oracle);
                 for k in 0..24 {
                     let [_, height] = oracle.extent();
-                    let own = Vector3::new(0.0, 0.0, draw.between(0.0, height));
-                    let at = original + parts::vector(&mut draw, 4.0);
-                    case.check(&poses::bringing(own, at, &mut draw), k);
+                    let own = Vector3::new(0.0, 0.0, rng.between(0.0, height));
+                    let at = original + parts::vector(&mut rng, 4.0);
+                    case.check(&poses::bringing(own, at, &mut rng), k);
                 }
                 println!("{size:e} at {offset:e} {}: {:?}", oracle.name(), case.statistics);
                 assert!(case.statistics.touching > 12, "{size:e} {}", oracle.name());
@@ -123,10 +123,10 @@ fn denormal_parts() {
         let part = parts::of(points.to_vec(), vec![Vector3::x(); 5], vec![1.0; 5]);
         for (tool, oracle) in tools() {
             let mut case = Case::new(&part, tool, &*oracle);
-            let mut draw = Rng::new(26);
+            let mut rng = Rng::new(26);
             for k in 0..12 {
                 let own = Vector3::new(0.3, 0.2, 0.7);
-                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), &mut draw), k), 5);
+                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), &mut rng), k), 5);
             }
         }
     }

@@ -4,7 +4,7 @@ use super::compare::tools;
 use super::{parts, poses};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the energy at a pose.
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {
@@ -27,11 +27,11 @@ fn the_gradient_law_is_the_slope_of_the_energy() {
     let part = parts::tube(3_000);
     let centre = Point3::new(0.5, -1.0, 2.0);
     for (tool, oracle) in tools() {
-        let mut draw = Rng::new(12);
+        let mut rng = Rng::new(12);
         let mut probe = Probe::new(&part, tool).with_law(Law::Gradient).with_centre(centre);
         let (mut touching, mut worst) = (0, [0f64; 2]);
         for k in 0..60 {
-            let pose = poses::about(&part, &*oracle, k, &mut draw);
+            let pose = poses::about(&part, &*oracle, k, &mut rng);
             let evaluation = probe.wrench(&pose);
             let at = pose.to_isometry();
             let about = (at * centre).coords;
@@ -59,9 +59,9 @@ const LAWS: [Law; 3] = [Law::Thesis, Law::Gradient, Law::Facing];
 
 /// Returns the upper face of a plate, z = 0, and nothing else.
 fn plate() -> Part {
-    let mut draw = Rng::new(13);
+    let mut rng = Rng::new(13);
     let points =
-        (0..4_000).map(|_| Point3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), 0.0));
+        (0..4_000).map(|_| Point3::new(rng.between(-1.0, 1.0), rng.between(-1.0, 1.0), 0.0));
     parts::of(points.collect(), vec![Vector3::z(); 4_000], vec![1e-3; 4_000])
 }
 

@@ -4,22 +4,22 @@
 use super::compare::{Case, Statistics, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::draw::Rng;
-use touchoff_tests::oracle::{Oracle, moved};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Oracle, displaced};
 
 /// Checks points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, moved to a pose, among others over a
 /// part of `size`.
 fn compare_surface_points(tool_at: usize, size: f64, offset: f64, seed: u64) -> Statistics {
     let (tool, oracle) = tools().swap_remove(tool_at);
-    let mut draw = Rng::new(seed);
-    let here = Point3::from(offset * parts::direction(&mut draw));
-    let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
-    let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut draw)
+    let mut rng = Rng::new(seed);
+    let centre = Point3::from(offset * parts::direction(&mut rng));
+    let pose = poses::bringing(Vector3::zeros(), centre, &mut rng);
+    let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut rng)
         .into_iter()
         .map(|q| pose.tip() + pose.rotation() * q)
         .collect();
-    points.extend((0..500).map(|_| Point3::from(parts::vector(&mut draw, size))));
-    let normals = points.iter().map(|_| parts::direction(&mut draw)).collect();
+    points.extend((0..500).map(|_| Point3::from(parts::vector(&mut rng, size))));
+    let normals = points.iter().map(|_| parts::direction(&mut rng)).collect();
     let count = points.len();
     let part = parts::of(points, normals, vec![0.01; count]);
     let mut case = Case::new(&part, tool, &*oracle);
@@ -29,14 +29,14 @@ fn compare_surface_points(tool_at: usize, size: f64, offset: f64, seed: u64) -> 
     case.statistics
 }
 
-fn own_points(oracle: &dyn Oracle, draw: &mut Rng) -> Vec<Vector3<f64>> {
+fn own_points(oracle: &dyn Oracle, rng: &mut Rng) -> Vec<Vector3<f64>> {
     let mut points = Vec::new();
     for p in oracle.curve_points().into_iter().flatten() {
         for power in [0, -15, -14, -13, -12, -11, -9, -7, -6, -5, -3] {
             let step = if power == 0 { 0.0 } else { 10f64.powi(power) };
-            let step = draw.direction().map(|c| step * c);
-            let angle = draw.between(0.0, std::f64::consts::TAU);
-            points.push(moved(oracle, p, step, angle).into());
+            let step = rng.direction().map(|c| step * c);
+            let angle = rng.between(0.0, std::f64::consts::TAU);
+            points.push(displaced(oracle, p, step, angle).into());
         }
     }
     points
@@ -59,11 +59,11 @@ fn on_the_surface_and_the_curves() {
 #[test]
 fn one_point_at_a_time() {
     for (tool, oracle) in tools() {
-        let mut draw = Rng::new(43);
+        let mut rng = Rng::new(43);
         let mut statistics = Statistics::default();
-        for (k, own) in own_points(&*oracle, &mut draw).into_iter().enumerate() {
-            let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut draw);
-            let pose = poses::bringing(own, Point3::from(at), &mut draw);
+        for (k, own) in own_points(&*oracle, &mut rng).into_iter().enumerate() {
+            let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut rng);
+            let pose = poses::bringing(own, Point3::from(at), &mut rng);
             let part = parts::identical(Point3::from(at), 1);
             let mut case = Case::new(&part, tool, &*oracle);
             case.check(&pose, k);
@@ -80,20 +80,20 @@ fn one_point_at_a_time() {
 #[test]
 fn points_just_outside_never_touch_and_points_just_inside_do() {
     for (tool, oracle) in tools() {
-        let mut draw = Rng::new(41);
+        let mut rng = Rng::new(41);
         for size in [1e2, 1e4, 1e6] {
             for hair in [1e-3, 1e-6, 1e-8] {
-                let here = Point3::from(0.3 * size * parts::direction(&mut draw));
-                let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
+                let centre = Point3::from(0.3 * size * parts::direction(&mut rng));
+                let pose = poses::bringing(Vector3::zeros(), centre, &mut rng);
                 // Points at a step of `hair` from the curves, kept if they are about as far off the surface.
                 let mut both = [Vec::new(), Vec::new()];
                 for p in oracle.curve_points().into_iter().flatten() {
-                    let angle = draw.between(0.0, std::f64::consts::TAU);
+                    let angle = rng.between(0.0, std::f64::consts::TAU);
                     for turn in 0..8 {
                         let (up, out) = (f64::from(turn) * std::f64::consts::FRAC_PI_4).sin_cos();
                         let direction =
-                            if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
-                        let q = moved(&*oracle, p, direction.map(|c| hair * c), angle);
+                            if oracle.is_revolved() { [out, 0.0, up] } else { rng.direction() };
+                        let q = displaced(&*oracle, p, direction.map(|c| hair * c), angle);
                         let offset = oracle.signed_distance(q);
                         if offset.abs() > 0.3 * hair && offset.abs() < 2.0 * hair {
                             let q = Vector3::from(q);

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Sampling, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
 
@@ -43,27 +43,27 @@ pub(crate) fn cuboid(half: f64, count: usize) -> Part {
 
 /// Returns points anywhere in a cube, with random normals and weights.
 pub(crate) fn soup(half: f64, count: usize, seed: u64) -> Part {
-    let mut draw = Rng::new(seed);
-    let points = (0..count).map(|_| Point3::from(vector(&mut draw, half))).collect();
-    let normals = (0..count).map(|_| direction(&mut draw)).collect();
-    let weights = (0..count).map(|_| draw.between(0.0, 2.0)).collect();
+    let mut rng = Rng::new(seed);
+    let points = (0..count).map(|_| Point3::from(vector(&mut rng, half))).collect();
+    let normals = (0..count).map(|_| direction(&mut rng)).collect();
+    let weights = (0..count).map(|_| rng.between(0.0, 2.0)).collect();
     of(points, normals, weights)
 }
 
 /// Returns a part of the same point `count` times.
 pub(crate) fn identical(at: Point3<f64>, count: usize) -> Part {
-    let mut draw = Rng::new(9);
-    let normals = (0..count).map(|_| direction(&mut draw)).collect();
+    let mut rng = Rng::new(9);
+    let normals = (0..count).map(|_| direction(&mut rng)).collect();
     of(vec![at; count], normals, vec![0.5; count])
 }
 
-pub(crate) fn vector(draw: &mut Rng, half: f64) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| draw.between(-half, half))
+pub(crate) fn vector(rng: &mut Rng, half: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| rng.between(-half, half))
 }
 
-pub(crate) fn direction(draw: &mut Rng) -> Vector3<f64> {
+pub(crate) fn direction(rng: &mut Rng) -> Vector3<f64> {
     loop {
-        let v = vector(draw, 1.0);
+        let v = vector(rng, 1.0);
         if (0.01..=1.0).contains(&v.norm()) {
             return v.normalize();
         }

@@ -4,12 +4,12 @@ use super::parts::{direction, vector};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a random orientation, as a unit quaternion.
-pub(crate) fn quaternion(draw: &mut Rng) -> [f64; 4] {
+pub(crate) fn quaternion(rng: &mut Rng) -> [f64; 4] {
     loop {
-        let v = [0; 4].map(|_| draw.between(-1.0, 1.0));
+        let v = [0; 4].map(|_| rng.between(-1.0, 1.0));
         let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         if (0.01..=1.0).contains(&norm) {
             return v.map(|c| c / norm);
@@ -18,8 +18,8 @@ pub(crate) fn quaternion(draw: &mut Rng) -> [f64; 4] {
 }
 
 /// Returns a pose of random orientation that brings the tool's own point `in_tool` to `at`.
-pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Rng) -> Pose {
-    let turned = Pose::from_quaternion(Point3::origin(), quaternion(draw)).expect("a pose");
+pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, rng: &mut Rng) -> Pose {
+    let turned = Pose::from_quaternion(Point3::origin(), quaternion(rng)).expect("a pose");
     Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
 }
 
@@ -30,24 +30,24 @@ fn quaternion_of(pose: &Pose) -> [f64; 4] {
 
 /// Returns a pose about a part: one in eight far off, the others with some point of the part in the tool or hardly
 /// outside.
-pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Rng) -> Pose {
+pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, rng: &mut Rng) -> Pose {
     let tree = part.tree();
-    let point = tree.point(draw.bits() as usize % tree.len());
+    let point = tree.point(rng.bits() as usize % tree.len());
     let [width, height] = oracle.extent();
     if k % 8 == 7 {
-        let distance = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
-        return bringing(vector(draw, height), point + distance * height * direction(draw), draw);
+        let distance = rng.between(1.0, 4.0) * 10f64.powi(rng.bits() as i32 & 3);
+        return bringing(vector(rng, height), point + distance * height * direction(rng), rng);
     }
-    if !oracle.revolved() {
+    if !oracle.is_revolved() {
         // A solid may fill little of the box about it, so the point is near a face or a splitting surface.
         let curves = oracle.curve_points();
-        let curve = &curves[draw.bits() as usize % curves.len()];
-        let own = Vector3::from(curve[draw.bits() as usize % curve.len()]);
-        return bringing(own + vector(draw, 0.02 * height), point, draw);
+        let curve = &curves[rng.bits() as usize % curves.len()];
+        let own = Vector3::from(curve[rng.bits() as usize % curve.len()]);
+        return bringing(own + vector(rng, 0.02 * height), point, rng);
     }
-    let axis = direction(draw);
-    let d = 1.05 * width * draw.between(0.0, 1.0);
-    let z = draw.between(-0.05, 1.05) * height;
+    let axis = direction(rng);
+    let d = 1.05 * width * rng.between(0.0, 1.0);
+    let z = rng.between(-0.05, 1.05) * height;
     let d = d / axis.x.hypot(axis.y).max(1e-9);
-    bringing(Vector3::new(d * axis.x, d * axis.y, z), point, draw)
+    bringing(Vector3::new(d * axis.x, d * axis.y, z), point, rng)
 }

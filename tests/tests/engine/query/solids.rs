@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use tools_library::{Block, LBracket};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Sampling, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.
 fn plane(pose: &Pose) -> Part {
@@ -18,9 +18,9 @@ fn plane(pose: &Pose) -> Part {
     parts::of(points, vec![pose.rotation() * Vector3::z(); count], vec![1.0 / 16.0; count])
 }
 
-fn anywhere(draw: &mut Rng) -> Pose {
-    let tip = Point3::from(parts::vector(draw, 100.0));
-    Pose::from_quaternion(tip, poses::quaternion(draw)).expect("a pose")
+fn anywhere(rng: &mut Rng) -> Pose {
+    let tip = Point3::from(parts::vector(rng, 100.0));
+    Pose::from_quaternion(tip, poses::quaternion(rng)).expect("a pose")
 }
 
 /// Returns a pose moved by a step in its own frame.
@@ -34,17 +34,17 @@ fn shifted(pose: &Pose, step: Vector3<f64>) -> Pose {
 /// l - h² (w + l) + 4 h³/3`; only the part that is nearest to the underside pushes up.
 #[test]
 fn a_block_on_a_plane() {
-    let mut draw = Rng::new(91);
+    let mut rng = Rng::new(91);
     let (w, l) = (40.0, 30.0);
     for k in 0..8 {
-        let there = if k == 0 {
+        let block_pose = if k == 0 {
             Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose")
         } else {
-            anywhere(&mut draw)
+            anywhere(&mut rng)
         };
-        let part = plane(&there);
+        let part = plane(&block_pose);
         for h in [0.5, 1.5, 4.0] {
-            let pose = shifted(&there, Vector3::new(0.0, 0.0, -h));
+            let pose = shifted(&block_pose, Vector3::new(0.0, 0.0, -h));
             let mut probe = Probe::new(&part, &Block).with_law(Law::Gradient);
             let evaluation = probe.wrench(&pose);
             assert!(probe.detect(&pose));
@@ -56,7 +56,7 @@ fn a_block_on_a_plane() {
                 evaluation.integral
             );
             let up = h * (w - 2.0 * h) * (l - 2.0 * h);
-            let force_in_tool = there.rotation().transpose() * evaluation.force;
+            let force_in_tool = pose.rotation().transpose() * evaluation.force;
             assert!((force_in_tool.z / up - 1.0).abs() < 0.03, "{force_in_tool} {up}");
             // Everything cancels but the points of the hips themselves, which may fall to either side.
             assert!(
@@ -64,7 +64,7 @@ fn a_block_on_a_plane() {
                 "{force_in_tool} {up}"
             );
         }
-        let clear = shifted(&there, Vector3::new(0.0, 0.0, 1e-3));
+        let clear = shifted(&block_pose, Vector3::new(0.0, 0.0, 1e-3));
         assert!(!Probe::new(&part, &Block).detect(&clear));
     }
 }
@@ -73,14 +73,14 @@ fn a_block_on_a_plane() {
 /// all round as it is thicker.
 #[test]
 fn a_pin_in_the_hole_of_a_bracket() {
-    let mut draw = Rng::new(92);
+    let mut rng = Rng::new(92);
     for _ in 0..6 {
-        let pose = anywhere(&mut draw);
+        let pose = anywhere(&mut rng);
         for (radius, depth) in [(3.2, None), (3.4, Some(0.1)), (4.0, Some(0.7))] {
             let points: Vec<_> = (0..20_000)
                 .map(|_| {
-                    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-                    let z = draw.between(1.0, 5.0);
+                    let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
+                    let z = rng.between(1.0, 5.0);
                     let own = Vector3::new(10.0 + radius * cos, radius * sin, z);
                     pose.tip() + pose.rotation() * own
                 })

@@ -7,7 +7,7 @@ use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
 use touchoff_tests::haptics::{block, tool, upright};
 use touchoff_tests::library::read;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Step of the finite differences: a length in the part's unit, and an angle in rad.
 const STEP: f64 = 1e-6;
@@ -44,12 +44,12 @@ fn differences(probe: &mut Probe<'_>, pose: &Pose, centre: Point3<f64>) -> Matri
 /// Returns the differences between the two matrices at poses about a part, relative to the matrix's own size,
 /// sorted.
 fn relative_errors(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64> {
-    let mut draw = Rng::new(31);
+    let mut rng = Rng::new(31);
     let centre = Point3::new(0.3, -0.2, 1.5);
     let mut probe = Probe::new(part, tool).with_law(law).with_centre(centre);
     let mut relative_errors = Vec::new();
     for k in 0..60 {
-        let pose = poses::about(part, oracle, k, &mut draw);
+        let pose = poses::about(part, oracle, k, &mut rng);
         let found = probe.stiffness(&pose);
         assert_eq!(found.wrench, probe.wrench(&pose));
         if found.wrench.colliding > 0 {
@@ -87,11 +87,11 @@ fn an_interpreted_tool_has_the_same_stiffness() {
     let part = parts::soup(6.0, 1_500, 6);
     for (tool, oracle) in tools() {
         let (interpreted, _) = read(oracle.name());
-        let mut draw = Rng::new(32);
+        let mut rng = Rng::new(32);
         let mut compiled = Probe::new(&part, tool).with_law(Law::Gradient);
         let mut read = Probe::new(&part, &interpreted as &dyn Tool).with_law(Law::Gradient);
         for k in 0..30 {
-            let pose = poses::about(&part, &*oracle, k, &mut draw);
+            let pose = poses::about(&part, &*oracle, k, &mut rng);
             let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
             let difference = (one.matrix - other.matrix).norm();
             assert!(difference <= 1e-12 * one.matrix.norm(), "{}: {difference:e}", oracle.name());

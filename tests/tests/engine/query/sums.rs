@@ -5,7 +5,7 @@ use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Law, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 type Triple = [Big; 3];
 
@@ -42,12 +42,12 @@ fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64;
                 [0, 1, 2].map(|axis| &n[axis] - &u[axis])
             }
         };
-        let push = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
-        let force = direction.map(|part| &push * &part);
+        let force_magnitude = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
+        let force = direction.map(|part| &force_magnitude * &part);
         let arm = contact.point - tip;
         add(&mut sums[1], &cross(&to_big(arm), &force));
         add(&mut sums[0], &force);
-        let size = push.to_f64() * contact.gradient.norm().max(1.0);
+        let size = force_magnitude.to_f64() * contact.gradient.norm().max(1.0);
         sizes[0] += size;
         sizes[1] += size * (arm.norm() + contact.point.coords.norm());
     }
@@ -62,9 +62,9 @@ fn sums_keep_the_stated_rounding_bound() {
     let (mut touching, mut tightest) = (0, f64::INFINITY);
     for part in [parts::soup(6.0, 2_000, 1), parts::tube(6_000)] {
         for (tool, oracle) in tools() {
-            let mut draw = Rng::new(17);
+            let mut rng = Rng::new(17);
             for k in 0..60 {
-                let pose: Pose = poses::about(&part, &*oracle, k, &mut draw);
+                let pose: Pose = poses::about(&part, &*oracle, k, &mut rng);
                 let (law, weights) = LAWS_AND_WEIGHTS[k % 6];
                 let mut probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
                 let wrench = probe.wrench(&pose);
@@ -101,9 +101,9 @@ fn the_rounding_bound_covers_a_distant_compliance_centre() {
     let part = parts::tube(6_000);
     let (tool, oracle) = tools().swap_remove(0);
     let centre = Point3::new(300.0, -200.0, 1000.0);
-    let mut draw = Rng::new(4);
+    let mut rng = Rng::new(4);
     for k in 0..40 {
-        let pose = poses::about(&part, &*oracle, k, &mut draw);
+        let pose = poses::about(&part, &*oracle, k, &mut rng);
         let mut probe = Probe::new(&part, tool).with_centre(centre);
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;

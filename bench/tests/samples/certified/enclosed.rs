@@ -6,7 +6,7 @@ use tools_library::TOOLS;
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Motion, Pose, SurfaceId, Tool, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Returns a cube around the origin that contains any library tool.
@@ -71,8 +71,8 @@ fn random_sets_of_restricted_surfaces_are_found_inside() {
             let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
             let is_restricted = (0..count).any(|index| limit(index).is_some());
             let pose = Pose::from_axis(Point3::from([3.0; 3]), Vector3::from(rng.direction()));
-            let found = certifier.check_pose(&pose.expect("an axis"));
-            match found {
+            let verdict = certifier.check_pose(&pose.expect("an axis"));
+            match verdict {
                 PoseVerdict::Inside(surface) => {
                     assert!(limit(surface.0).is_some(), "{}", tool.info().name);
                 }
@@ -107,12 +107,13 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
         let samples: Vec<([f64; 2], f64, usize)> = (0..SAMPLES)
             .filter_map(|_| {
                 let point = [rng.between(0.0, radius), rng.between(0.0, height)];
-                let sense = oracle.sense([point[0], 0.0, point[1]])?;
-                let distance_to = |surface: &str| oracle.away(surface, [point[0], 0.0, point[1]]);
+                let evaluation = oracle.evaluate([point[0], 0.0, point[1]])?;
+                let distance_to =
+                    |surface: &str| oracle.distance_to_surface(surface, [point[0], 0.0, point[1]]);
                 let nearest = (0..surfaces.len()).min_by(|a, b| {
                     distance_to(surfaces[*a]).total_cmp(&distance_to(surfaces[*b]))
                 })?;
-                Some((point, sense.depth, nearest))
+                Some((point, evaluation.depth, nearest))
             })
             .collect();
         for _ in 0..60 {
@@ -131,7 +132,7 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
             let (up, cut) = (rng.bits().is_multiple_of(2), rng.between(-0.1, 1.1) * height);
             let axis = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
             let tip = [0.1, 0.2, if up { -cut } else { cut } * length];
-            let found = certifier.check_pose(&pose(tip, axis));
+            let verdict = certifier.check_pose(&pose(tip, axis));
             let margin = 1e-6 * radius;
             let forbidden = samples.iter().filter(|([_, z], depth, surface)| {
                 let below = if up { cut - z } else { z - cut };
@@ -139,7 +140,7 @@ fn inside_verdicts_agree_with_samples_of_the_section() {
                     && below > margin
             });
             let forbidden = forbidden.count();
-            match found {
+            match verdict {
                 PoseVerdict::Clear => {
                     clear += 1;
                     assert_eq!(forbidden, 0, "{name} {limits:?} {cut} {up}");

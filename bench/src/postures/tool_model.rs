@@ -15,7 +15,7 @@ struct Segment {
 }
 
 /// A tool whose postures are derived.
-pub struct Stand {
+pub struct ToolModel {
     segments: Vec<Segment>,
     /// The oracle for its depths.
     pub oracle: Nearest,
@@ -25,7 +25,7 @@ pub struct Stand {
     pub length: f64,
     /// Up to two heights on the axis, in the tool's unit: the deepest point owned by a cutting surface, if deeper than
     /// the tolerance, and the deepest point owned by another surface.
-    pub cores: Vec<f64>,
+    pub core_heights: Vec<f64>,
 }
 
 /// A posture of a tool.
@@ -75,19 +75,19 @@ impl Segment {
     }
 }
 
-impl Stand {
+impl ToolModel {
     /// Derives a tool from its restatement. `length` is the tool's unit of length in the part's unit. `tolerance` is
     /// the allowed depth of cutting surfaces, in the part's unit.
     ///
     /// # Errors
     /// If the tool has no restatement.
-    pub fn new(name: &str, length: f64, tolerance: f64) -> Result<Stand, String> {
+    pub fn new(name: &str, length: f64, tolerance: f64) -> Result<ToolModel, String> {
         let tool = restated::of(name).ok_or_else(|| format!("`{name}` is not restated"))?;
         let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
         let mut from = point(&tool.start);
         let mut segments = Vec::new();
         let mut surfaces: Vec<(&'static str, bool)> = Vec::new();
-        for segment in &tool.ways {
+        for segment in &tool.segments {
             let (to, centre) = (point(&segment.to), segment.centre.as_ref().map(point));
             let is_cutting = tool.cutting.contains(&segment.surface);
             segments.push(Segment { from, to, centre, is_cutting });
@@ -97,9 +97,9 @@ impl Stand {
             from = to;
         }
         let oracle = Nearest::new(&tool);
-        let mut stand = Stand { segments, oracle, surfaces, length, cores: Vec::new() };
-        stand.cores = stand.deepest(tolerance);
-        Ok(stand)
+        let mut model = ToolModel { segments, oracle, surfaces, length, core_heights: Vec::new() };
+        model.core_heights = model.deepest(tolerance);
+        Ok(model)
     }
 
     /// Returns all postures in which a cutting surface touches the plane through a point, on a convex arc or at a
@@ -168,8 +168,9 @@ impl Stand {
             }
             let radial =
                 if radial_length > 0.0 { radial_vector / radial_length } else { Vector3::zeros() };
-            let niceness_at =
-                |[d, z]: P2| self.oracle.sense([d, 0.0, z]).map(|sense| sense.niceness);
+            let niceness_at = |[d, z]: P2| {
+                self.oracle.evaluate([d, 0.0, z]).map(|evaluation| evaluation.niceness)
+            };
             // At a corner both pieces touch, and the lower niceness counts.
             let niceness = inner_points.into_iter().filter_map(niceness_at).reduce(f64::min)?;
             let tip = contact_point - self.length * (d * radial + z * axis);
@@ -185,10 +186,12 @@ impl Stand {
 
     /// Returns the depth of a point of the tool's frame, which is negative outside, and its distances from the cutting
     /// surfaces and from the others. The point is in the tool's unit, the results in the part's.
-    pub fn evaluation(&self, point: [f64; 3]) -> [f64; 3] {
+    pub fn depth_and_distances(&self, point: [f64; 3]) -> [f64; 3] {
         let distance_to = |is_cutting: bool| {
             let surfaces = self.surfaces.iter().filter(|(_, cutting)| *cutting == is_cutting);
-            surfaces.map(|(name, _)| self.oracle.away(name, point)).fold(f64::INFINITY, f64::min)
+            surfaces
+                .map(|(name, _)| self.oracle.distance_to_surface(name, point))
+                .fold(f64::INFINITY, f64::min)
         };
         let (cutting_distance, non_cutting_distance) = (distance_to(true), distance_to(false));
         let depth = -self.oracle.signed_distance(point);
@@ -200,7 +203,7 @@ impl Stand {
         let height = self.oracle.extent()[1];
         let heights = (1..SAMPLES).map(|k| height * f64::from(k) / f64::from(SAMPLES));
         let samples: Vec<(f64, [f64; 3])> =
-            heights.map(|z| (z, self.evaluation([0.0, 0.0, z]))).collect();
+            heights.map(|z| (z, self.depth_and_distances([0.0, 0.0, z]))).collect();
         let deepest = |owns: fn(&[f64; 3]) -> bool, min_depth: f64| {
             let owned = samples.iter().filter(|(_, sample)| sample[0] > min_depth && owns(sample));
             owned.max_by(|a, b| a.1[0].total_cmp(&b.1[0])).map(|(z, _)| *z)
@@ -216,7 +219,7 @@ impl Stand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Rng;
+    use touchoff_tests::oracle::rng::Rng;
 
     /// The contact point is on the tool's surface, a point slightly above the plane is inside the tool, and no point
     /// slightly below the plane is.
@@ -225,17 +228,17 @@ mod tests {
         let mut rng = Rng::new(5);
         for name in ["D2Ball", "BullNose", "TaperedBall", "Flat", "Drill", "HalfInchBallCat40"] {
             let length = if name.starts_with("Half") { 25.4 } else { 1.0 };
-            let stand = Stand::new(name, length, 0.01).expect("a restated tool");
+            let model = ToolModel::new(name, length, 0.01).expect("a restated tool");
             let mut count = 0;
             for _ in 0..2_000 {
                 let (normal, axis) =
                     (Vector3::from(rng.direction()), Vector3::from(rng.direction()));
-                for posture in stand.postures(Point3::origin(), normal, axis, 1.0) {
+                for posture in model.postures(Point3::origin(), normal, axis, 1.0) {
                     count += 1;
                     let depth = |point: Vector3<f64>| {
                         let offset = (point - posture.tip.coords) / length;
                         let z = offset.dot(&axis);
-                        -stand.oracle.signed_distance([(offset - z * axis).norm(), 0.0, z])
+                        -model.oracle.signed_distance([(offset - z * axis).norm(), 0.0, z])
                     };
                     assert!(depth(Vector3::zeros()).abs() < 1e-12, "{name} {posture:?}");
                     assert!(depth(1e-6 * normal) > 0.0, "{name} {posture:?}");

@@ -22,26 +22,26 @@ const EDGE_LOWERING: f64 = 2.5;
 
 /// A path of the hand along the tube, at about 10 mm/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
+pub enum HandPath {
     /// The ball slides on the outer wall.
     Wall,
     /// Flute, taper and spindle slide along the top edge, which passes from one region of the tool to the next.
     Edge,
 }
 
-impl Way {
+impl HandPath {
     /// Returns the name in the table.
     pub fn name(self) -> &'static str {
         match self {
-            Way::Wall => "wall",
-            Way::Edge => "edge",
+            HandPath::Wall => "wall",
+            HandPath::Edge => "edge",
         }
     }
 
     fn pose(self, time: f64) -> Pose {
         let [from, to] = match self {
-            Way::Wall => [0.05, 0.25],
-            Way::Edge => [0.65, 0.90],
+            HandPath::Wall => [0.05, 0.25],
+            HandPath::Edge => [0.65, 0.90],
         };
         const POSES: usize = 10_000_000;
         let fraction = from + (to - from) * time / MOTION_SECONDS;
@@ -50,7 +50,7 @@ impl Way {
         let inward = -Vector3::new(centre.x, centre.y, 0.0).normalize();
         // The approach starts outside: the wall is thinner than the depth that the hand aims at.
         let depth = TARGET_DEPTH * (2.0 * time).min(1.0) - 0.3 * (1.0 - 2.0 * time).max(0.0);
-        let lowering = if self == Way::Edge { EDGE_LOWERING } else { 0.0 };
+        let lowering = if self == HandPath::Edge { EDGE_LOWERING } else { 0.0 };
         let displacement = inward * depth - Vector3::z() * lowering;
         pose.translated(displacement).expect("a pose beside the tube")
     }
@@ -66,13 +66,13 @@ pub fn tools() -> [(&'static str, &'static dyn Tool); 3] {
 #[derive(Clone, Copy)]
 pub struct Case<'a> {
     /// The path.
-    pub way: Way,
+    pub path: HandPath,
     /// The tool's name and the tool.
     pub tool: (&'static str, &'a dyn Tool),
     /// The force law.
     pub law: Law,
     /// The rendering: `direct`, `scaled` or `coupled`.
-    pub how: &'static str,
+    pub rendering: &'static str,
     /// Contact stiffness under [`Law::Gradient`], N/mm³. The other laws use half of it, since in ideal contact they
     /// push twice as hard.
     pub stiffness: f64,
@@ -80,21 +80,21 @@ pub struct Case<'a> {
 
 /// The force that the hand received and the stiffness of the contact. `force` and `rough` are root mean squares.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Shaking {
+pub struct ForceStats {
     /// The force, N.
     pub force: f64,
     /// The part of the force above 30 Hz, N, which is perceived as roughness and not as shape.
-    pub rough: f64,
+    pub roughness: f64,
     /// The largest change of the force from one cycle to the next, N.
-    pub step: f64,
+    pub max_step: f64,
     /// The largest eigenvalue of the contact's stiffness, N/mm.
-    pub stiffest: f64,
+    pub max_stiffness: f64,
 }
 
 /// Moves the tool along its path and returns the statistics of the force.
-pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
+pub fn force_stats(part: &Part, case: &Case<'_>) -> ForceStats {
     let limits = DeviceLimits { force: 50.0, torque: 2000.0, ..LIMITS };
-    let rendering = match case.how {
+    let rendering = match case.rendering {
         "coupled" => Rendering::Coupled(Coupling::of(&limits)),
         how => Rendering::Direct { scaled: how == "scaled", damping: 0.0 },
     };
@@ -107,8 +107,9 @@ pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
     };
     let probe = Probe::new(part, case.tool.1).with_law(case.law);
     let mut session = Session::new(probe, &settings, limits).expect("settings");
-    let mut hand = SimulatedHand::new(limits, RATE, |time| case.way.pose(time)).expect("a hand");
-    let (mut sums, mut filtered, mut previous) = (Shaking::default(), [Vector3::zeros(); 2], None);
+    let mut hand = SimulatedHand::new(limits, RATE, |time| case.path.pose(time)).expect("a hand");
+    let (mut sums, mut filtered, mut previous) =
+        (ForceStats::default(), [Vector3::zeros(); 2], None);
     let mut count = 0.0;
     // A first-order low-pass filter at 30 Hz, applied twice.
     let share = 1.0 - (-std::f64::consts::TAU * 30.0 / RATE).exp();
@@ -121,12 +122,16 @@ pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
         if cycle as f64 > RATE {
             count += 1.0;
             sums.force += force.norm_squared();
-            sums.rough += (force - filtered[1]).norm_squared();
-            sums.stiffest = sums.stiffest.max(state.stiffest * limits.stiffness);
+            sums.roughness += (force - filtered[1]).norm_squared();
+            sums.max_stiffness = sums.max_stiffness.max(state.stiffest * limits.stiffness);
             let step = previous.map_or(0.0, |previous: Vector3<f64>| (force - previous).norm());
-            sums.step = sums.step.max(step);
+            sums.max_step = sums.max_step.max(step);
         }
         previous = Some(force);
     }
-    Shaking { force: (sums.force / count).sqrt(), rough: (sums.rough / count).sqrt(), ..sums }
+    ForceStats {
+        force: (sums.force / count).sqrt(),
+        roughness: (sums.roughness / count).sqrt(),
+        ..sums
+    }
 }

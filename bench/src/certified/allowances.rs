@@ -1,9 +1,9 @@
 //! The depth of each surface of a tool by sampling, and its excess over the surface's allowance.
 
-use super::brute::{Brute, Point, distance, nearest};
+use super::brute::{BruteForce, Point, distance, nearest};
 use touchoff::Pose;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Maximum number of triangles sampled per pose, and number of samples per triangle.
 const MAX_TRIANGLES: usize = 300;
@@ -24,19 +24,19 @@ pub struct Sample {
 }
 
 /// A tool's surfaces with their allowances, and a part.
-pub struct Owned<'a> {
+pub struct SurfaceAllowances<'a> {
     /// The part's triangles and the tool.
-    pub brute: &'a Brute<'a>,
+    pub brute: &'a BruteForce<'a>,
     /// The surfaces' names, in the tool's order.
-    pub names: Vec<String>,
+    pub surface_names: Vec<String>,
     /// The allowances of the surfaces, in the part's unit. A negative one is a distance to keep.
-    pub allowed: Vec<f64>,
+    pub allowances: Vec<f64>,
 }
 
-impl Owned<'_> {
+impl SurfaceAllowances<'_> {
     /// Returns the distance of a point from a surface, in the part's unit.
-    pub fn away(&self, surface: usize, p: Point) -> f64 {
-        self.brute.oracle.away(&self.names[surface], p) * self.brute.length
+    pub fn distance_to_surface(&self, surface: usize, p: Point) -> f64 {
+        self.brute.oracle.distance_to_surface(&self.surface_names[surface], p) * self.brute.length
     }
 
     /// Returns the depth of a point, in the part's unit, if the point is inside and the surface is the nearest by more
@@ -44,41 +44,44 @@ impl Owned<'_> {
     /// 1e-18.
     pub fn depth(&self, surface: usize, p: Point) -> f64 {
         let depth = self.brute.depth(p) * self.brute.length;
-        let own_distance = self.away(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
-        let other_surfaces = (0..self.names.len()).filter(|other| *other != surface);
-        let is_nearest =
-            other_surfaces.into_iter().all(|other| own_distance <= self.away(other, p));
+        let own_distance =
+            self.distance_to_surface(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
+        let other_surfaces = (0..self.surface_names.len()).filter(|other| *other != surface);
+        let is_nearest = other_surfaces
+            .into_iter()
+            .all(|other| own_distance <= self.distance_to_surface(other, p));
         if depth >= 0.0 && is_nearest { depth } else { f64::NEG_INFINITY }
     }
 
     /// Returns the largest excess of a point's depth over an allowance, or of a distance to keep over the point's
     /// distance.
-    pub fn over(&self, p: Point) -> f64 {
+    pub fn max_excess(&self, p: Point) -> f64 {
         let excess = |surface: usize| {
-            let allowed = self.allowed[surface];
+            let allowed = self.allowances[surface];
             let excess_depth = self.depth(surface, p) - allowed.max(0.0);
             if allowed < 0.0 {
-                excess_depth.max(-self.away(surface, p) - allowed)
+                excess_depth.max(-self.distance_to_surface(surface, p) - allowed)
             } else {
                 excess_depth
             }
         };
-        let excesses = (0..self.names.len()).map(excess).filter(|over| !over.is_nan());
+        let excesses = (0..self.surface_names.len()).map(excess).filter(|over| !over.is_nan());
         excesses.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns samples of the triangles near a pose, with the value NaN.
     pub fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Sample> {
-        let (brute, frame) = (self.brute, self.brute.seen(pose));
+        let (brute, frame) = (self.brute, self.brute.tool_frame(pose));
         let [radius, height] = brute.oracle.extent();
         let max_margin =
-            self.allowed.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
+            self.allowances.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
         let near = |id: &usize| {
-            let (middle, reach) = brute.balls[*id];
-            let (p, reach) = (brute.to_tool(&frame, middle), (reach + max_margin) / brute.length);
+            let (middle, reach) = brute.bounding_balls[*id];
+            let (p, reach) =
+                (brute.to_tool_frame(&frame, middle), (reach + max_margin) / brute.length);
             p[2] + reach >= 0.0 && p[2] - reach <= height && p[0].hypot(p[1]) <= radius + reach
         };
-        let mut near: Vec<usize> = (0..brute.balls.len()).filter(near).collect();
+        let mut near: Vec<usize> = (0..brute.bounding_balls.len()).filter(near).collect();
         while near.len() > MAX_TRIANGLES {
             near.swap_remove(rng.bits() as usize % near.len());
         }
@@ -99,7 +102,7 @@ impl Owned<'_> {
     }
 
     /// Returns the largest value over the samples and a search from the best of them.
-    pub fn most(
+    pub fn max_sample(
         &self,
         pose: &Pose,
         samples: &[Sample],
@@ -123,7 +126,7 @@ impl Owned<'_> {
         value: impl Fn(Point) -> f64,
         rng: &mut Rng,
     ) -> Sample {
-        let triangle = self.brute.triangle(&self.brute.seen(pose), start.triangle);
+        let triangle = self.brute.triangle(&self.brute.tool_frame(pose), start.triangle);
         let [a, b, c] = triangle;
         let longest_edge = distance(a, b).max(distance(b, c)).max(distance(c, a));
         let (mut step, mut best, mut failed) =

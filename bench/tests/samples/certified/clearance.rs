@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, TriangleId, Unit};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Number of divisions of the triangles' sides.

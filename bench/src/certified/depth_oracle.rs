@@ -17,30 +17,30 @@ pub const FIELDS: [&str; 7] =
 const FIELD_LIPSCHITZ_BOUND: f64 = 2.24;
 
 /// A tool whose depth is evaluated many times.
-pub enum Subject {
+pub enum DepthOracle {
     /// A tool with a profile.
     Profile(Box<Nearest>, Outline),
     /// A tool with a depth field.
     Field(Box<dyn Oracle + Send + Sync>),
 }
 
-impl Subject {
+impl DepthOracle {
     /// Returns a tool from the lists above.
     ///
     /// # Panics
     /// If it is in neither list.
-    pub fn of(name: &str) -> Subject {
+    pub fn of(name: &str) -> DepthOracle {
         match name {
-            "Fig73" => Subject::Field(Box::<Fig73>::default()),
-            "Cylinder" => Subject::Field(Box::new(Cylinder)),
-            "UnitSphere" => Subject::Field(Box::new(UnitSphere)),
-            "Block" => Subject::Field(Box::new(Block)),
-            "LBracket" => Subject::Field(Box::new(LBracket)),
+            "Fig73" => DepthOracle::Field(Box::<Fig73>::default()),
+            "Cylinder" => DepthOracle::Field(Box::new(Cylinder)),
+            "UnitSphere" => DepthOracle::Field(Box::new(UnitSphere)),
+            "Block" => DepthOracle::Field(Box::new(Block)),
+            "LBracket" => DepthOracle::Field(Box::new(LBracket)),
             _ => {
                 let nearest = Box::new(Nearest::of(name));
                 match restated::of(name).and_then(|tool| Outline::of(&tool)) {
-                    Some(outline) => Subject::Profile(nearest, outline),
-                    None => Subject::Field(nearest),
+                    Some(outline) => DepthOracle::Profile(nearest, outline),
+                    None => DepthOracle::Field(nearest),
                 }
             }
         }
@@ -49,28 +49,28 @@ impl Subject {
     /// Returns the oracle of the tool.
     pub fn oracle(&self) -> &dyn Oracle {
         match self {
-            Subject::Profile(nearest, _) => &**nearest,
-            Subject::Field(field) => &**field,
+            DepthOracle::Profile(nearest, _) => &**nearest,
+            DepthOracle::Field(field) => &**field,
         }
     }
 
     /// Returns the depth of a point; it is negative outside.
     pub(super) fn depth(&self, p: [f64; 3]) -> f64 {
         match self {
-            Subject::Profile(_, outline) => {
+            DepthOracle::Profile(_, outline) => {
                 outline.depth([(p[0] * p[0] + p[1] * p[1]).sqrt(), p[2]])
             }
-            Subject::Field(field) => {
-                field.sense(p).map_or_else(|| -field.signed_distance(p), |sense| sense.depth)
-            }
+            DepthOracle::Field(field) => field
+                .evaluate(p)
+                .map_or_else(|| -field.signed_distance(p), |evaluation| evaluation.depth),
         }
     }
 
     /// Returns a Lipschitz bound of the depth.
     pub(super) fn lipschitz_bound(&self) -> f64 {
         match self {
-            Subject::Profile(..) => 1.0,
-            Subject::Field(_) => FIELD_LIPSCHITZ_BOUND,
+            DepthOracle::Profile(..) => 1.0,
+            DepthOracle::Field(_) => FIELD_LIPSCHITZ_BOUND,
         }
     }
 
@@ -78,8 +78,8 @@ impl Subject {
     /// thousandth.
     pub(super) fn min_gap(&self) -> f64 {
         match self {
-            Subject::Profile(..) => 1e-7,
-            Subject::Field(_) => 1e-2,
+            DepthOracle::Profile(..) => 1e-7,
+            DepthOracle::Field(_) => 1e-2,
         }
     }
 
@@ -87,8 +87,8 @@ impl Subject {
     /// unit. The tolerance for a field is a millionth of the unit, whatever the tool's size.
     pub(super) fn tolerance(&self, size: f64) -> [f64; 2] {
         match self {
-            Subject::Profile(..) => [1e-9 * size; 2],
-            Subject::Field(_) => [1e-6, 1e-6 * size],
+            DepthOracle::Profile(..) => [1e-9 * size; 2],
+            DepthOracle::Field(_) => [1e-6, 1e-6 * size],
         }
     }
 }

@@ -1,41 +1,41 @@
 //! Validation of an evaluator at given points against 256 bits: the contract in section 1 of the accuracy reference.
 
 use super::ledger::{Kind, Ledger};
-use super::truth::{Claim, Truth, place};
+use super::truth::{RegionValues, Truth, to_exact};
 use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff::{Level, Tool};
 use touchoff_tests::oracle::big::Big;
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
-pub const DOUBT: f64 = 2.0;
+pub const AMBIGUITY_ULPS: f64 = 2.0;
 
 /// Error of the depth, |m - m_exact|.
-pub const DEPTH: Kind = Kind::of("depth", "ulp(S)", 1.0);
-/// A point on the wrong side of the surface, beyond doubt.
-pub const SIDES: Kind = Kind::never("wrong side");
-/// A point whose region is not the nearest, beyond doubt.
-pub const OWNERS: Kind = Kind::never("wrong owner");
+pub const DEPTH: Kind = Kind::with_limit("depth", "ulp(S)", 1.0);
+/// A point on the wrong side of the surface, beyond the ambiguity.
+pub const WRONG_SIDE: Kind = Kind::forbidden_event("wrong side");
+/// A point whose region is not the nearest, beyond the ambiguity.
+pub const WRONG_OWNER: Kind = Kind::forbidden_event("wrong owner");
 /// Error of the direction's length, | |u| - 1 |.
-pub const LENGTH: Kind = Kind::of("length of u", "ε", 4.0);
+pub const LENGTH: Kind = Kind::with_limit("length of u", "ε", 4.0);
 /// Error of the direction, |u - u_exact|.
-pub const DIRECTION: Kind = Kind::of("u", "8 ε max(1, S/ρ)", 1.0);
+pub const DIRECTION: Kind = Kind::with_limit("u", "8 ε max(1, S/ρ)", 1.0);
 /// Error of the distance outside. If the tool gives only a lower bound, the excess over the distance.
-pub const CLEARANCE: Kind = Kind::of("distance outside", "ulp(S)", 1.0);
+pub const CLEARANCE: Kind = Kind::with_limit("distance outside", "ulp(S)", 1.0);
 /// A number that is not finite, or a negative depth, niceness or distance.
-pub const SENSELESS: Kind = Kind::never("senseless number");
+pub const INVALID_NUMBER: Kind = Kind::forbidden_event("senseless number");
 /// Different bits in the evaluation of a single point and of a lane.
-pub const UNLIKE: Kind = Kind::never("unlike bits");
+pub const DIFFERENT_BITS: Kind = Kind::forbidden_event("unlike bits");
 
 /// The evaluation of a tool at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct PointEvaluation {
     /// The index of the region.
     pub region: usize,
     /// Depth, magnitude, niceness, direction and gradient.
     pub numbers: [f64; 9],
 }
 
-impl Answer {
+impl PointEvaluation {
     /// Returns the depth.
     pub fn depth(&self) -> f64 {
         self.numbers[0]
@@ -53,7 +53,11 @@ impl Answer {
 }
 
 /// Evaluates a tool at points, at a SIMD level. The result is `None` for points outside.
-pub fn answers(tool: &dyn Tool, level: Level, points: &[[f64; 3]]) -> Vec<Option<Answer>> {
+pub fn evaluate_points(
+    tool: &dyn Tool,
+    level: Level,
+    points: &[[f64; 3]],
+) -> Vec<Option<PointEvaluation>> {
     let (mut batch, mut evaluation) = (PointBatch::default(), Evaluations::default());
     points.iter().for_each(|p| batch.push(*p));
     tool.evaluate(level, Outputs::EVERYTHING, &batch, 1.0, &mut evaluation);
@@ -62,7 +66,7 @@ pub fn answers(tool: &dyn Tool, level: Level, points: &[[f64; 3]]) -> Vec<Option
             let [ux, uy, uz] = [0, 1, 2].map(|k| evaluation.direction[k][index]);
             let [gx, gy, gz] = [0, 1, 2].map(|k| evaluation.gradient[k][index]);
             let (depth, magnitude) = (evaluation.depth[index], evaluation.magnitude[index]);
-            Answer {
+            PointEvaluation {
                 region: evaluation.region[index] as usize,
                 numbers: [depth, magnitude, evaluation.niceness[index], ux, uy, uz, gx, gy, gz],
             }
@@ -72,7 +76,7 @@ pub fn answers(tool: &dyn Tool, level: Level, points: &[[f64; 3]]) -> Vec<Option
 }
 
 /// A tool under validation.
-pub struct Judge<'a> {
+pub struct Validator<'a> {
     /// The tool.
     pub tool: &'a dyn Tool,
     /// The true values.
@@ -85,27 +89,32 @@ pub struct Judge<'a> {
     pub clearance: Kind,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> Validator<'a> {
     /// Makes a validator of a tool by its true values, with the kinds [`DEPTH`] and [`CLEARANCE`].
-    pub fn new(tool: &'a dyn Tool, truth: &'a dyn Truth) -> Judge<'a> {
+    pub fn new(tool: &'a dyn Tool, truth: &'a dyn Truth) -> Validator<'a> {
         let ulp = f64::EPSILON * truth.scale();
-        Judge { tool, truth, ulp, depth: DEPTH, clearance: CLEARANCE }
+        Validator { tool, truth, ulp, depth: DEPTH, clearance: CLEARANCE }
     }
 
     /// Validates all points and returns their evaluations for further checks.
-    pub fn points(&self, points: &[[f64; 3]], ledger: &mut Ledger) -> Vec<Option<Answer>> {
-        let lanes = answers(self.tool, Level::new(), points);
-        let baseline = answers(self.tool, Level::baseline(), points);
+    pub fn validate(
+        &self,
+        points: &[[f64; 3]],
+        ledger: &mut Ledger,
+    ) -> Vec<Option<PointEvaluation>> {
+        let lanes = evaluate_points(self.tool, Level::new(), points);
+        let baseline = evaluate_points(self.tool, Level::baseline(), points);
         for ((p, answer), baseline_answer) in points.iter().zip(&lanes).zip(&baseline) {
-            let bits = |answer: &Option<Answer>| answer.map(|a| (a.region, a.bits()));
-            ledger.count(UNLIKE, bits(answer) != bits(baseline_answer), || format!("{p:?}"));
-            self.point(*p, answer.as_ref(), ledger);
+            let bits = |answer: &Option<PointEvaluation>| answer.map(|a| (a.region, a.bits()));
+            ledger
+                .count(DIFFERENT_BITS, bits(answer) != bits(baseline_answer), || format!("{p:?}"));
+            self.validate_point(*p, answer.as_ref(), ledger);
         }
         lanes
     }
 
-    fn point(&self, p: [f64; 3], answer: Option<&Answer>, ledger: &mut Ledger) {
-        let exact_point = place(p);
+    fn validate_point(&self, p: [f64; 3], answer: Option<&PointEvaluation>, ledger: &mut Ledger) {
+        let exact_point = to_exact(p);
         let exact = self.truth.depth(&exact_point);
         let depth = exact.to_f64();
         let regions = &self.tool.info().regions;
@@ -114,34 +123,35 @@ impl<'a> Judge<'a> {
             None => format!("{p:?}"),
         };
         let is_wrong_side =
-            answer.is_some() == exact.is_negative() && depth.abs() > DOUBT * self.ulp;
-        ledger.count(SIDES, is_wrong_side, describe);
-        let Some(answer) = answer else { return self.outside(p, &exact, ledger) };
+            answer.is_some() == exact.is_negative() && depth.abs() > AMBIGUITY_ULPS * self.ulp;
+        ledger.count(WRONG_SIDE, is_wrong_side, describe);
+        let Some(answer) = answer else { return self.validate_outside(p, &exact, ledger) };
         let [_, magnitude, niceness, ..] = answer.numbers;
         let finite = answer.numbers.iter().all(|v| v.is_finite());
         let is_sensible = finite && answer.depth() >= 0.0 && magnitude >= 0.0 && niceness >= 0.0;
-        ledger.count(SENSELESS, !is_sensible, describe);
+        ledger.count(INVALID_NUMBER, !is_sensible, describe);
         if !finite {
             return;
         }
         // A point that is inside only by rounding has depth 0.
         let computed = Big::exactly(answer.depth());
         let error = if exact.is_negative() { computed } else { &exact - &computed };
-        ledger.see(self.depth, error.abs().to_f64() / self.ulp, describe);
-        let Some(claim) = self.truth.claim(&exact_point, answer.region) else {
-            return ledger.count(OWNERS, true, describe);
+        ledger.record(self.depth, error.abs().to_f64() / self.ulp, describe);
+        let Some(values) = self.truth.region_values(&exact_point, answer.region) else {
+            return ledger.count(WRONG_OWNER, true, describe);
         };
-        let is_wrong_owner = claim.behind > DOUBT * self.ulp && !exact.is_negative();
-        ledger.count(OWNERS, is_wrong_owner, describe);
+        let is_wrong_owner =
+            values.excess_distance > AMBIGUITY_ULPS * self.ulp && !exact.is_negative();
+        ledger.count(WRONG_OWNER, is_wrong_owner, describe);
         let u = answer.direction().map(Big::exactly);
         let norm = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
         let length_error = &norm - &Big::exactly(1.0);
-        ledger.see(LENGTH, length_error.abs().to_f64() / f64::EPSILON, describe);
-        let distance_to = |claim: &Claim| {
-            let squares = u.iter().zip(&claim.direction).map(|(a, b)| (a - b).to_f64().powi(2));
+        ledger.record(LENGTH, length_error.abs().to_f64() / f64::EPSILON, describe);
+        let distance_to = |values: &RegionValues| {
+            let squares = u.iter().zip(&values.direction).map(|(a, b)| (a - b).to_f64().powi(2));
             squares.sum::<f64>().sqrt()
         };
-        let (rho, scale) = (claim.singular, self.truth.scale());
+        let (rho, scale) = (values.singularity_distance, self.truth.scale());
         // At a singular point the direction fixed by the language is expected. A centre on the axis need not be a
         // double, so the directions one ulp beside it along z are accepted too.
         let (amplification, direction_error) = if rho == 0.0 {
@@ -149,20 +159,20 @@ impl<'a> Judge<'a> {
                 let [x, y, z] = exact_point.clone();
                 let p = [x, y, &z + &Big::exactly(ulps * self.ulp)];
                 self.truth
-                    .claim(&p, answer.region)
-                    .map_or(f64::INFINITY, |claim| distance_to(&claim))
+                    .region_values(&p, answer.region)
+                    .map_or(f64::INFINITY, |values| distance_to(&values))
             });
-            (1.0, neighbours.into_iter().fold(distance_to(&claim), f64::min))
+            (1.0, neighbours.into_iter().fold(distance_to(&values), f64::min))
         } else {
-            ((scale / rho).max(1.0), distance_to(&claim))
+            ((scale / rho).max(1.0), distance_to(&values))
         };
-        ledger.see(DIRECTION, direction_error / (8.0 * f64::EPSILON * amplification), describe);
+        ledger.record(DIRECTION, direction_error / (8.0 * f64::EPSILON * amplification), describe);
     }
 
-    fn outside(&self, p: [f64; 3], exact: &Big, ledger: &mut Ledger) {
+    fn validate_outside(&self, p: [f64; 3], exact: &Big, ledger: &mut Ledger) {
         let clearance = self.tool.clearance(p);
         let is_sensible = clearance.is_finite() && clearance >= 0.0;
-        ledger.count(SENSELESS, !is_sensible, || format!("{p:?}, {clearance} outside"));
+        ledger.count(INVALID_NUMBER, !is_sensible, || format!("{p:?}, {clearance} outside"));
         if !is_sensible {
             return;
         }
@@ -174,6 +184,6 @@ impl<'a> Judge<'a> {
         // Beyond the tool's size, rounding grows with the point's coordinates.
         let max_coordinate = p.iter().fold(0.0, |max: f64, c| max.max(c.abs()));
         let ulp = self.ulp.max(f64::EPSILON * max_coordinate);
-        ledger.see(self.clearance, error / ulp, || format!("{p:?}"));
+        ledger.record(self.clearance, error / ulp, || format!("{p:?}"));
     }
 }

@@ -3,12 +3,12 @@
 //! One face of the block is a small distance inside or outside the tool's extent, and the others are farther away. The
 //! tool's extent in that direction is known from its dimensions, so the correct verdict is known.
 
-use super::subject::Subject;
+use super::depth_oracle::DepthOracle;
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Tool};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The verdicts for a tool.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ pub struct Row {
 ///
 /// # Panics
 /// If the certifier rejects the tool.
-pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> Row {
+pub fn measure(tool: &dyn Tool, subject: &DepthOracle, count: usize, seed: u64) -> Row {
     let mut rng = Rng::new(seed);
     let info = tool.info();
     let mut row = Row { tool: info.name.to_string(), ..Row::default() };
@@ -56,14 +56,14 @@ pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> R
         let block = to_world(&block.expect("a cuboid"), &pose);
         let bvh = TriangleBvh::new(&block);
         let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
-        let found = certifier.check_pose(&pose);
+        let verdict = certifier.check_pose(&pose);
         let counts = if inside { &mut row.inside } else { &mut row.cut };
         counts[0] += 1;
-        match (inside, found) {
+        match (inside, verdict) {
             (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => counts[1] += 1,
             (_, PoseVerdict::Undecided(_)) => {}
             _ => row.violations.push(format!(
-                "{} with a gap of {gap:e} at face {near_face}, inside {inside}: {found:?} at {pose:?}",
+                "{} with a gap of {gap:e} at face {near_face}, inside {inside}: {verdict:?} at {pose:?}",
                 info.name
             )),
         }

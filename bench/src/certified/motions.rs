@@ -1,15 +1,15 @@
 //! Random motions on which a tool is likely to come near a part.
 
-use super::approach::Way;
-use super::brute::Brute;
+use super::approach::ReferenceMotion;
+use super::brute::BruteForce;
 use super::poses;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use touchoff::{Pose, TriangleId};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The kinds of motions.
-pub const KINDS: [&str; 8] = [
+pub const MOTION_KINDS: [&str; 8] = [
     "slide",
     "swing about the tip",
     "swing about a place",
@@ -45,7 +45,7 @@ fn random_rotation(rng: &mut Rng) -> Rotation3<f64> {
 
 /// Returns a random motion of a kind. Most are shifted away from the part until they pass it by 1e-7 to 0.5 mm, or
 /// overlap it by that much.
-pub fn way(brute: &Brute<'_>, kind: &str, rng: &mut Rng) -> Way {
+pub fn random_motion(brute: &BruteForce<'_>, kind: &str, rng: &mut Rng) -> ReferenceMotion {
     loop {
         let motion = draw_motion(brute, kind, rng);
         // For nearly antiparallel axes, rounding decides the rotation.
@@ -57,14 +57,14 @@ pub fn way(brute: &Brute<'_>, kind: &str, rng: &mut Rng) -> Way {
     }
 }
 
-fn draw_motion(brute: &Brute<'_>, kind: &str, rng: &mut Rng) -> Way {
+fn draw_motion(brute: &BruteForce<'_>, kind: &str, rng: &mut Rng) -> ReferenceMotion {
     let from = poses::pose(brute.mesh, brute.oracle, brute.length, rng);
     let (tip, axis) = (from.tip(), from.axis());
     let [low, high] = brute.mesh.bounds();
     let part_size = (high - low).norm();
     let to = match kind {
         "slide" => {
-            let id = brute.at(&Way { from, to: from }, 0.0, rng).triangle;
+            let id = brute.deepest_at(&ReferenceMotion { from, to: from }, 0.0, rng).triangle;
             let normal =
                 brute.mesh.normal(TriangleId(id as u32)).unwrap_or_else(|| random_direction(rng));
             let slide = normal.cross(&random_direction(rng)).normalize()
@@ -75,7 +75,8 @@ fn draw_motion(brute: &Brute<'_>, kind: &str, rng: &mut Rng) -> Way {
         }
         "swing about the tip" => pose_at(tip, random_rotation(rng) * axis),
         "swing about a place" => {
-            let about = Point3::from(brute.at(&Way { from, to: from }, 0.0, rng).point);
+            let about =
+                Point3::from(brute.deepest_at(&ReferenceMotion { from, to: from }, 0.0, rng).point);
             let rotation = random_rotation(rng);
             pose_at(about + rotation * (tip - about), rotation * axis)
         }
@@ -98,28 +99,36 @@ fn draw_motion(brute: &Brute<'_>, kind: &str, rng: &mut Rng) -> Way {
             // Half of them also come from far away.
             if rng.bits().is_multiple_of(2) {
                 let back = tip - (far_pose.tip() - tip);
-                return Way { from: pose_at(back, axis), to: far_pose };
+                return ReferenceMotion { from: pose_at(back, axis), to: far_pose };
             }
             far_pose
         }
         _ => poses::pose(brute.mesh, brute.oracle, brute.length, rng),
     };
-    if rng.bits().is_multiple_of(2) { Way { from, to } } else { Way { from: to, to: from } }
+    if rng.bits().is_multiple_of(2) {
+        ReferenceMotion { from, to }
+    } else {
+        ReferenceMotion { from: to, to: from }
+    }
 }
 
-fn shift_to_near_miss(brute: &Brute<'_>, mut motion: Way, rng: &mut Rng) -> Way {
+fn shift_to_near_miss(
+    brute: &BruteForce<'_>,
+    mut motion: ReferenceMotion,
+    rng: &mut Rng,
+) -> ReferenceMotion {
     let [radius, _] = brute.oracle.extent();
     let gap = random_power(rng, -7.0, -0.3) * (radius * brute.length / 5.0);
     let gap = if rng.bits().is_multiple_of(10) { -gap } else { gap };
     for _ in 0..SHIFTS {
-        let closest = brute.closest(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);
+        let deepest = brute.deepest_in_motion(&motion, TIME_SAMPLES_PER_SHIFT, false, rng);
         let normal = brute
             .mesh
-            .normal(TriangleId(closest.triangle as u32))
+            .normal(TriangleId(deepest.triangle as u32))
             .unwrap_or_else(|| random_direction(rng));
-        let shift = normal * (closest.depth + gap);
+        let shift = normal * (deepest.depth + gap);
         let shifted = |pose: &Pose| pose_at(pose.tip() + shift, pose.axis());
-        motion = Way { from: shifted(&motion.from), to: shifted(&motion.to) };
+        motion = ReferenceMotion { from: shifted(&motion.from), to: shifted(&motion.to) };
     }
     motion
 }

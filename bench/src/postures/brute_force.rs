@@ -4,11 +4,11 @@
 //! the triangle's radius holds on the whole triangle. An undecided triangle is bisected. No piece is skipped for any
 //! other reason.
 
-use super::stand::{Posture, Stand};
+use super::tool_model::{Posture, ToolModel};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use touchoff::{Mesh, TriangleId};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// The verdict on a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Verdict {
 }
 
 /// A part's triangles.
-pub struct Part<'a> {
+pub struct TrianglePart<'a> {
     mesh: &'a Mesh,
     /// Bounding ball of each triangle: centroid and radius.
     balls: Vec<(Point3<f64>, f64)>,
@@ -42,9 +42,9 @@ fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
     (centroid, reach * (1.0 + 1e-12))
 }
 
-impl<'a> Part<'a> {
+impl<'a> TrianglePart<'a> {
     /// Prepares the triangles of a mesh.
-    pub fn new(mesh: &'a Mesh) -> Part<'a> {
+    pub fn new(mesh: &'a Mesh) -> TrianglePart<'a> {
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
             let (centroid, reach) =
@@ -59,7 +59,7 @@ impl<'a> Part<'a> {
             }
         }
         let [low, high] = mesh.bounds();
-        Part {
+        TrianglePart {
             mesh,
             balls: balls.collect(),
             closed: edges.values().all(|count| *count == 0),
@@ -70,17 +70,17 @@ impl<'a> Part<'a> {
     /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + allowance`, the other
     /// surfaces up to `allowance`, in the part's unit. If `allowance` is negative, the other surfaces must keep that
     /// distance.
-    pub fn judge(
+    pub fn check(
         &self,
-        stand: &Stand,
+        tool: &ToolModel,
         posture: &Posture,
         tolerance: f64,
         allowance: f64,
     ) -> Verdict {
-        let length = stand.length;
-        let limits = Limits { stand, cutting: tolerance + allowance, non_cutting: allowance };
+        let length = tool.length;
+        let limits = Limits { tool, cutting: tolerance + allowance, non_cutting: allowance };
         let mut pending = Vec::new();
-        let [radius, height] = stand.extent();
+        let [radius, height] = tool.extent();
         let min_distance = (-allowance).max(0.0);
         for (id, (centroid, reach)) in self.balls.iter().enumerate() {
             let offset = centroid - posture.tip;
@@ -124,8 +124,8 @@ impl<'a> Part<'a> {
             return Verdict::Open;
         }
         // No triangle intersects the forbidden part of the tool, so that part is inside or outside as a whole.
-        let inside = stand
-            .cores
+        let inside = tool
+            .core_heights
             .iter()
             .any(|z| self.closed && self.contains(posture.tip + length * *z * posture.axis));
         if inside { Verdict::Blocked(f64::INFINITY) } else { Verdict::Free }
@@ -189,7 +189,7 @@ struct Piece {
 
 /// The allowed depths of cutting surfaces and of the other surfaces.
 struct Limits<'a> {
-    stand: &'a Stand,
+    tool: &'a ToolModel,
     cutting: f64,
     non_cutting: f64,
 }
@@ -200,8 +200,8 @@ impl Limits<'_> {
         let (centroid, reach) = ball(&corners);
         let z = centroid.dot(axis);
         let meridian_point =
-            [(centroid - z * axis).norm(), 0.0, z].map(|coordinate| coordinate / self.stand.length);
-        let [depth, cutting, non_cutting] = self.stand.evaluation(meridian_point);
+            [(centroid - z * axis).norm(), 0.0, z].map(|coordinate| coordinate / self.tool.length);
+        let [depth, cutting, non_cutting] = self.tool.depth_and_distances(meridian_point);
         let max_depth = depth + reach;
         // The other surfaces are not the nearest to any point of the piece inside the tool, or no point is inside.
         let is_separate = max_depth < 0.0 || non_cutting - reach > max_depth;

@@ -32,7 +32,7 @@ fn bull_nose_hsk63() -> Restated {
 }
 
 fn drill_bt40() -> Restated {
-    let cutter = super::hole::drill().ways.swap_remove(0).to;
+    let cutter = super::hole_making::drill().segments.swap_remove(0).to;
     let [d, z] = cutter;
     Restated::new("DrillBt40", 0.0)
         .line("cutter.point", d, z)

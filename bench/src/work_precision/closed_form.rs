@@ -7,17 +7,17 @@ use super::peers;
 use super::plan::Plan;
 use super::row::{Label, Row};
 use super::truth::{ErrorStats, Truth};
-use super::{Facts, Failure, Sink};
+use super::{Failure, SceneInfo, Sink};
 use rayon::prelude::*;
 use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{CloudError, Mesh, Pose};
-use touchoff_tests::oracle::draw::Rng;
+use touchoff_tests::oracle::rng::Rng;
 
 /// Measures a patch with clouds of all sizes.
 ///
 /// # Errors
 /// If no cloud can have the number of points, or if nothing can be certified for the tool.
-pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts, Failure> {
+pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<SceneInfo, Failure> {
     let mesh = patch.mesh();
     let bvh = TriangleBvh::new(&mesh);
     let times = patch.area_ratio();
@@ -35,12 +35,12 @@ pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts
         rows.into_iter().for_each(&mut *sink);
         totals.merge(&truths);
     }
-    Ok(Facts {
+    Ok(SceneInfo {
         scene: patch.name().to_owned(),
-        about: patch.description(),
-        path: false,
+        description: patch.description(),
+        is_path: false,
         typical: totals.typical(),
-        known: patch.accuracy(),
+        reference_error: patch.accuracy(),
         unit: mesh.unit(),
     })
 }
@@ -71,7 +71,7 @@ impl Size<'_> {
 
     fn placements(&self, cloud: usize, count: usize) -> (Vec<Pose>, Vec<(usize, Truth)>) {
         let mut rng = Rng::new(!self.seed(cloud));
-        let placements = (0..count).map(|_| self.patch.place(&mut rng));
+        let placements = (0..count).map(|_| self.patch.random_placement(&mut rng));
         let (poses, truths): (Vec<Pose>, Vec<Truth>) = placements.unzip();
         (poses, truths.into_iter().enumerate().collect())
     }
