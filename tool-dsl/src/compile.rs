@@ -134,17 +134,17 @@ fn follows(diagnostic: &Diagnostic, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
     match &diagnostic.kind {
         Kind::ValueKind(kind) => match kind {
-            ValueKind::UnknownName { word, .. }
-            | ValueKind::UnknownFunction { word, .. }
-            | ValueKind::UnknownUnit { word, .. }
-            | ValueKind::UnknownFileUnit { word, .. } => has(word),
+            ValueKind::UnknownName { name, .. }
+            | ValueKind::UnknownFunction { name, .. }
+            | ValueKind::UnknownUnit { unit: name, .. }
+            | ValueKind::UnknownFileUnit { unit: name, .. } => has(name),
             ValueKind::UnusedName { .. } => true,
-            ValueKind::NoUnit => has("units"),
+            ValueKind::MissingUnit => has("units"),
             _ => false,
         },
         Kind::RegionKind(kind) => match kind {
-            RegionKind::UnknownCurve { word, .. } => has(word),
-            RegionKind::UnknownSurface { word, .. } => has(word) || has("region"),
+            RegionKind::UnknownCurve { name, .. } => has(name),
+            RegionKind::UnknownSurface { name, .. } => has(name) || has("region"),
             RegionKind::NoRegion { .. } => true,
             _ => false,
         },
@@ -163,19 +163,19 @@ mod tests {
         let at = Span { start: 0, end: 0 };
         let broken = BTreeSet::from(["flute", "units"]);
         let follows = |kind: Kind| follows(&Diagnostic::new(at, kind), &broken);
-        let name = |word: &str| {
-            let (word, remedy) = (word.to_owned(), NameRemedy::Define);
-            ValueKind::UnknownName { word, remedy }.into()
+        let name = |name: &str| {
+            let (name, remedy) = (name.to_owned(), NameRemedy::Define);
+            ValueKind::UnknownName { name, remedy }.into()
         };
-        let surface = |word: &str| {
-            let (word, remedy) = (word.to_owned(), SurfaceRemedy::OfProfile);
-            RegionKind::UnknownSurface { word, remedy }.into()
+        let surface = |name: &str| {
+            let (name, remedy) = (name.to_owned(), SurfaceRemedy::OfProfile);
+            RegionKind::UnknownSurface { name, remedy }.into()
         };
         assert!(follows(name("flute")) && !follows(name("shank")));
         assert!(follows(surface("flute")) && !follows(surface("shank")));
-        assert!(follows(ValueKind::NoUnit.into()));
-        assert!(follows(ValueKind::UnusedName { word: "shank".to_owned() }.into()));
+        assert!(follows(ValueKind::MissingUnit.into()));
+        assert!(follows(ValueKind::UnusedName { name: "shank".to_owned() }.into()));
         // The same name in another kind of diagnostic is no reason to suppress it.
-        assert!(!follows(ValueKind::DefinedTwice { word: "flute".to_owned() }.into()));
+        assert!(!follows(ValueKind::DuplicateDefinition { name: "flute".to_owned() }.into()));
     }
 }

@@ -59,7 +59,7 @@ impl Call {
         if let Some(name) = &self.name
             && !syntax::is_type_name(&name.to_string())
         {
-            let kind = Kind::from(SyntaxKind::NotTypeName { word: name.to_string() });
+            let kind = Kind::from(SyntaxKind::NotTypeName { name: name.to_string() });
             return Err(syn::Error::new(name.span(), diagnostics::with_help(&kind)));
         }
         let shown = self.path.value();

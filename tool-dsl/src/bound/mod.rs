@@ -247,7 +247,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
         if domain.coordinates().iter().any(is_empty) {
             return Err(Diagnostic::new(
                 model.name_span,
-                CheckKind::NoPoint { file: domain.keyword() },
+                CheckKind::NoPoints { domain: domain.keyword() },
             ));
         }
     }
@@ -307,14 +307,19 @@ fn endless(model: &Model) -> Diagnostic {
         );
         let Some((axis, high)) = out else { continue };
         let coordinate = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
-        let toward = if high { "large" } else { "small" };
+        let direction = if high { "large" } else { "small" };
         let bound = if high { "<= 40" } else { ">= 0" };
         return Diagnostic::new(
             region.span,
-            CheckKind::EndlessRegion { region: region.name.clone(), toward, coordinate, bound },
+            CheckKind::UnboundedRegion {
+                region: region.name.clone(),
+                direction,
+                coordinate,
+                bound,
+            },
         );
     }
-    Diagnostic::new(model.name_span, CheckKind::Endless)
+    Diagnostic::new(model.name_span, CheckKind::UnboundedRegions)
 }
 
 /// Returns the innermost position from `outer` toward `inner` for which `empty` still holds, by bisection.

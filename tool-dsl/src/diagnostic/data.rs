@@ -154,7 +154,7 @@ pub enum NameStart {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NameRemedy {
     /// A similar name exists.
-    Meant(String),
+    Similar(String),
     /// The name must be defined.
     Define,
     /// The name is in an argument from outside the file, where no names are defined.
@@ -167,7 +167,7 @@ pub enum NameRemedy {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamRemedy {
     /// A similar param exists.
-    Meant(String),
+    Similar(String),
     /// A `let` has the name.
     Let,
     /// The message lists the params.
@@ -178,11 +178,11 @@ pub enum ParamRemedy {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SurfaceRemedy {
     /// A similar surface exists.
-    Meant(String),
+    Similar(String),
     /// The surfaces of the tool.
     List(Names),
     /// The surfaces of the mounted tool with this name.
-    OfPart(Names),
+    OfMount(Names),
     /// A surface of the profile must be named.
     OfProfile,
 }
@@ -225,15 +225,15 @@ impl fmt::Display for Subject {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Statement {
     /// All points of the box belong to this owner.
-    Alone(Option<String>),
+    SingleOwner(Option<String>),
     /// The features that are nearest to its points belong to this owner.
-    Nearest(Option<String>),
+    NearestFeatures(Option<String>),
     /// Depth is continuous from one owner to another.
-    Continues(Option<String>, Option<String>),
+    ContinuousDepth(Option<String>, Option<String>),
     /// Depth is not negative in this owner.
-    NotNegative(Option<String>),
+    NonNegativeDepth(Option<String>),
     /// The regions that meet; this is their number.
-    Crowd(usize),
+    MeetingRegions(usize),
     /// The solid ends on its profile.
     EndsOnProfile,
 }
@@ -245,17 +245,19 @@ impl fmt::Display for Statement {
             None => "the outside".to_owned(),
         };
         match self {
-            Statement::Alone(owner) => write!(f, "whether all points belong to {}", shown(owner)),
-            Statement::Nearest(owner) => {
+            Statement::SingleOwner(owner) => {
+                write!(f, "whether all points belong to {}", shown(owner))
+            }
+            Statement::NearestFeatures(owner) => {
                 write!(f, "whether the nearest features belong to {}", shown(owner))
             }
-            Statement::Continues(from, to) => {
+            Statement::ContinuousDepth(from, to) => {
                 write!(f, "whether depth is continuous from {} to {}", shown(from), shown(to))
             }
-            Statement::NotNegative(owner) => {
+            Statement::NonNegativeDepth(owner) => {
                 write!(f, "whether depth is at least 0 in {}", shown(owner))
             }
-            Statement::Crowd(count) => write!(f, "which of {count} regions meet"),
+            Statement::MeetingRegions(count) => write!(f, "which of {count} regions meet"),
             Statement::EndsOnProfile => f.write_str("whether the solid ends on the profile"),
         }
     }

@@ -236,7 +236,7 @@ fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
 
 /// Returns the error for a tree that exceeds its limit.
 fn too_large(model: &Model) -> Diagnostic {
-    Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: MAX_TESTS })
+    Diagnostic::new(model.name_span, CheckKind::TooManyTests { limit: MAX_TESTS })
 }
 
 /// Returns the cost of evaluating each curve, in additions.

@@ -54,8 +54,11 @@ fn read_arguments<'t>(
         let name = &setting.name;
         if let Some(first) = arguments.iter().find(|other| other.setting.name.word == name.word) {
             diagnostics.push(
-                Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
-                    .and(first.setting.name.span, "first value"),
+                Diagnostic::new(
+                    name.span,
+                    ValueKind::DuplicateArgument { name: name.word.clone() },
+                )
+                .and(first.setting.name.span, "first value"),
             );
             continue;
         }
@@ -93,9 +96,9 @@ impl Argument<'_> {
         let Some(dimension) = default_dimension.common(self.dimension) else {
             let diagnostic = Diagnostic::new(
                 value.span,
-                ValueKind::GivenDimension {
-                    word: word.clone(),
-                    wanted: default_dimension,
+                ValueKind::ArgumentDimension {
+                    name: word.clone(),
+                    expected: default_dimension,
                     found: self.dimension,
                 },
             )
@@ -108,11 +111,11 @@ impl Argument<'_> {
             Dimension::Bare if self.unit != unit && !self.value.is_zero() => {
                 return Err(Diagnostic::new(
                     value.span,
-                    ValueKind::GivenUnit {
-                        word: word.clone(),
+                    ValueKind::AmbiguousArgumentUnit {
+                        name: word.clone(),
                         number: FormattedNumber(self.value.to_f64()),
-                        here: self.unit.symbol(),
-                        there: unit.symbol(),
+                        file_unit: self.unit.symbol(),
+                        mounted_unit: unit.symbol(),
                     },
                 ));
             }
@@ -156,11 +159,11 @@ pub(super) fn report_unknown_params(
         });
         let remedy = match (other, nearest(word, params.iter().copied())) {
             (Some(_), _) => ParamRemedy::Let,
-            (None, Some(meant)) => ParamRemedy::Meant(meant.to_owned()),
+            (None, Some(suggestion)) => ParamRemedy::Similar(suggestion.to_owned()),
             (None, None) => ParamRemedy::List,
         };
         let (tool, params) = (tool.name.word.clone(), Names::new(params.iter().copied()));
-        let kind = ValueKind::NoSuchParam { tool, word: word.to_owned(), remedy, params };
+        let kind = ValueKind::UnknownParam { tool, name: word.to_owned(), remedy, params };
         let diagnostic = Diagnostic::new(name.span, kind);
         diagnostics.push(match other {
             Some(other) => diagnostic.and(other.name.span, "defined by `let` here"),

@@ -96,15 +96,15 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
 
 /// Returns the error for a cycle. `span` is where its last definition mentions the first one.
 fn circular(cycle: &[Step<'_>], span: Span) -> Diagnostic {
-    let word = cycle[0].word().to_owned();
+    let name = cycle[0].word().to_owned();
     let [_, second, ..] = cycle else {
-        let kind = ValueKind::DefinedByItself { word, links: Links(Vec::new()), more: 0 };
+        let kind = ValueKind::CircularDefinition { name, links: Links(Vec::new()), more: 0 };
         return Diagnostic::new(span, kind);
     };
     let next = cycle.iter().skip(1).chain(&cycle[..1]);
     let link = |(step, next): (&Step<'_>, &Step<'_>)| [step.word(), next.word()].map(str::to_owned);
     let links: Vec<[String; 2]> = cycle.iter().zip(next).take(MAX_LISTED_LINKS).map(link).collect();
     let more = cycle.len() - links.len();
-    let kind = ValueKind::DefinedByItself { word, links: Links(links), more };
+    let kind = ValueKind::CircularDefinition { name, links: Links(links), more };
     Diagnostic::new(span, kind).and(second.span, "first link of the cycle")
 }

@@ -66,7 +66,7 @@ pub(super) fn derived(
         Err(Undivided([d, z])) => {
             let at = nearest_span(&outline, [d, z]).unwrap_or(span);
             let z = lowering.frame.to_file(z);
-            let diagnostic = Diagnostic::new(at, ProfileKind::Undivided { d, z });
+            let diagnostic = Diagnostic::new(at, ProfileKind::DivisionFailed { d, z });
             diagnostics.push(diagnostic);
             return FromProfile::default();
         }

@@ -34,8 +34,10 @@ impl RegionResolver<'_> {
                     false => DirectionSource::Written,
                 },
             })),
-            [first, second, ..] => Err(Diagnostic::new(second.span, RegionKind::DirectionTwice)
-                .and(first.span, "first direction")),
+            [first, second, ..] => {
+                Err(Diagnostic::new(second.span, RegionKind::DuplicateDirection)
+                    .and(first.span, "first direction"))
+            }
         }
     }
 
@@ -60,7 +62,7 @@ impl RegionResolver<'_> {
             dimension = common_dimension.ok_or_else(|| {
                 Diagnostic::new(
                     tuple.span,
-                    RegionKind::UnlikeParts { first: dimension, other: of_part },
+                    RegionKind::MixedDirection { first: dimension, second: of_part },
                 )
             })?;
             parts.push(id);
@@ -93,12 +95,12 @@ impl RegionResolver<'_> {
 
 /// Returns the components of a tuple, which has to have as many as the domain has coordinates.
 fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
-    let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
-    if count == wanted {
+    let (count, expected) = (tuple.parts.len(), domain.coordinates().len());
+    if count == expected {
         return Ok(tuple.parts.iter().collect());
     }
-    let (file, shown) = (domain.keyword(), domain.tuple());
-    let kind = RegionKind::WrongParts { role, file, wanted, count, tuple: shown };
+    let (domain, coordinates) = (domain.keyword(), domain.tuple());
+    let kind = RegionKind::WrongComponentCount { role, domain, expected, count, coordinates };
     Err(Diagnostic::new(tuple.span, kind))
 }
 

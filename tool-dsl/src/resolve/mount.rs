@@ -115,7 +115,7 @@ impl Mounting<'_> {
                 self.diagnostics.push(
                     Diagnostic::new(
                         mount.name.span,
-                        MountKind::MountsAlike { name: mount.name.word.clone() },
+                        MountKind::DuplicateMount { name: mount.name.word.clone() },
                     )
                     .and(first.name.span, "first mount of this name"),
                 );
@@ -145,7 +145,7 @@ impl Mounting<'_> {
         }
         let mut parts = parts.into_iter();
         let (mut last, mut height, mut assembly) = parts.next().ok_or_else(|| {
-            let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NothingMounted);
+            let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NoMount);
             Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
@@ -168,16 +168,16 @@ impl Mounting<'_> {
         lowering: &mut Lowering,
     ) -> Result<Number, Reported> {
         if mount.name.word == "cutting" {
-            self.diagnostics.push(Diagnostic::new(mount.name.span, MountKind::PartCalledCutting));
+            self.diagnostics.push(Diagnostic::new(mount.name.span, MountKind::MountCalledCutting));
         }
         if let Some(span) = mount.cutting {
             self.diagnostics.push(Diagnostic::new(span, MountKind::CuttingMount));
         }
         let wrong = match (index, &mount.at) {
             (0, None) => return Ok(Number::int(0)),
-            (0, Some(at)) => Diagnostic::new(at.span, MountKind::FirstMountPlaced),
+            (0, Some(at)) => Diagnostic::new(at.span, MountKind::FirstMountWithPosition),
             (_, None) => {
-                Diagnostic::new(mount.span, MountKind::NoPlace { name: mount.name.word.clone() })
+                Diagnostic::new(mount.span, MountKind::NoPosition { name: mount.name.word.clone() })
             }
             (_, Some(at)) => match lowering.length(at, Role::At) {
                 Ok(height) => return Ok(height),
@@ -220,7 +220,7 @@ impl Mounting<'_> {
         if self.mounted > MAX_MOUNTS {
             let by = mount.file.span;
             // Reported only once, however many mounts follow.
-            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MAX_MOUNTS });
+            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { limit: MAX_MOUNTS });
             let diagnostic = match self.full {
                 Some(reported) => diagnostic.caused_by(reported),
                 None => diagnostic,
@@ -233,7 +233,7 @@ impl Mounting<'_> {
             // The message shows none of the file's text, since it may be any file.
             let diagnostic = Diagnostic::new(
                 mount.file.span,
-                MountKind::NotTool { file: mount.file.word.clone() },
+                MountKind::NotATool { file: mount.file.word.clone() },
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
@@ -269,7 +269,7 @@ impl Mounting<'_> {
         chain.push(source.name.clone());
         Err(Diagnostic::new(
             by,
-            MountKind::MountsItself { file: written.to_owned(), chain: Chain(chain) },
+            MountKind::MountCycle { file: written.to_owned(), chain: Chain(chain) },
         ))
     }
 
@@ -286,7 +286,7 @@ impl Mounting<'_> {
             let file = &mount.file;
             let diagnostic = Diagnostic::new(
                 file.span,
-                MountKind::SolidMounted { file: mount.file.word.clone() },
+                MountKind::MountedSolid { file: mount.file.word.clone() },
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
@@ -315,7 +315,7 @@ impl Mounting<'_> {
                 let regions = tree.items.iter().any(|item| matches!(item, Item::Region(_)));
                 let diagnostic = Diagnostic::new(
                     file.span,
-                    MountKind::NoOutline { file: mount.file.word.clone(), regions },
+                    MountKind::NoMountedProfile { file: mount.file.word.clone(), regions },
                 );
                 return Err(Reported::push(self.diagnostics, diagnostic));
             }
@@ -384,8 +384,8 @@ impl MountedPart {
                 MountKind::NotAbove {
                     name: mount.name.word.clone(),
                     z,
-                    below,
-                    height: FormattedNumber(height.to_f64()),
+                    previous: below,
+                    previous_z: FormattedNumber(height.to_f64()),
                 },
             ));
         }
@@ -397,18 +397,20 @@ impl MountedPart {
                 let (length, top) = (FormattedNumber(top - height.to_f64()), FormattedNumber(top));
                 Diagnostic::new(
                     span,
-                    MountKind::TooShort { below, z, top, length, first: height.is_zero() },
+                    MountKind::TooShort { name: below, z, top, length, first: height.is_zero() },
                 )
                 .and(last.name.span, "lower tool")
             }
-            JoinError::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
+            JoinError::Point => {
+                Diagnostic::new(span, MountKind::ZeroRadiusAtPlane { name: below, z })
+            }
             JoinError::Back(segment) => {
-                Diagnostic::new(span, MountKind::PlaneCutsTwice { below, z })
+                Diagnostic::new(span, MountKind::PlaneCutsTwice { name: below, z })
                     .and(segment.span, "second crossing")
             }
             JoinError::NoFace(segment) => Diagnostic::new(
                 mount.file.span,
-                MountKind::NoFace { file: mount.file.word.clone() },
+                MountKind::NoFlatFace { file: mount.file.word.clone() },
             )
             .and(segment.span, "first segment"),
         })?;
@@ -452,6 +454,6 @@ pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let spindle = is_upside_down.then_some(if frame.down { '+' } else { '-' });
     Diagnostic::new(
         frame.tip_span,
-        CheckKind::OffTip { end: FormattedNumber(frame.to_file(end)), tip, spindle },
+        CheckKind::TipNotAtEnd { end: FormattedNumber(frame.to_file(end)), tip, spindle },
     )
 }

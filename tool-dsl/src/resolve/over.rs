@@ -57,7 +57,7 @@ impl Divider<'_> {
         match self {
             Divider::Smooth(length) if outline.len() > MAX_SMOOTH_SEGMENTS => Err(Diagnostic::new(
                 length.span,
-                RegionKind::SmoothTooLarge { most: MAX_SMOOTH_SEGMENTS },
+                RegionKind::TooManySmoothSegments { limit: MAX_SMOOTH_SEGMENTS },
             )),
             _ => Ok(()),
         }
@@ -111,7 +111,7 @@ fn written(
         && first.name.span != name.span
     {
         let diagnostic =
-            Diagnostic::new(name.span, RegionKind::RegionsAlike { name: name.word.clone() });
+            Diagnostic::new(name.span, RegionKind::DuplicateRegion { name: name.word.clone() });
         return Err(diagnostic.and(first.name.span, "first region of this name"));
     }
     if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
@@ -127,10 +127,10 @@ fn written(
             found.map(Some).ok_or_else(|| {
                 let known = surfaces.iter().map(|surface| surface.name.as_str());
                 let remedy = match nearest(&surface_name.word, known) {
-                    Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
+                    Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
                     None => SurfaceRemedy::OfProfile,
                 };
-                let kind = RegionKind::UnknownSurface { word: surface_name.word.clone(), remedy };
+                let kind = RegionKind::UnknownSurface { name: surface_name.word.clone(), remedy };
                 Diagnostic::new(surface_name.span, kind)
             })
         }
@@ -166,7 +166,7 @@ fn fans<'t>(
         match rough {
             Rough::Untouched(behind) => Diagnostic::new(
                 span,
-                RegionKind::NoTouchingArc { place: formatted(behind, lowering), most: max_length },
+                RegionKind::NoTangentArc { location: formatted(behind, lowering), max_length },
             ),
             Rough::Short(piece, size, count) => {
                 let [from, to] =
@@ -176,8 +176,8 @@ fn fans<'t>(
                     span,
                     RegionKind::FansTooWide {
                         corners,
-                        edge: FormattedNumber(size),
-                        most: max_length,
+                        segment_length: FormattedNumber(size),
+                        max_length,
                     },
                 )
                 .and(outline[piece].span, "segment too short")
@@ -189,7 +189,7 @@ fn fans<'t>(
     let undivided = |Undivided([d, z]): Undivided| {
         Diagnostic::new(
             span,
-            RegionKind::SmoothUndivided { place: Domain::HalfPlane.shown([d, 0.0, z]) },
+            RegionKind::SmoothDivisionFailed { location: Domain::HalfPlane.shown([d, 0.0, z]) },
         )
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
@@ -233,7 +233,8 @@ impl Conditions<'_> {
         let formatted =
             |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = head {
-            diagnostics.push(Diagnostic::new(span, RegionKind::NotCovered { place: formatted(p) }));
+            diagnostics
+                .push(Diagnostic::new(span, RegionKind::UncoveredPoint { location: formatted(p) }));
         }
         if let Some((first, second, p)) = double
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
@@ -253,7 +254,7 @@ impl Conditions<'_> {
                 let name = &region.name;
                 diagnostics.push(Diagnostic::new(
                     name.span,
-                    RegionKind::NoPointOfProfile { region: name.word.clone() },
+                    RegionKind::RegionOutsideProfile { region: name.word.clone() },
                 ));
             }
         }
@@ -328,18 +329,19 @@ pub(crate) fn never_wins(
 ) -> Diagnostic {
     Diagnostic::new(
         span,
-        CheckKind::NeverWins { region: name.to_owned(), by: first.to_owned(), more },
+        CheckKind::CoveredRegion { region: name.to_owned(), covering: first.to_owned(), more },
     )
     .and(at, "region listed before it")
 }
 
-/// Returns the error for two regions that have points in common, for instance at `place`. The first region is at `at`.
+/// Returns the error for two regions that have points in common, for instance at `location`. The first region is at `at`.
 pub(crate) fn overlapping(
     first: &str,
     (second, span): (&str, Span),
-    place: String,
+    location: String,
     at: Span,
 ) -> Diagnostic {
     let (first, second) = (first.to_owned(), second.to_owned());
-    Diagnostic::new(span, CheckKind::Overlap { first, second, place }).and(at, "overlapping region")
+    Diagnostic::new(span, CheckKind::Overlap { first, second, location })
+        .and(at, "overlapping region")
 }

@@ -38,7 +38,7 @@ pub(super) fn regions(
     if let Some(beyond) = written.get(MAX_REGIONS_OR_CONDITIONS) {
         diagnostics.push(Diagnostic::new(
             beyond.name.span,
-            RegionKind::TooManyRegions { most: MAX_REGIONS_OR_CONDITIONS },
+            RegionKind::TooManyRegions { limit: MAX_REGIONS_OR_CONDITIONS },
         ));
         return Default::default();
     }
@@ -52,7 +52,7 @@ pub(super) fn regions(
             diagnostics.push(
                 Diagnostic::new(
                     written.name.span,
-                    RegionKind::RegionsAlike { name: earlier.name.clone() },
+                    RegionKind::DuplicateRegion { name: earlier.name.clone() },
                 )
                 .and(earlier.span, "first region of this name"),
             );
@@ -94,7 +94,10 @@ pub(super) fn named_surface(
                 diagnostics.push(
                     Diagnostic::new(
                         name.span,
-                        RegionKind::CuttingDisagrees { name: name.word.clone(), here: cutting },
+                        RegionKind::InconsistentCutting {
+                            name: name.word.clone(),
+                            marked_here: cutting,
+                        },
                     )
                     .and(surfaces[at].span, there),
                 );
@@ -183,7 +186,7 @@ impl RegionResolver<'_> {
         let direction = outputs::unit(graph, raw_direction.parts, 2).ok_or_else(|| {
             Diagnostic::new(
                 raw_direction.span,
-                RegionKind::DirectionIsZero { region: head.name.clone() },
+                RegionKind::ZeroDirection { region: head.name.clone() },
             )
         })?;
         let is_depth = magnitude.is_none();
@@ -260,7 +263,7 @@ impl RegionResolver<'_> {
         if let (Some(first), Some(second)) = (first, matching.next()) {
             return Err(Diagnostic::new(
                 second.span,
-                RegionKind::SaidTwice { word: quantity.keyword().to_owned() },
+                RegionKind::DuplicateStatement { keyword: quantity.keyword().to_owned() },
             )
             .and(first.span, "first definition"));
         }
@@ -285,7 +288,7 @@ impl RegionResolver<'_> {
         if let (Quantity::Magnitude, Some(span)) = (by, first_mention(value, "depth")) {
             return Err(Diagnostic::new(
                 span,
-                RegionKind::DepthOfItself { region: written.name.word.clone() },
+                RegionKind::UndefinedDepth { region: written.name.word.clone() },
             ));
         }
         let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
@@ -347,7 +350,7 @@ pub(super) fn inside(
     if let Some(beyond) = written.conditions.get(MAX_REGIONS_OR_CONDITIONS) {
         diagnostics.push(Diagnostic::new(
             beyond.span,
-            RegionKind::TooManyConditions { most: MAX_REGIONS_OR_CONDITIONS },
+            RegionKind::TooManyConditions { limit: MAX_REGIONS_OR_CONDITIONS },
         ));
         return None;
     }
@@ -371,7 +374,7 @@ fn condition(
         if left.1.common(right.1).is_none_or(|d| d == Dimension::Angle) {
             return Err(Diagnostic::new(
                 condition.span,
-                RegionKind::UnlikeSides { left: left.1, right: right.1 },
+                RegionKind::MixedComparison { left: left.1, right: right.1 },
             ));
         }
         let graph = &mut lowering.graph;

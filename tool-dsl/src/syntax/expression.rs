@@ -23,7 +23,7 @@ impl Reader<'_> {
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
             self.diagnostics
-                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooTall { most: MAX_HEIGHT }));
+                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooDeep { limit: MAX_HEIGHT }));
         }
         expr
     }

@@ -87,12 +87,12 @@ impl Reader<'_> {
                     if RESERVED_NAMES.contains(&name.word.as_str()) {
                         self.diagnostics.push(Diagnostic::new(
                             name.span,
-                            SyntaxKind::TakenName { word: name.word.clone() },
+                            SyntaxKind::ReservedToolName { name: name.word.clone() },
                         ));
                     } else if !is_type_name(&name.word) {
                         self.diagnostics.push(Diagnostic::new(
                             name.span,
-                            SyntaxKind::NotTypeName { word: name.word.clone() },
+                            SyntaxKind::NotTypeName { name: name.word.clone() },
                         ));
                     }
                 }

@@ -167,7 +167,7 @@ impl Survey<'_> {
             && jump.high > TOLERANCE * self.size
         {
             let [from, to] = [Some(own), other].map(|owner| self.region_name(owner));
-            let statement = Statement::Continues(from, to);
+            let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);

@@ -254,7 +254,7 @@ impl<'t> Survey<'t> {
             !self.border_prover.is_listed_owner(claim, (&mut self.cover, cell), self.check_overlaps)
         });
         if let (Some(claim), BoxSize::Last) = (wrong, box_size) {
-            let statement = Statement::Alone(self.region_name(claim.owner));
+            let statement = Statement::SingleOwner(self.region_name(claim.owner));
             self.undecided.push(OpenProof { cell, statement });
             return true;
         }
@@ -275,7 +275,7 @@ impl<'t> Survey<'t> {
             if overshoot <= allowed {
                 self.overshoot = self.overshoot.max(unless_rounding(overshoot, self.size));
             } else if box_size.is_last() {
-                let statement = Statement::Nearest(self.region_name(claim.owner));
+                let statement = Statement::NearestFeatures(self.region_name(claim.owner));
                 self.undecided.push(OpenProof { cell, statement });
                 return true;
             } else {
@@ -303,7 +303,7 @@ impl<'t> Survey<'t> {
             return false;
         }
         if !is_positive {
-            let statement = Statement::NotNegative(self.region_name(Some(owner)));
+            let statement = Statement::NonNegativeDepth(self.region_name(Some(owner)));
             self.undecided.push(OpenProof { cell, statement });
         }
         self.record_evaluation(owner, cell);
@@ -326,7 +326,7 @@ impl<'t> Survey<'t> {
             return false;
         }
         if claims.len() > MAX_CLAIMS {
-            let statement = Statement::Crowd(owners.len());
+            let statement = Statement::MeetingRegions(owners.len());
             self.undecided.push(OpenProof { cell, statement });
         } else if !self.examine_borders(cell, claims, box_size) {
             return false;
