@@ -33,7 +33,7 @@ pub struct Accepted {
 impl Compiled {
     /// Renames the tool, and with it the Rust type.
     #[must_use]
-    pub fn named(mut self, name: &str) -> Compiled {
+    pub fn renamed(mut self, name: &str) -> Compiled {
         if let Ok(accepted) = &mut self.outcome {
             accepted.tool.rename(name);
         }
@@ -63,20 +63,20 @@ impl Compiled {
 /// Compiles a tool's text to a checked tool. Mounted files are read relative to the file that contains the
 /// text.
 pub fn compile(source: &Source) -> Compiled {
-    compile_with(source, &[])
+    compile_with_arguments(source, &[])
 }
 
 /// Compiles a tool with arguments for its params: `D = 0.25inch, flute = 18`, where the values are constant
 /// expressions of the language. An argument replaces the default; a bare number is in the tool's unit.
-pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
-    let mut sources = Sources::new(source.clone(), given.iter().cloned());
+pub fn compile_with_arguments(source: &Source, arguments: &[Source]) -> Compiled {
+    let mut sources = Sources::new(source.clone(), arguments.iter().cloned());
     let mut diagnostics = Vec::new();
     let mut name = None;
     let start = Span { start: 0, end: 0 };
     let outcome = match compiled(&mut sources, &mut name, &mut diagnostics) {
         Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: readable(diagnostics) }),
         Err(reported) => {
-            name_given(&sources, given.len(), &mut diagnostics);
+            attach_arguments(&sources, arguments.len(), &mut diagnostics);
             Err(Refusal::new(diagnostics, start, reported))
         }
     };
@@ -85,7 +85,7 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
 
 /// Adds the params' arguments to each error in the tool's own text, since one of their values may be the
 /// cause.
-fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
+fn attach_arguments(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     let given = &sources.all()[1..=count];
     if given.is_empty() {
         return;
@@ -97,7 +97,7 @@ fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     };
     for diagnostic in diagnostics.iter_mut() {
         if diagnostic.severity == Severity::Error && !is_given(diagnostic) {
-            diagnostic.given = texts.clone().into();
+            diagnostic.arguments = texts.clone().into();
         }
     }
 }
@@ -111,16 +111,16 @@ fn compiled(
     name: &mut Option<String>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<CheckedTool, Reported> {
-    let tree = syntax::parse(sources.own(), diagnostics);
+    let tree = syntax::parse(sources.main(), diagnostics);
     let mut settings = Vec::new();
     for source in &sources.all()[1..] {
         settings.extend(syntax::parse_argument(source, diagnostics));
     }
     let tree = tree?;
-    *name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
+    *name = Some(tree.name.text.clone()).filter(|name| syntax::is_type_name(name));
     let mut found = Vec::new();
     let model = resolve::resolve(&tree, &settings, sources, &mut found);
-    let broken: BTreeSet<&str> = tree.broken.iter().map(String::as_str).collect();
+    let broken: BTreeSet<&str> = tree.unparsed.iter().map(String::as_str).collect();
     let unread = any_error(diagnostics);
     diagnostics
         .extend(found.into_iter().filter(|diagnostic| !unread || !follows(diagnostic, &broken)));

@@ -53,9 +53,9 @@ impl fmt::Display for Names {
 
 /// Definitions in a cycle, each with the one it needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Links(pub Vec<[String; 2]>);
+pub struct CycleLinks(pub Vec<[String; 2]>);
 
-impl fmt::Display for Links {
+impl fmt::Display for CycleLinks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, [name, needed]) in self.0.iter().enumerate() {
             let comma = if index == 0 { "" } else { ", " };
@@ -67,9 +67,9 @@ impl fmt::Display for Links {
 
 /// Files, each of which mounts the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chain(pub Vec<String>);
+pub struct MountChain(pub Vec<String>);
 
-impl fmt::Display for Chain {
+impl fmt::Display for MountChain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0.join(" mounts "))
     }
@@ -81,7 +81,7 @@ pub enum Expected {
     /// Any of these.
     OneOf(Vec<String>),
     /// A param and its value.
-    Setting,
+    Argument,
     /// Not known.
     Unknown,
 }
@@ -94,7 +94,7 @@ impl fmt::Display for Expected {
                 [one] => f.write_str(one),
                 [most @ .., last] => write!(f, "{} or {last}", most.join(", ")),
             },
-            Expected::Setting => f.write_str("`PARAM = VALUE`"),
+            Expected::Argument => f.write_str("`PARAM = VALUE`"),
             Expected::Unknown => Ok(()),
         }
     }
@@ -264,11 +264,11 @@ impl fmt::Display for Statement {
 }
 
 /// Returns the word of `known` that is nearest to `word`, if it is similar enough.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(edits, candidate)| *edits <= candidate.len().max(word.len()).div_ceil(3))
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+        .filter(|(edits, candidate)| *edits <= candidate.len().max(name.len()).div_ceil(3))
         .min()
         .map(|(_, candidate)| candidate)
 }

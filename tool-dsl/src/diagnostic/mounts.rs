@@ -1,6 +1,6 @@
 //! Mounts: files, and how they are joined.
 
-use super::data::{Chain, FormattedNumber};
+use super::data::{FormattedNumber, MountChain};
 use super::table::kinds;
 
 kinds! {
@@ -78,7 +78,7 @@ kinds! {
         message "cannot read `{file}`: {error}"
         help "check the path: it is relative to the file that mounts it"
         explain "The file does not exist, may not be read, is too long, or is not UTF-8 text.";
-    error T0514 MountCycle { file: String, chain: Chain }
+    error T0514 MountCycle { file: String, chain: MountChain }
         "file that mounts itself"
         message "`{file}` mounts itself: {chain}"
         help "mount a file that does not mount this one, directly or through others"

@@ -114,7 +114,7 @@ kinds! {
         message "unexpected end of the text"
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
-            Expected::Setting => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
+            Expected::Argument => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
             Expected::Unknown => "complete the statement",
         }
         explain "The text ends inside an item, or inside a value that is given for a `param`.";
@@ -123,7 +123,7 @@ kinds! {
         message "unexpected `{token}`"
         help (expected) {
             Expected::OneOf(_) => "expected {expected}",
-            Expected::Setting => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
+            Expected::Argument => "write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`",
             Expected::Unknown => "remove it",
         }
         explain "The grammar does not allow this token here. The remedy lists the tokens that it allows.";
@@ -142,9 +142,9 @@ kinds! {
         message "this `{bracket}` has no matching opening bracket"
         help "remove it, or add the opening bracket before it"
         explain "Each closing bracket needs an opening bracket of the same kind before it.";
-    error T0123 UnclosedBracket { bracket: char, closing: char }
+    error T0123 UnclosedBracket { bracket: char, closing_bracket: char }
         "unclosed bracket"
         message "this `{bracket}` is not closed"
-        help "write `{closing}` where its contents end"
+        help "write `{closing_bracket}` where its contents end"
         explain "Each opening bracket needs a closing bracket of the same kind. The compiler finds the unclosed one by the indentation.";
 }

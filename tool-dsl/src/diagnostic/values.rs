@@ -1,6 +1,6 @@
 //! Names, units, dimensions, values.
 
-use super::data::{FormattedNumber, Links, NameRemedy, Names, Operation, ParamRemedy, Role};
+use super::data::{CycleLinks, FormattedNumber, NameRemedy, Names, Operation, ParamRemedy, Role};
 use super::table::kinds;
 use crate::dimension::Dimension;
 
@@ -45,7 +45,7 @@ kinds! {
             _ => "choose another name",
         }
         explain "Coordinates, functions, `pi` and `depth` have the same meaning in every file.";
-    error T0206 CircularDefinition { name: String, links: Links, more: usize }
+    error T0206 CircularDefinition { name: String, links: CycleLinks, more: usize }
         "circular definition"
         message ((links.0.is_empty(), more)) {
             (true, _) => "`{name}` is defined in terms of itself",
@@ -243,10 +243,10 @@ kinds! {
         message "`{name}` is given twice"
         help "remove one of the two values"
         explain "A param takes one value, from a mount, a macro call or the command line.";
-    error T0237 ArgumentDimension { name: String, expected: Dimension, found: Dimension }
+    error T0237 ArgumentDimension { name: String, dimension: Dimension, found: Dimension }
         "param value of the wrong dimension"
-        message "`{name}` is {expected}, but the given value is {found}"
-        help "give {expected}"
+        message "`{name}` is {dimension}, but the given value is {found}"
+        help "give {dimension}"
         explain "A param has the dimension of its default value.";
     error T0238 AmbiguousArgumentUnit { name: String, number: FormattedNumber, file_unit: &'static str, mounted_unit: &'static str }
         "param value without a unit"

@@ -9,7 +9,7 @@ use crate::bound::spread;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::domain::Domain;
 use crate::expr::Id;
-use crate::expr::value::{At, Evaluator};
+use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
@@ -157,13 +157,13 @@ impl<'m> Linter<'m> {
 
     /// Selects a point.
     fn set_point(&mut self, [x, y, z]: [f64; 3]) {
-        self.evaluator.set(At::point(x, y, z));
+        self.evaluator.set(EvaluationPoint::new(x, y, z));
     }
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         // A coordinate that is rounding relative to the tool's size is shown as 0.
         let without_rounding = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
-        self.model.domain.shown([x, y, self.model.frame.to_file(z)].map(without_rounding))
+        self.model.domain.format_point([x, y, self.model.frame.to_file(z)].map(without_rounding))
     }
 
     /// Reports at most one diagnostic per location and severity.

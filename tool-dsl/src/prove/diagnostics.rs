@@ -24,26 +24,28 @@ impl Certificate {
         // One diagnostic per pair of regions, and one per region next to the outside.
         for diagnostic in self.borders.iter().filter_map(|border| jump(model, border)) {
             let same = |other: &Diagnostic| {
-                other.span == diagnostic.span && other.second == diagnostic.second
+                other.span == diagnostic.span && other.secondary == diagnostic.secondary
             };
             if !diagnostics.iter().any(same) {
                 diagnostics.push(diagnostic);
             }
         }
         let facts = || model.regions.iter().zip(&self.regions);
-        let oblique = facts()
-            .filter(|(region, _)| region.source != DirectionSource::Oblique)
-            .filter_map(|(region, facts)| Some((region.raw_direction.1, (region, facts.oblique?))));
+        let oblique =
+            facts().filter(|(region, _)| region.source != DirectionSource::Oblique).filter_map(
+                |(region, facts)| Some((region.raw_direction.1, (region, facts.oblique_witness?))),
+            );
         for (region, (angle, point)) in largest_by_span(oblique) {
-            diagnostics.push(oblique_direction(region, angle, model.shown(point)));
+            diagnostics.push(oblique_direction(region, angle, model.format_point(point)));
         }
-        let rises = facts().filter(|(region, _)| !region.rising).filter_map(|(region, facts)| {
-            Some((region.law_spans.niceness, (region, facts.rises?)))
-        });
+        let rises =
+            facts().filter(|(region, _)| !region.allow_rising).filter_map(|(region, facts)| {
+                Some((region.law_spans.niceness, (region, facts.rising_witness?)))
+            });
         for (region, (rate, point)) in largest_by_span(rises) {
             let kind = CheckKind::RisingNiceness {
                 region: region.name.clone(),
-                location: model.shown(point),
+                location: model.format_point(point),
                 rate: FormattedNumber(rate),
                 unit: model.unit.symbol(),
             };
@@ -62,7 +64,7 @@ impl Certificate {
         if let Some(open_proof) = self.undecided.first() {
             let kind = CheckKind::Undecided {
                 statement: open_proof.statement.clone(),
-                location: model.shown(open_proof.cell.middle()),
+                location: model.format_point(open_proof.cell.middle()),
                 more: self.undecided.len() - 1,
                 exact: model.is_exact(),
                 factor: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
@@ -76,9 +78,9 @@ impl Certificate {
 /// Returns the error for a border with a point where depth jumps.
 fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
     let (point, [own, other]) = border.jump_point?;
-    let (region, neighbour) = border.between;
+    let (region, neighbour) = border.sides;
     let region = &model.regions[region];
-    let location = model.shown(point);
+    let location = model.format_point(point);
     Some(match neighbour.map(|neighbour| &model.regions[neighbour]) {
         None => deep_on_surface(region, own, location),
         Some(neighbour) => {
@@ -90,7 +92,7 @@ fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
                 other_region: neighbour.name.clone(),
             };
             Diagnostic::new(region.law_spans.depth, kind)
-                .and(neighbour.law_spans.depth, "other depth")
+                .with_label(neighbour.law_spans.depth, "other depth")
         }
     })
 }

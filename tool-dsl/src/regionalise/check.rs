@@ -62,7 +62,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             let location = show(pair[0].ends()[1]);
             diagnostics.push(
                 Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { location })
-                    .and(pair[0].span, "previous segment"),
+                    .with_label(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
@@ -72,7 +72,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                     pair[1].span,
                     ProfileKind::CornerTooFlat { min_angle: TANGENT_SINE, location },
                 )
-                .and(pair[0].span, "previous segment"),
+                .with_label(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         }
@@ -97,7 +97,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                             location: show(point),
                         },
                     )
-                    .and(a.span, "other segment"),
+                    .with_label(a.span, "other segment"),
                 );
                 reported.extend([i, j]);
             }

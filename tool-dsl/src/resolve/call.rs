@@ -17,7 +17,7 @@ impl Lowering {
         span: Span,
         may: Allowed,
     ) -> Lowered {
-        let word = name.word.as_str();
+        let word = name.text.as_str();
         let expected_count = match word {
             "min" | "max" | "hypot" => 2..=usize::MAX,
             "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
@@ -107,6 +107,6 @@ impl Lowering {
             }
             _ => &angle.sin() / &cos,
         };
-        Ok((self.graph.number(value), Dimension::Bare))
+        Ok((self.graph.number(value), Dimension::Dimensionless))
     }
 }

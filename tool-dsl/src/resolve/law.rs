@@ -29,7 +29,7 @@ impl<'t> Laws<'t> {
             self.own
                 .iter()
                 .filter(is(quantity))
-                .find(|law| law.surfaces.iter().any(|name| name.word == word))
+                .find(|law| law.surfaces.iter().any(|name| name.text == word))
         };
         for_word(&surface.name)
             .or_else(|| if surface.cutting { for_word("cutting") } else { None })
@@ -56,7 +56,7 @@ impl<'t> Laws<'t> {
             let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
                 vec![("", law.span)]
             } else {
-                law.surfaces.iter().map(|name| (name.word.as_str(), name.span)).collect()
+                law.surfaces.iter().map(|name| (name.text.as_str(), name.span)).collect()
             };
             for (word, span) in words {
                 if let Some((.., first)) =
@@ -65,7 +65,7 @@ impl<'t> Laws<'t> {
                     let surface = (!word.is_empty()).then(|| word.to_owned());
                     diagnostics.push(
                         Diagnostic::new(span, RegionKind::DuplicateLaw { quantity: what, surface })
-                            .and(*first, "first law"),
+                            .with_label(*first, "first law"),
                     );
                 }
                 known_laws.push((law.quantity, word, span));
@@ -110,7 +110,7 @@ fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
 
 pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
     Diagnostic::new(span, RegionKind::NicenessOfNonCutting { surface: surface.name.clone() })
-        .and(surface.span, "not marked `cutting` here")
+        .with_label(surface.span, "not marked `cutting` here")
 }
 
 /// Returns a filter of laws by quantity.

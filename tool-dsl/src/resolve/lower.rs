@@ -75,7 +75,7 @@ impl Lowering {
         name: &Name,
         (id, dimension): (Id, Dimension),
     ) -> Result<(), Diagnostic> {
-        let word = name.word.as_str();
+        let word = name.text.as_str();
         if let Some(meaning) = self.domain.meaning(word) {
             let kind = ValueKind::ReservedName { name: word.to_owned(), meaning: Some(meaning) };
             return Err(Diagnostic::new(name.span, kind));
@@ -94,7 +94,7 @@ impl Lowering {
                 name.span,
                 ValueKind::DuplicateDefinition { name: word.to_owned() },
             )
-            .and(earlier.span, "first definition"));
+            .with_label(earlier.span, "first definition"));
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
@@ -109,7 +109,7 @@ impl Lowering {
     ) {
         if let Err(diagnostic) = defined {
             let reported = Reported::push(diagnostics, diagnostic);
-            self.broken.insert(name.word.clone(), reported);
+            self.broken.insert(name.text.clone(), reported);
         }
     }
 
@@ -161,7 +161,7 @@ impl Lowering {
     fn node(&mut self, expr: &Expr, may: Allowed) -> Lowered {
         match &expr.kind {
             ExprKind::Number(value, None) => {
-                Ok((self.graph.number(value.clone()), Dimension::Bare))
+                Ok((self.graph.number(value.clone()), Dimension::Dimensionless))
             }
             ExprKind::Number(value, Some(unit)) => self.measured(value, unit, expr.span),
             ExprKind::Name(word) => self.name(word, expr.span, may),
@@ -180,8 +180,8 @@ impl Lowering {
     }
 
     fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> Lowered {
-        let word = unit.word.as_str();
-        if let Some(from) = Unit::from_word(word) {
+        let word = unit.text.as_str();
+        if let Some(from) = Unit::from_symbol(word) {
             let value = value * &from.factor_to(self.unit);
             return Ok((self.graph.number(value), LENGTH));
         }
@@ -217,7 +217,7 @@ impl Lowering {
 
     fn name(&mut self, word: &str, span: Span, may: Allowed) -> Lowered {
         let coordinate = match word {
-            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Bare)),
+            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Dimensionless)),
             "depth" => {
                 return match may {
                     Allowed::Depth(depth) => Ok((depth, LENGTH)),
@@ -251,13 +251,13 @@ impl Lowering {
                     && let Allowed::Constants(role) = may
                 {
                     return Err(not_constant(span, Some(word), role)
-                        .and(*definition, "defined as a curve here"));
+                        .with_label(*definition, "defined as a curve here"));
                 }
                 return Err(Diagnostic::new(
                     span,
                     ValueKind::UsedBeforeDefinition { name: word.to_owned() },
                 )
-                .and(*definition, "defined here"));
+                .with_label(*definition, "defined here"));
             }
             let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
             let known = self.values.keys().map(String::as_str).chain(coordinates);
@@ -322,10 +322,11 @@ impl Lowering {
     fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
         let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
-        let halves = value
-            .halves()
-            .filter(|_| of_exponent == Dimension::Bare)
-            .ok_or_else(|| Diagnostic::new(exponent.span, ValueKind::UnsupportedExponent))?;
+        let halves =
+            value
+                .doubled_exponent()
+                .filter(|_| of_exponent == Dimension::Dimensionless)
+                .ok_or_else(|| Diagnostic::new(exponent.span, ValueKind::UnsupportedExponent))?;
         let dimension = dimension
             .power(halves)
             .ok_or_else(|| Diagnostic::new(span, ValueKind::PowerOfAngle))?;

@@ -67,8 +67,8 @@ pub fn resolve(
     }
     let mut curves = Curves::default();
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
-        if let Some(value) = lowering.values.get(&definition.name.word) {
-            curves.name(&definition.name.word, value.id);
+        if let Some(value) = lowering.values.get(&definition.name.text) {
+            curves.name(&definition.name.text, value.id);
         }
     }
     let laws: Vec<&Law> = tool
@@ -130,7 +130,7 @@ pub fn resolve(
     }
     Ok(Model {
         domain: tool.domain,
-        name: tool.name.word.clone(),
+        name: tool.name.text.clone(),
         name_span: tool.name.span,
         title: tool.title.clone(),
         unit,
@@ -139,7 +139,7 @@ pub fn resolve(
         curves: curves.list,
         surfaces,
         regions,
-        first,
+        first_curves: first,
         section,
     })
 }
@@ -178,7 +178,7 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
                     *span,
                     RegionKind::DuplicateStatement { keyword: "regions".to_owned() },
                 )
-                .and(first, "first definition"),
+                .with_label(first, "first definition"),
             );
         }
         regions_item = regions_item.or(Some((*span, smooth.as_ref())));
@@ -187,7 +187,7 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
         (Some((span, _)), Some(region)) => {
             diagnostics.push(
                 Diagnostic::new(span, RegionKind::DerivedAndWrittenRegions)
-                    .and(region.name.span, "first region written by hand"),
+                    .with_label(region.name.span, "first region written by hand"),
             );
             Divider::Features
         }
@@ -223,7 +223,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     if let (Some(first), Some(second)) = (first, profiles.next()) {
         diagnostics.push(
             Diagnostic::new(second.span, RegionKind::SecondProfile)
-                .and(first.span, "first profile"),
+                .with_label(first.span, "first profile"),
         );
     }
     let mounts: Vec<&Mount> = tool
@@ -234,7 +234,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     if let (Some(profile), Some(mount)) = (first, mounts.first()) {
         diagnostics.push(
             Diagnostic::new(mount.span, MountKind::ProfileWithMounts)
-                .and(profile.span, "profile of this file"),
+                .with_label(profile.span, "profile of this file"),
         );
     }
     for item in &tool.items {
@@ -283,17 +283,17 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
         tool.items[1..].iter().find(|i| matches!(i, Item::Units(_)))
     {
         return Err(Diagnostic::new(second_unit.span, ValueKind::DuplicateUnit)
-            .and(name.span, "first unit"));
+            .with_label(name.span, "first unit"));
     }
-    Unit::from_word(&name.word).ok_or_else(|| {
-        let suggestion = match name.word.as_str() {
+    Unit::from_symbol(&name.text).ok_or_else(|| {
+        let suggestion = match name.text.as_str() {
             "in" | "inches" | "IN" => Some("inch"),
             "millimetre" | "millimeter" | "MM" => Some("mm"),
             "meter" | "metre" => Some("m"),
             word if word.len() > 2 => nearest(word, ["mm", "inch"]),
             _ => None,
         };
-        let kind = ValueKind::UnknownFileUnit { unit: name.word.clone(), suggestion };
+        let kind = ValueKind::UnknownFileUnit { unit: name.text.clone(), suggestion };
         Diagnostic::new(name.span, kind)
     })
 }
@@ -313,11 +313,11 @@ fn constants(
             Item::Param(definition) => (definition, true),
             _ => continue,
         };
-        if lowering.broken.contains_key(&definition.name.word) {
+        if lowering.broken.contains_key(&definition.name.text) {
             continue;
         }
         if is_param || lowering.is_parametric(&definition.value) {
-            lowering.parametric.insert(definition.name.word.clone());
+            lowering.parametric.insert(definition.name.text.clone());
         }
         let value = lowering.constant(&definition.value, Role::Let);
         let value = value.and_then(|value| match is_param {
@@ -352,7 +352,7 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
                 (&mut tip, expr.span, "tip")
             }
             Item::Spindle { down, span } => {
-                lowering.frame.down = *down;
+                lowering.frame.spindle_down = *down;
                 (&mut spindle, *span, "spindle")
             }
             _ => continue,
@@ -363,7 +363,7 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
                     span,
                     RegionKind::DuplicateStatement { keyword: keyword.to_owned() },
                 )
-                .and(first, "first definition"),
+                .with_label(first, "first definition"),
             );
         }
     }
@@ -386,13 +386,13 @@ fn first_curves(
             Ok(Some(curve)) if first.contains(&curve) => {
                 diagnostics.push(Diagnostic::new(
                     name.span,
-                    RegionKind::DuplicateCurve { name: name.word.clone() },
+                    RegionKind::DuplicateCurve { name: name.text.clone() },
                 ));
             }
             Ok(Some(curve)) => first.push(curve),
             Ok(None) => diagnostics.push(Diagnostic::new(
                 name.span,
-                RegionKind::UnusedCurve { name: name.word.clone() },
+                RegionKind::UnusedCurve { name: name.text.clone() },
             )),
             Err(diagnostic) => diagnostics.push(diagnostic),
         }
@@ -405,15 +405,15 @@ fn curve_of(
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Result<Option<usize>, Diagnostic> {
-    let Some(value) = lowering.values.get_mut(&name.word) else {
-        if let Some(reported) = lowering.broken.get(&name.word) {
-            return Err(lower::without_value(name.span, &name.word, *reported));
+    let Some(value) = lowering.values.get_mut(&name.text) else {
+        if let Some(reported) = lowering.broken.get(&name.text) {
+            return Err(lower::without_value(name.span, &name.text, *reported));
         }
-        let suggestion = nearest(&name.word, lowering.values.keys().map(String::as_str));
+        let suggestion = nearest(&name.text, lowering.values.keys().map(String::as_str));
         let suggestion = suggestion.map(str::to_owned);
         return Err(Diagnostic::new(
             name.span,
-            RegionKind::UnknownCurve { name: name.word.clone(), suggestion },
+            RegionKind::UnknownCurve { name: name.text.clone(), suggestion },
         ));
     };
     value.used = true;

@@ -107,12 +107,12 @@ fn written(
     surfaces: &[Surface],
 ) -> Result<Option<usize>, Diagnostic> {
     let name = &region.name;
-    if let Some(first) = regions.iter().find(|r| r.name.word == name.word)
+    if let Some(first) = regions.iter().find(|r| r.name.text == name.text)
         && first.name.span != name.span
     {
         let diagnostic =
-            Diagnostic::new(name.span, RegionKind::DuplicateRegion { name: name.word.clone() });
-        return Err(diagnostic.and(first.name.span, "first region of this name"));
+            Diagnostic::new(name.span, RegionKind::DuplicateRegion { name: name.text.clone() });
+        return Err(diagnostic.with_label(first.name.span, "first region of this name"));
     }
     if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
         return Err(Diagnostic::new(depth.value.span, RegionKind::DepthBesideProfile));
@@ -123,14 +123,14 @@ fn written(
             if let Some(cutting) = region.cutting {
                 return Err(Diagnostic::new(cutting, RegionKind::CuttingBesideProfile));
             }
-            let found = surfaces.iter().position(|surface| surface.name == surface_name.word);
+            let found = surfaces.iter().position(|surface| surface.name == surface_name.text);
             found.map(Some).ok_or_else(|| {
                 let known = surfaces.iter().map(|surface| surface.name.as_str());
-                let remedy = match nearest(&surface_name.word, known) {
+                let remedy = match nearest(&surface_name.text, known) {
                     Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
                     None => SurfaceRemedy::OfProfile,
                 };
-                let kind = RegionKind::UnknownSurface { name: surface_name.word.clone(), remedy };
+                let kind = RegionKind::UnknownSurface { name: surface_name.text.clone(), remedy };
                 Diagnostic::new(surface_name.span, kind)
             })
         }
@@ -159,7 +159,7 @@ fn fans<'t>(
             Some(piece) => outline[piece].ends()[1],
             None => outline[0].ends()[0],
         };
-        Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
+        Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)])
     };
     let pieces = smooth::rounded(outline, &width).map_err(|rough| {
         let max_length = smooth::largest_fitting_length(outline, &width);
@@ -180,7 +180,7 @@ fn fans<'t>(
                         max_length,
                     },
                 )
-                .and(outline[piece].span, "segment too short")
+                .with_label(outline[piece].span, "segment too short")
             }
         }
     })?;
@@ -189,7 +189,9 @@ fn fans<'t>(
     let undivided = |Undivided([d, z]): Undivided| {
         Diagnostic::new(
             span,
-            RegionKind::SmoothDivisionFailed { location: Domain::HalfPlane.shown([d, 0.0, z]) },
+            RegionKind::SmoothDivisionFailed {
+                location: Domain::HalfPlane.format_point([d, 0.0, z]),
+            },
         )
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
@@ -231,7 +233,7 @@ impl Conditions<'_> {
         let Overlay { pairs, uncovered: head, doubly_covered: double } =
             overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
         let formatted =
-            |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
+            |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = head {
             diagnostics
                 .push(Diagnostic::new(span, RegionKind::UncoveredPoint { location: formatted(p) }));
@@ -242,8 +244,8 @@ impl Conditions<'_> {
             let (a, b) = (&a.name, &b.name);
             let is_left = pairs.iter().any(|(_, condition)| *condition == second);
             diagnostics.push(match is_left {
-                true => overlapping(&a.word, (&b.word, b.span), formatted(p), a.span),
-                false => never_wins(&b.word, b.span, (&a.word, a.span), 0),
+                true => overlapping(&a.text, (&b.text, b.span), formatted(p), a.span),
+                false => never_wins(&b.text, b.span, (&a.text, a.span), 0),
             });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
@@ -254,7 +256,7 @@ impl Conditions<'_> {
                 let name = &region.name;
                 diagnostics.push(Diagnostic::new(
                     name.span,
-                    RegionKind::RegionOutsideProfile { region: name.word.clone() },
+                    RegionKind::RegionOutsideProfile { region: name.text.clone() },
                 ));
             }
         }
@@ -309,7 +311,7 @@ impl Conditions<'_> {
                     }
                     (None, ..) => part.own_direction(),
                 };
-                let (name, span) = (region.name.word.clone(), region.name.span);
+                let (name, span) = (region.name.text.clone(), region.name.span);
                 let head = RegionHead { name, span, owner, inside };
                 or_report(
                     evaluation.finish(head, (depth, span), (magnitude, niceness), direction),
@@ -331,7 +333,7 @@ pub(crate) fn never_wins(
         span,
         CheckKind::CoveredRegion { region: name.to_owned(), covering: first.to_owned(), more },
     )
-    .and(at, "region listed before it")
+    .with_label(at, "region listed before it")
 }
 
 /// Returns the error for two regions that have points in common, for instance at `location`. The first region is at `at`.
@@ -343,5 +345,5 @@ pub(crate) fn overlapping(
 ) -> Diagnostic {
     let (first, second) = (first.to_owned(), second.to_owned());
     Diagnostic::new(span, CheckKind::Overlap { first, second, location })
-        .and(at, "overlapping region")
+        .with_label(at, "overlapping region")
 }

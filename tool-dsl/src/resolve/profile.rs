@@ -9,7 +9,7 @@ use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::source::Span;
-use crate::syntax::tree::{Arc, Expr, PathSegment, Profile, Round, Tuple};
+use crate::syntax::tree::{Arc, ArcCircle, Expr, PathSegment, Profile, Tuple};
 
 /// The maximum number of segments of a profile. Dividing more would take minutes.
 const MAX_SEGMENTS: usize = 256;
@@ -25,7 +25,7 @@ pub(super) fn outline(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
     let before = diagnostics.len();
-    if let Some(beyond) = profile.pieces.get(MAX_SEGMENTS) {
+    if let Some(beyond) = profile.segments.get(MAX_SEGMENTS) {
         let diagnostic =
             Diagnostic::new(beyond.span, ProfileKind::TooManySegments { limit: MAX_SEGMENTS });
         return Err(Reported::push(diagnostics, diagnostic));
@@ -34,11 +34,11 @@ pub(super) fn outline(
     let mut segments = Vec::new();
     let mut from = exact_point(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
     let mut begin = &profile.start;
-    for piece in &profile.pieces {
-        let ends = [std::mem::replace(&mut begin, &piece.to), &piece.to];
-        let to = exact_point(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
+    for piece in &profile.segments {
+        let ends = [std::mem::replace(&mut begin, &piece.end), &piece.end];
+        let to = exact_point(&piece.end, lowering).map_err(|r| diagnostics.push(r)).ok();
         if from.is_some() && from == to && is_parametric(ends, lowering) {
-            let surface = piece.surface.word.clone();
+            let surface = piece.surface.text.clone();
             lowering.left_out.insert(surface.clone());
             diagnostics.push(Diagnostic::new(piece.span, ProfileKind::SegmentLeftOut { surface }));
             continue;
@@ -73,11 +73,11 @@ pub(super) fn outline(
             let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
             let circle =
                 segment.circle.map(|circle| Circle { centre: to_tool(&circle.centre), ..circle });
-            let ends = if frame.down { [to, from] } else { [from, to] };
+            let ends = if frame.spindle_down { [to, from] } else { [from, to] };
             Segment::new(ends, circle, segment.surface, segment.span)
         })
         .collect();
-    if frame.down {
+    if frame.spindle_down {
         outline.reverse();
     }
     Ok((outline, surfaces))
@@ -109,7 +109,7 @@ fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagn
 
 /// Returns whether a coordinate of one of the ends depends on a param.
 fn is_parametric(ends: [&Tuple; 2], lowering: &Lowering) -> bool {
-    ends.iter().flat_map(|end| &end.parts).any(|part| lowering.is_parametric(part))
+    ends.iter().flat_map(|end| &end.components).any(|part| lowering.is_parametric(part))
 }
 
 fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
@@ -151,8 +151,8 @@ fn circle(
     span: Span,
     lowering: &mut Lowering,
 ) -> Result<Circle, Diagnostic> {
-    let (centre, radius) = match &arc.round {
-        Round::Center(tuple) => {
+    let (centre, radius) = match &arc.circle {
+        ArcCircle::Center(tuple) => {
             let centre = exact_point(tuple, lowering)?;
             let [a, b] = ends.map(|end| distance(end, &centre));
             let (a_size, b_size) = (a.to_f64(), b.to_f64());
@@ -167,9 +167,9 @@ fn circle(
                     ProfileKind::UnequalArcRadii { start_radius, end_radius },
                 ));
             }
-            if a.agrees(&b) { (centre, a) } else { midway(ends, &centre) }
+            if a.nearly_equals(&b) { (centre, a) } else { midway(ends, &centre) }
         }
-        Round::Radius(expr) => {
+        ArcCircle::Radius(expr) => {
             let radius = lowering.length(expr, Role::Radius)?;
             if radius.to_f64() <= 0.0 {
                 return Err(Diagnostic::new(expr.span, ProfileKind::RadiusNotPositive));

@@ -11,7 +11,7 @@ use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{DirectionSource, LawSpans, Region, Surface};
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
+use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, ScalarProperty, Tool};
 
 /// The maximum number of regions of a tool. Planning more would take minutes.
 const MAX_REGIONS_OR_CONDITIONS: usize = 256;
@@ -32,7 +32,7 @@ pub(super) fn regions(
     if written.is_empty() {
         diagnostics.push(Diagnostic::new(
             tool.name.span,
-            RegionKind::NoRegion { tool: tool.name.word.clone() },
+            RegionKind::NoRegion { tool: tool.name.text.clone() },
         ));
     }
     if let Some(beyond) = written.get(MAX_REGIONS_OR_CONDITIONS) {
@@ -48,13 +48,13 @@ pub(super) fn regions(
     laws.check(&surfaces, &lowering.left_out, diagnostics);
     let mut regions: Vec<Region> = Vec::new();
     for (written, owner) in written.into_iter().zip(owners) {
-        if let Some(earlier) = regions.iter().find(|r| r.name == written.name.word) {
+        if let Some(earlier) = regions.iter().find(|r| r.name == written.name.text) {
             diagnostics.push(
                 Diagnostic::new(
                     written.name.span,
                     RegionKind::DuplicateRegion { name: earlier.name.clone() },
                 )
-                .and(earlier.span, "first region of this name"),
+                .with_label(earlier.span, "first region of this name"),
             );
         }
         let evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
@@ -83,10 +83,10 @@ pub(super) fn named_surface(
     surfaces: &mut Vec<Surface>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> usize {
-    if name.word == "cutting" {
+    if name.text == "cutting" {
         diagnostics.push(Diagnostic::new(name.span, RegionKind::SurfaceCalledCutting));
     }
-    match surfaces.iter().position(|surface| surface.name == name.word) {
+    match surfaces.iter().position(|surface| surface.name == name.text) {
         Some(at) => {
             if surfaces[at].cutting != cutting {
                 let there =
@@ -95,17 +95,17 @@ pub(super) fn named_surface(
                     Diagnostic::new(
                         name.span,
                         RegionKind::InconsistentCutting {
-                            name: name.word.clone(),
+                            name: name.text.clone(),
                             marked_here: cutting,
                         },
                     )
-                    .and(surfaces[at].span, there),
+                    .with_label(surfaces[at].span, there),
                 );
             }
             at
         }
         None => {
-            surfaces.push(Surface { name: name.word.clone(), cutting, span: name.span });
+            surfaces.push(Surface { name: name.text.clone(), cutting, span: name.span });
             surfaces.len() - 1
         }
     }
@@ -207,7 +207,7 @@ impl RegionResolver<'_> {
             raw_direction: (raw_direction.parts, raw_direction.span),
             source: raw_direction.source,
             niceness: niceness.value,
-            rising: niceness.rising,
+            allow_rising: niceness.rising,
             outputs,
         })
     }
@@ -227,7 +227,7 @@ impl RegionResolver<'_> {
         let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
         let (magnitude, niceness) = self.laws(written, depth.0, diagnostics);
         let direction = or_report(self.resolve_direction(written), diagnostics);
-        let (name, span) = (written.name.word.clone(), written.name.span);
+        let (name, span) = (written.name.text.clone(), written.name.span);
         let head = RegionHead { name, span, owner, inside: inside? };
         let direction = direction?.unwrap_or_else(|| RawDirection {
             parts: self.steepest_descent(depth.0),
@@ -257,7 +257,7 @@ impl RegionResolver<'_> {
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
-    ) -> Result<Option<&'w Scalar>, Diagnostic> {
+    ) -> Result<Option<&'w ScalarProperty>, Diagnostic> {
         let mut matching = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
         let first = matching.next();
         if let (Some(first), Some(second)) = (first, matching.next()) {
@@ -265,7 +265,7 @@ impl RegionResolver<'_> {
                 second.span,
                 RegionKind::DuplicateStatement { keyword: quantity.keyword().to_owned() },
             )
-            .and(first.span, "first definition"));
+            .with_label(first.span, "first definition"));
         }
         Ok(first)
     }
@@ -280,7 +280,7 @@ impl RegionResolver<'_> {
                     let name = &written.name;
                     return Err(Diagnostic::new(
                         name.span,
-                        RegionKind::NoDepth { region: name.word.clone() },
+                        RegionKind::NoDepth { region: name.text.clone() },
                     ));
                 }
             },
@@ -288,7 +288,7 @@ impl RegionResolver<'_> {
         if let (Quantity::Magnitude, Some(span)) = (by, first_mention(value, "depth")) {
             return Err(Diagnostic::new(
                 span,
-                RegionKind::UndefinedDepth { region: written.name.word.clone() },
+                RegionKind::UndefinedDepth { region: written.name.text.clone() },
             ));
         }
         let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
@@ -309,7 +309,7 @@ impl RegionResolver<'_> {
     /// Without any of them it is 1 on a cutting surface, and 0 on others.
     pub(super) fn niceness(
         &mut self,
-        own: Option<&Scalar>,
+        own: Option<&ScalarProperty>,
         depth: Id,
     ) -> Result<Niceness, Diagnostic> {
         let constant = |value: Id| Niceness { value, span: self.surface.span, rising: false };
@@ -319,9 +319,9 @@ impl RegionResolver<'_> {
                 None => Ok(constant(self.lowering.graph.int(0))),
             };
         }
-        let own = own.map(|own| (&own.value, own.rising));
+        let own = own.map(|own| (&own.value, own.allow_rising));
         let law = self.laws.find(Quantity::Niceness, self.surface);
-        let law = law.map(|law| (&law.value, law.rising));
+        let law = law.map(|law| (&law.value, law.allow_rising));
         match (own.or(law), self.laws.niceness_by_surface.get(&self.surface.name)) {
             (Some((value, rising)), _) => {
                 let span = value.span;

@@ -353,27 +353,28 @@ impl<'t> Survey<'t> {
         let clamp_at_zero = |value: Interval| Interval { low: value.low.max(0.0), ..value };
         let facts_here = RegionFacts {
             depth: clamp_at_zero(depth.value),
-            steepness: depth.length,
+            gradient_length: depth.length,
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
-            falls: dot_product.high <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
-            rounding: self.errors.over(region.depth, &cell),
+            niceness_never_rises: dot_product.high
+                <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
+            rounding_error: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
         let raw_direction = self.raw_direction(owner);
         let angle =
             self.directions[owner].record(raw_direction, depth, cell, self.tool.model.domain);
-        self.examine_centre(owner, cell, angle.unwrap_or(0.0), !facts_here.falls);
+        self.examine_centre(owner, cell, angle.unwrap_or(0.0), !facts_here.niceness_never_rises);
         let facts = &mut self.regions[owner];
         *facts = Some(match facts.take() {
             None => facts_here,
             Some(known) => RegionFacts {
                 depth: known.depth.hull(facts_here.depth),
-                steepness: known.steepness.hull(facts_here.steepness),
+                gradient_length: known.gradient_length.hull(facts_here.gradient_length),
                 magnitude: known.magnitude.hull(facts_here.magnitude),
                 niceness: known.niceness.hull(facts_here.niceness),
-                falls: known.falls && facts_here.falls,
-                rounding: known.rounding.max(facts_here.rounding),
+                niceness_never_rises: known.niceness_never_rises && facts_here.niceness_never_rises,
+                rounding_error: known.rounding_error.max(facts_here.rounding_error),
                 ..known
             },
         });

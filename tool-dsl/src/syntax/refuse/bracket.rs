@@ -19,11 +19,11 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     }
     let (at, bracket) = unclosed.filter(|(at, _)| *at < stop.at)?;
     let closing_bracket = if bracket == '{' { '}' } else { ')' };
-    let kind = SyntaxKind::UnclosedBracket { bracket, closing: closing_bracket };
+    let kind = SyntaxKind::UnclosedBracket { bracket, closing_bracket };
     let diagnostic = Diagnostic::new(stop.span(at, at + 1), kind);
     Some(match first_token(stop.rest()) {
         "" => diagnostic,
-        next => diagnostic.and(stop.next(next.len()), "still open here"),
+        next => diagnostic.with_label(stop.next(next.len()), "still open here"),
     })
 }
 

@@ -129,7 +129,7 @@ pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
     spelling::character(&stop)
         .or_else(|| bracket::unmatched(&stop))
         .or_else(|| spelling::habit(&stop))
-        .unwrap_or_else(|| does_not_fit(&stop, Expected::Setting))
+        .unwrap_or_else(|| does_not_fit(&stop, Expected::Argument))
 }
 
 fn does_not_fit(stop: &Stop<'_>, expected: Expected) -> Diagnostic {
