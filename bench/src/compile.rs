@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 use syn::visit::{self, Visit};
-use tool_dsl::expr::value::{At, Evaluator};
+use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
 use tool_dsl::plan::Tree;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
@@ -100,9 +100,9 @@ pub fn tool_stats(source: &Source) -> ToolStats {
         regions: regions.len(),
         segments: tool.model.is_exact().then_some(segments),
         curves: tool.model.curves.len(),
-        tests: tool.plan.owner.tests(),
+        tests: tool.plan.owner.test_count(),
         splits: splits(&tool),
-        operations: operations(&emit::rust(&tool)),
+        operations: operations(&emit::source_code(&tool)),
     }
 }
 
@@ -141,7 +141,7 @@ impl<'t> TreeWalk<'t> {
 
     /// Returns whether a point is inside, and the number of tests on its path.
     fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
-        self.curves.set(At::meridian(d, z));
+        self.curves.set(EvaluationPoint::on_meridian(d, z));
         let (mut tree, mut tests) = (&self.tool.plan.owner, 0);
         loop {
             match tree {

@@ -2,7 +2,7 @@
 
 use tool_dsl::diagnostic::any_error;
 use tool_dsl::expr::Id;
-use tool_dsl::expr::value::{At, Evaluator};
+use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
 use tool_dsl::number::Number;
 use tool_dsl::plan::{PlannedTool, Tree};
 use tool_dsl::prove::Certificate;
@@ -97,7 +97,7 @@ fn mutant(original: &PlannedTool, kind: usize, rng: &mut Rng) -> Option<Mutant> 
             tool.plan.owner = leaves(&tool.plan.owner, &new_owner);
         }
         7 => {
-            let mut split = pick(tool.plan.owner.tests());
+            let mut split = pick(tool.plan.owner.test_count());
             location = format!("split {split}");
             tool.plan.owner = with_split_exchanged(&tool.plan.owner, &mut split);
         }
@@ -154,8 +154,9 @@ fn evaluation(
     evaluator: &mut Evaluator<'_>,
     [x, y, z]: [f64; 3],
 ) -> Option<Value> {
-    evaluator.set(At::point(x, y, z));
-    let owner = *tool.plan.owner.at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
+    evaluator.set(EvaluationPoint::new(x, y, z));
+    let owner =
+        *tool.plan.owner.leaf_at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
     Some((
         evaluator.get(region.depth),
@@ -199,7 +200,7 @@ pub fn differs(original: &PlannedTool, mutant: &PlannedTool, seed: u64) -> bool 
 /// Returns the evidence that a tool is defective: the diagnostics of its own certificate, or else a difference from the
 /// certificate of the original tool. The original must have no diagnostics.
 pub fn detect(original: &Certificate, mutant: &PlannedTool) -> Detection {
-    let certificate = Certificate::of(mutant);
+    let certificate = Certificate::prove(mutant);
     let diagnostics = certificate.diagnostics(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),

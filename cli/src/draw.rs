@@ -8,7 +8,7 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
 use std::path::Path;
-use tool_dsl::draw::{Lettering, svg};
+use tool_dsl::draw::{TextRendering, svg};
 
 /// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MAX_PIXELS`.
 const PIXELS: f32 = 2.0;
@@ -39,7 +39,7 @@ pub(crate) fn draw(arguments: &Draw) -> Result<(), Failure> {
 fn drawing(file: &Path, params: &ParamArguments) -> Result<String, Failure> {
     let tool = compile_file(file, params)?.into_tool();
     let tool = tool.ok_or(Failure::Files { wrong: 1, all: 1 })?;
-    svg(&tool, Lettering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
+    svg(&tool, TextRendering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
 }
 
 /// Renders an SVG without text elements as a PNG.

@@ -20,11 +20,11 @@ pub(crate) fn expand(arguments: &Expand) -> Result<(), Failure> {
         };
         // Writing to a String does not fail.
         let _ = match stage {
-            Stage::Ast => write!(text, "{}", emit::tree(compiled.sources.own())),
+            Stage::Ast => write!(text, "{}", emit::tree(compiled.sources.main())),
             Stage::Model => write!(text, "{}", emit::model(tool)),
             Stage::Regions => write!(text, "{}", emit::regions(tool)),
             Stage::Plan => write!(text, "{}", emit::dot(tool)),
-            Stage::Rust => write!(text, "{}", emit::rust(tool)),
+            Stage::Rust => write!(text, "{}", emit::source_code(tool)),
         };
     }
     match output {

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::Output;
 use serde::Serialize;
 use std::io::Write;
-use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, near};
+use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, similar_entries};
 
 /// Prints the explanation of a code, or lists all codes with their titles.
 ///
@@ -34,8 +34,9 @@ pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
 
 /// Returns the failure for an unknown code, with the codes most like it.
 fn unknown(code: &str) -> Failure {
-    let near: Vec<&str> = near(&code.to_uppercase()).map(|entry| entry.code).collect();
-    Failure::Code { code: code.to_owned(), near: near.join("`, `") }
+    let similar: Vec<&str> =
+        similar_entries(&code.to_uppercase()).map(|entry| entry.code).collect();
+    Failure::Code { code: code.to_owned(), near: similar.join("`, `") }
 }
 
 fn explain_one(entry: &Entry, out: &mut Output) -> Result<(), Failure> {

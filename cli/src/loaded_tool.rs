@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use tool_dsl::diagnostic::escaped;
 use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile_with};
+use tool_dsl::{Compiled, compile_with_arguments};
 use tools_library::TOOLS;
 use touchoff::Tool;
 use touchoff::tool::Interpreted;
@@ -97,7 +97,7 @@ pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpre
 /// # Errors
 /// If the file cannot be read.
 pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    let compiled = compile_with(&read_source(file, params)?, &params.sources());
+    let compiled = compile_with_arguments(&read_source(file, params)?, &params.sources());
     for diagnostic in compiled.diagnostics() {
         show(diagnostic, &compiled.sources);
     }

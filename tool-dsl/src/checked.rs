@@ -78,15 +78,15 @@ pub(crate) fn check(
 /// Checks that every constant that code needs is a finite double.
 ///
 /// # Errors
-/// [`CheckKind::ConstantOutgrows`] if one overflows.
+/// [`CheckKind::ConstantOverflow`] if one overflows.
 fn finite(model: &Model) -> Result<(), Diagnostic> {
     let outputs = model.regions.iter().flat_map(|region| region.outputs.roots());
     let curves = model.curves.iter().map(|curve| curve.value);
-    let needed = model.graph.needed(outputs.chain(curves));
+    let needed = model.graph.dependencies(outputs.chain(curves));
     let beyond =
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());
     if needed.iter().any(beyond) {
-        return Err(Diagnostic::new(model.name_span, CheckKind::ConstantOutgrows));
+        return Err(Diagnostic::new(model.name_span, CheckKind::ConstantOverflow));
     }
     Ok(())
 }

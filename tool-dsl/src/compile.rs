@@ -33,7 +33,7 @@ pub struct Accepted {
 impl Compiled {
     /// Renames the tool, and with it the Rust type.
     #[must_use]
-    pub fn named(mut self, name: &str) -> Compiled {
+    pub fn renamed(mut self, name: &str) -> Compiled {
         if let Ok(accepted) = &mut self.outcome {
             accepted.tool.rename(name);
         }
@@ -63,20 +63,20 @@ impl Compiled {
 /// Compiles a tool's text to a checked tool. Mounted files are read relative to the file that contains the
 /// text.
 pub fn compile(source: &Source) -> Compiled {
-    compile_with(source, &[])
+    compile_with_arguments(source, &[])
 }
 
 /// Compiles a tool with arguments for its params: `D = 0.25inch, flute = 18`, where the values are constant
 /// expressions of the language. An argument replaces the default; a bare number is in the tool's unit.
-pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
-    let mut sources = Sources::new(source.clone(), given.iter().cloned());
+pub fn compile_with_arguments(source: &Source, arguments: &[Source]) -> Compiled {
+    let mut sources = Sources::new(source.clone(), arguments.iter().cloned());
     let mut diagnostics = Vec::new();
     let mut name = None;
     let start = Span { start: 0, end: 0 };
     let outcome = match compiled(&mut sources, &mut name, &mut diagnostics) {
         Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: readable(diagnostics) }),
         Err(reported) => {
-            name_given(&sources, given.len(), &mut diagnostics);
+            attach_arguments(&sources, arguments.len(), &mut diagnostics);
             Err(Refusal::new(diagnostics, start, reported))
         }
     };
@@ -85,7 +85,7 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
 
 /// Adds the params' arguments to each error in the tool's own text, since one of their values may be the
 /// cause.
-fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
+fn attach_arguments(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     let given = &sources.all()[1..=count];
     if given.is_empty() {
         return;
@@ -97,7 +97,7 @@ fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     };
     for diagnostic in diagnostics.iter_mut() {
         if diagnostic.severity == Severity::Error && !is_given(diagnostic) {
-            diagnostic.given = texts.clone().into();
+            diagnostic.arguments = texts.clone().into();
         }
     }
 }
@@ -111,16 +111,16 @@ fn compiled(
     name: &mut Option<String>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<CheckedTool, Reported> {
-    let tree = syntax::parse(sources.own(), diagnostics);
+    let tree = syntax::parse(sources.main(), diagnostics);
     let mut settings = Vec::new();
     for source in &sources.all()[1..] {
         settings.extend(syntax::parse_argument(source, diagnostics));
     }
     let tree = tree?;
-    *name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
+    *name = Some(tree.name.text.clone()).filter(|name| syntax::is_type_name(name));
     let mut found = Vec::new();
     let model = resolve::resolve(&tree, &settings, sources, &mut found);
-    let broken: BTreeSet<&str> = tree.broken.iter().map(String::as_str).collect();
+    let broken: BTreeSet<&str> = tree.unparsed.iter().map(String::as_str).collect();
     let unread = any_error(diagnostics);
     diagnostics
         .extend(found.into_iter().filter(|diagnostic| !unread || !follows(diagnostic, &broken)));
@@ -134,17 +134,17 @@ fn follows(diagnostic: &Diagnostic, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
     match &diagnostic.kind {
         Kind::ValueKind(kind) => match kind {
-            ValueKind::UnknownName { word, .. }
-            | ValueKind::UnknownFunction { word, .. }
-            | ValueKind::UnknownUnit { word, .. }
-            | ValueKind::UnknownFileUnit { word, .. } => has(word),
+            ValueKind::UnknownName { name, .. }
+            | ValueKind::UnknownFunction { name, .. }
+            | ValueKind::UnknownUnit { unit: name, .. }
+            | ValueKind::UnknownFileUnit { unit: name, .. } => has(name),
             ValueKind::UnusedName { .. } => true,
-            ValueKind::NoUnit => has("units"),
+            ValueKind::MissingUnit => has("units"),
             _ => false,
         },
         Kind::RegionKind(kind) => match kind {
-            RegionKind::UnknownCurve { word, .. } => has(word),
-            RegionKind::UnknownSurface { word, .. } => has(word) || has("region"),
+            RegionKind::UnknownCurve { name, .. } => has(name),
+            RegionKind::UnknownSurface { name, .. } => has(name) || has("region"),
             RegionKind::NoRegion { .. } => true,
             _ => false,
         },
@@ -163,19 +163,19 @@ mod tests {
         let at = Span { start: 0, end: 0 };
         let broken = BTreeSet::from(["flute", "units"]);
         let follows = |kind: Kind| follows(&Diagnostic::new(at, kind), &broken);
-        let name = |word: &str| {
-            let (word, remedy) = (word.to_owned(), NameRemedy::Define);
-            ValueKind::UnknownName { word, remedy }.into()
+        let name = |name: &str| {
+            let (name, remedy) = (name.to_owned(), NameRemedy::Define);
+            ValueKind::UnknownName { name, remedy }.into()
         };
-        let surface = |word: &str| {
-            let (word, remedy) = (word.to_owned(), SurfaceRemedy::OfProfile);
-            RegionKind::UnknownSurface { word, remedy }.into()
+        let surface = |name: &str| {
+            let (name, remedy) = (name.to_owned(), SurfaceRemedy::OfProfile);
+            RegionKind::UnknownSurface { name, remedy }.into()
         };
         assert!(follows(name("flute")) && !follows(name("shank")));
         assert!(follows(surface("flute")) && !follows(surface("shank")));
-        assert!(follows(ValueKind::NoUnit.into()));
-        assert!(follows(ValueKind::UnusedName { word: "shank".to_owned() }.into()));
+        assert!(follows(ValueKind::MissingUnit.into()));
+        assert!(follows(ValueKind::UnusedName { name: "shank".to_owned() }.into()));
         // The same name in another kind of diagnostic is no reason to suppress it.
-        assert!(!follows(ValueKind::DefinedTwice { word: "flute".to_owned() }.into()));
+        assert!(!follows(ValueKind::DuplicateDefinition { name: "flute".to_owned() }.into()));
     }
 }

@@ -26,8 +26,8 @@ fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
     needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
-    leaves(&tool.plan.outside, &mut needed);
-    let needed = model.graph.needed(needed);
+    leaves(&tool.plan.clearance, &mut needed);
+    let needed = model.graph.dependencies(needed);
     let indices: HashMap<Id, usize> =
         needed.iter().enumerate().map(|(index, id)| (*id, index)).collect();
     let index = |id: Id| indices[&id];
@@ -45,8 +45,8 @@ fn meaning(tool: &CheckedTool) -> String {
     let sides = tool.extent.cell().sides.map(|side| (side.low, side.high));
     line(&(domain, model.unit.symbol(), sides));
     tool.envelope().iter().for_each(|slab| line(&(slab.low, slab.high, slab.radius)));
-    let Bounds { lower_slope, lipschitz, rounding } = tool.bounds();
-    line(&(lower_slope, lipschitz, rounding));
+    let Bounds { lower_slope, lipschitz, rounding_error } = tool.bounds();
+    line(&(lower_slope, lipschitz, rounding_error));
     model.outline().for_each(|piece| line(&(piece.ends, piece.circle, piece.surface)));
     model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
     for region in &model.regions {
@@ -56,7 +56,7 @@ fn meaning(tool: &CheckedTool) -> String {
     model.curves.iter().for_each(|curve| line(&index(curve.value)));
     line(&tests(&tool.plan.owner, &|owner| format!("{owner:?}")));
     line(&tests(&tool.plan.inside, &|inside| inside.to_string()));
-    line(&tests(&tool.plan.outside, &|id| index(*id).to_string()));
+    line(&tests(&tool.plan.clearance, &|id| index(*id).to_string()));
     for id in &needed {
         match model.graph.node(*id) {
             // The rounded value, as in the generated code.
@@ -118,7 +118,7 @@ fn leaves(tree: &Tree<Id>, all: &mut Vec<Id>) {
 #[cfg(test)]
 mod tests {
     use super::digest;
-    use crate::compile_with;
+    use crate::compile_with_arguments;
     use crate::source::Source;
 
     const BALL: &str = "tool Ball \"a ball\" {
@@ -130,7 +130,7 @@ mod tests {
 
     fn of(text: &str, given: &str) -> u64 {
         let given = if given.is_empty() { vec![] } else { vec![Source::new("given", given)] };
-        let compiled = compile_with(&Source::new("ball.tool", text), &given);
+        let compiled = compile_with_arguments(&Source::new("ball.tool", text), &given);
         digest(&compiled.into_tool().expect("a tool without errors"))
     }
 

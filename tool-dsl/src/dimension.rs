@@ -6,14 +6,14 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dimension {
     /// A number without a unit; it fits any power of length.
-    Bare,
+    Dimensionless,
     /// A power of length. Exponents are sums of halves and exact in a double.
     Length(f64),
     /// An angle.
     Angle,
 }
 
-use Dimension::{Angle, Bare, Length};
+use Dimension::{Angle, Dimensionless, Length};
 
 /// One unit of length.
 pub(crate) const LENGTH: Dimension = Length(1.0);
@@ -23,8 +23,8 @@ impl Dimension {
     /// they do not match.
     pub(crate) fn common(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
-            (Bare, Length(_)) => Some(other),
-            (Length(_), Bare) => Some(self),
+            (Dimensionless, Length(_)) => Some(other),
+            (Length(_), Dimensionless) => Some(self),
             _ => (self == other).then_some(self),
         }
     }
@@ -32,7 +32,7 @@ impl Dimension {
     /// Returns the dimension of a product, if it has one.
     pub(crate) fn times(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
-            (Bare, any) | (any, Bare) => Some(any),
+            (Dimensionless, any) | (any, Dimensionless) => Some(any),
             (Length(a), Length(b)) => Some(Length(a + b)),
             _ => None,
         }
@@ -41,10 +41,10 @@ impl Dimension {
     /// Returns the dimension of a quotient, if it has one.
     pub(crate) fn over(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
-            (any, Bare) => Some(any),
-            (Bare, Length(b)) => Some(Length(-b)),
+            (any, Dimensionless) => Some(any),
+            (Dimensionless, Length(b)) => Some(Length(-b)),
             (Length(a), Length(b)) => Some(Length(a - b)),
-            (Angle, Angle) => Some(Bare),
+            (Angle, Angle) => Some(Dimensionless),
             _ => None,
         }
     }
@@ -52,7 +52,7 @@ impl Dimension {
     /// Returns the dimension of a power with an exponent given in halves; `None` for an angle.
     pub(crate) fn power(self, halves: i32) -> Option<Dimension> {
         match self {
-            Bare => Some(Bare),
+            Dimensionless => Some(Dimensionless),
             Length(a) => Some(Length(a * f64::from(halves) / 2.0)),
             Angle => None,
         }
@@ -60,14 +60,14 @@ impl Dimension {
 
     /// Returns whether it is accepted where a length is expected.
     pub(crate) fn is_length(self) -> bool {
-        self == Bare || self == LENGTH
+        self == Dimensionless || self == LENGTH
     }
 }
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Bare => f.write_str("a number"),
+            Dimensionless => f.write_str("a number"),
             Angle => f.write_str("an angle"),
             Length(0.0) => f.write_str("a ratio"),
             Length(1.0) => f.write_str("a length"),

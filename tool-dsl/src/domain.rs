@@ -67,7 +67,7 @@ impl Domain {
     }
 
     /// Formats a point for people: `(d, z)` or `(x, y, z)`.
-    pub(crate) fn shown(self, point: [f64; 3]) -> String {
+    pub(crate) fn format_point(self, point: [f64; 3]) -> String {
         let parts: Vec<String> =
             self.coordinates().iter().map(|(_, axis, _)| format_number(point[*axis])).collect();
         format!("({})", parts.join(", "))

@@ -45,7 +45,7 @@ pub const ZERO: Signs = 2;
 /// `c > 0`
 pub const POSITIVE: Signs = 4;
 /// All signs are possible.
-pub const ANY: Signs = 7;
+pub const ANY_SIGN: Signs = 7;
 
 /// Returns the only side of a curve that the signs leave: true for below, also if only 0 is left.
 pub(crate) fn one_side(signs: Signs) -> Option<bool> {
@@ -71,12 +71,12 @@ impl Formula {
     }
 
     /// Returns whether the formula holds; `None` if the known signs do not decide it.
-    pub fn decided(&self, signs: &[Signs]) -> Option<bool> {
-        self.decided_by(&mut |curve| signs[curve])
+    pub fn decide(&self, signs: &[Signs]) -> Option<bool> {
+        self.decide_with(&mut |curve| signs[curve])
     }
 
     /// The same, where a curve's sign is determined only when it is needed.
-    pub fn decided_by(&self, sign: &mut impl FnMut(CurveIndex) -> Signs) -> Option<bool> {
+    pub fn decide_with(&self, sign: &mut impl FnMut(CurveIndex) -> Signs) -> Option<bool> {
         let mut known = Some(true);
         let (parts, any) = match self {
             Formula::Const(constant) => return Some(*constant),
@@ -92,7 +92,7 @@ impl Formula {
             Formula::Any(parts) => (parts, true),
         };
         for part in parts {
-            match part.decided_by(sign) {
+            match part.decide_with(sign) {
                 Some(holds) if holds == any => return Some(any),
                 None => known = None,
                 _ => {}
@@ -103,34 +103,34 @@ impl Formula {
 
     /// Narrows the signs to those of points that satisfy the formula. Only conjunctions of single atoms are
     /// used.
-    pub fn demand(&self, signs: &mut [Signs]) {
+    pub fn narrow_signs(&self, signs: &mut [Signs]) {
         match self {
             Formula::Atom { curve, below, strict } => {
                 signs[*curve] &= side(*below, *strict);
             }
-            Formula::All(parts) => parts.iter().for_each(|part| part.demand(signs)),
-            Formula::Any(parts) if parts.len() == 1 => parts[0].demand(signs),
+            Formula::All(parts) => parts.iter().for_each(|part| part.narrow_signs(signs)),
+            Formula::Any(parts) if parts.len() == 1 => parts[0].narrow_signs(signs),
             _ => {}
         }
     }
 
     /// Returns the disjunctions that every point of the formula satisfies, each as a list of alternatives.
-    pub fn choices(&self) -> Vec<&[Formula]> {
+    pub fn disjunctions(&self) -> Vec<&[Formula]> {
         match self {
-            Formula::All(parts) => parts.iter().flat_map(Formula::choices).collect(),
+            Formula::All(parts) => parts.iter().flat_map(Formula::disjunctions).collect(),
             Formula::Any(parts) => vec![parts],
             _ => Vec::new(),
         }
     }
 
-    /// Returns the curve of the first undecided atom: the first that [`Formula::open`] lists.
-    pub fn first_open(&self, signs: &[Signs]) -> Option<CurveIndex> {
+    /// Returns the curve of the first undecided atom: the first that [`Formula::undecided_atoms`] lists.
+    pub fn first_undecided_curve(&self, signs: &[Signs]) -> Option<CurveIndex> {
         match self {
             Formula::Const(_) => None,
-            Formula::Atom { curve, .. } => self.decided(signs).is_none().then_some(*curve),
+            Formula::Atom { curve, .. } => self.decide(signs).is_none().then_some(*curve),
             Formula::All(parts) | Formula::Any(parts) => {
-                let open = || parts.iter().find_map(|part| part.first_open(signs));
-                self.decided(signs).is_none().then(open).flatten()
+                let open = || parts.iter().find_map(|part| part.first_undecided_curve(signs));
+                self.decide(signs).is_none().then(open).flatten()
             }
         }
     }
@@ -138,10 +138,10 @@ impl Formula {
     /// Lists the atoms whose curve is undecided, in order.
     pub fn undecided_atoms(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {
-            Formula::Atom { curve, below, .. } if self.decided(signs).is_none() => {
+            Formula::Atom { curve, below, .. } if self.decide(signs).is_none() => {
                 atoms.push((*curve, *below));
             }
-            Formula::All(parts) | Formula::Any(parts) if self.decided(signs).is_none() => {
+            Formula::All(parts) | Formula::Any(parts) if self.decide(signs).is_none() => {
                 for part in parts {
                     part.undecided_atoms(signs, atoms);
                 }

@@ -36,5 +36,5 @@ pub mod source;
 pub mod syntax;
 
 pub use checked::CheckedTool;
-pub use compile::{Accepted, Compiled, compile, compile_with};
+pub use compile::{Accepted, Compiled, compile, compile_with_arguments};
 pub use digest::digest;

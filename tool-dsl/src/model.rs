@@ -57,8 +57,8 @@
 //! | `lint` | nothing. It refutes overlapping owners, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, and a misplaced tip, each with a counterexample | samples |
 //! | `plan` | `Plan::owner` gives each point the owner that the list of regions gives it | `plan::empty` proves which sides need no test; a section's cells are cut exactly; tests that are left out cannot hold in real arithmetic |
 //! | | `Plan::inside` holds where `owner` is a region | by construction: it is the same tree with other leaves |
-//! | | `Plan::outside` is the distance, or a lower bound of it, wherever `inside` does not hold | as for `owner` |
-//! | | trees have at most 20,000 tests | `plan::LARGEST` |
+//! | | `Plan::clearance` is the distance, or a lower bound of it, wherever `inside` does not hold | as for `owner` |
+//! | | trees have at most 20,000 tests | `plan::MAX_TESTS` |
 //! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: for a section 1 and 1 by construction, which `touchoff check` proves; for regions by hand the bounds that a few thousand boxes prove | `docs/proofs.md` |
 //! | | depth jumps at no point that was found | enclosures of both depths there |
 //!
@@ -90,8 +90,8 @@ pub enum Unit {
 
 impl Unit {
     /// Returns the unit with the given symbol, if there is one.
-    pub fn from_word(word: &str) -> Option<Unit> {
-        [Unit::Millimetre, Unit::Inch, Unit::Metre].into_iter().find(|unit| unit.symbol() == word)
+    pub fn from_symbol(symbol: &str) -> Option<Unit> {
+        [Unit::Millimetre, Unit::Inch, Unit::Metre].into_iter().find(|unit| unit.symbol() == symbol)
     }
 
     /// Returns its symbol.
@@ -142,7 +142,7 @@ pub struct Model {
     /// The regions, in the order of the file.
     pub regions: Vec<Region>,
     /// The curves that the `bsp` item asks to be tried first.
-    pub first: Vec<CurveIndex>,
+    pub first_curves: Vec<CurveIndex>,
     /// The profile and its partition; `None` for a tool whose regions are written by hand.
     pub(crate) section: Option<Section>,
 }
@@ -157,7 +157,7 @@ pub(crate) struct Section {
     /// The partition of the outside, up to 64 sizes. Its parts are those of `outside`.
     pub(crate) outer: Partition,
     /// The features that are nearest outside, each with its distance.
-    pub(crate) outside: Vec<Outside>,
+    pub(crate) outside: Vec<OutsidePart>,
     /// The further division of the inside, if there is one.
     pub(crate) over: Option<Over>,
 }
@@ -175,8 +175,8 @@ pub(crate) struct Over {
 
 impl Model {
     /// Formats a point of the tool's frame in the file's coordinates.
-    pub fn shown(&self, [x, y, z]: [f64; 3]) -> String {
-        self.domain.shown([x, y, self.frame.to_file(z)])
+    pub fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
+        self.domain.format_point([x, y, self.frame.to_file(z)])
     }
 
     /// Returns the depths of the regions in their order, followed by the distances of [`Over`] that no region
@@ -221,9 +221,9 @@ pub struct ProfileSegment {
 
 /// A part of the outside and the distance to the tool there.
 #[derive(Clone, Debug)]
-pub struct Outside {
+pub struct OutsidePart {
     /// The condition of its points, among those outside the solid.
-    pub beside: Formula,
+    pub condition: Formula,
     /// The distance to the tool, in the file's unit.
     pub clearance: Id,
 }
@@ -235,7 +235,7 @@ pub struct Frame {
     /// The tip's z in the file.
     pub tip: Number,
     /// True if the spindle lies toward the file's -z.
-    pub down: bool,
+    pub spindle_down: bool,
     /// The location of the `tip` item, or of the tool's name if there is none.
     pub tip_span: Span,
 }
@@ -243,18 +243,18 @@ pub struct Frame {
 impl Frame {
     /// Converts a z of the tool's frame to the file's.
     pub fn to_file(&self, z: f64) -> f64 {
-        if self.down { self.tip.to_f64() - z } else { self.tip.to_f64() + z }
+        if self.spindle_down { self.tip.to_f64() - z } else { self.tip.to_f64() + z }
     }
 
     /// Returns the file's z as an expression in the tool's z.
     pub fn file_z(&self, graph: &mut Graph, z: Id) -> Id {
         let tip = graph.number(self.tip.clone());
-        if self.down { graph.sub(tip, z) } else { graph.add(z, tip) }
+        if self.spindle_down { graph.sub(tip, z) } else { graph.add(z, tip) }
     }
 
     /// Converts a constant z of the file to the tool's frame.
     pub fn to_tool(&self, z: &Number) -> Number {
-        if self.down { &self.tip - z } else { z - &self.tip }
+        if self.spindle_down { &self.tip - z } else { z - &self.tip }
     }
 }
 
@@ -319,7 +319,7 @@ pub struct Region {
     /// The quality of a contact, as the file writes it.
     pub niceness: Id,
     /// `allow rising`: niceness may rise with depth without a warning.
-    pub rising: bool,
+    pub allow_rising: bool,
     /// The expressions that the evaluators compute.
     pub outputs: RegionOutputs,
 }

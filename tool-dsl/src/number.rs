@@ -37,7 +37,7 @@ impl Number {
     }
 
     /// Parses a decimal literal such as `0.25` or `1e-3`.
-    pub fn decimal(text: &str) -> Option<Number> {
+    pub fn parse_decimal(text: &str) -> Option<Number> {
         let value = DBig::from_str(text).ok()?;
         Some(Number::rounded(
             value.with_rounding::<HalfEven>().with_base_and_precision::<2>(PRECISION_BITS).value(),
@@ -107,7 +107,7 @@ impl Number {
     }
 
     /// Returns the quotient; `None` for division by zero.
-    pub fn over(&self, divisor: &Number) -> Option<Number> {
+    pub fn checked_div(&self, divisor: &Number) -> Option<Number> {
         (!divisor.is_zero()).then(|| self / divisor)
     }
 
@@ -122,7 +122,7 @@ impl Number {
     }
 
     /// Returns twice this exponent, if that is an integer between -32 and 32.
-    pub fn halves(&self) -> Option<i32> {
+    pub fn doubled_exponent(&self) -> Option<i32> {
         let doubled = self.to_f64() * 2.0;
         let whole = doubled.round();
         let exact = Number::from_f64(whole / 2.0)? == *self;
@@ -130,7 +130,7 @@ impl Number {
     }
 
     /// Returns whether two constants agree except for the last few of their 256 bits.
-    pub fn agrees(&self, other: &Number) -> bool {
+    pub fn nearly_equals(&self, other: &Number) -> bool {
         let (a, b) = (self.to_f64(), other.to_f64());
         let scale = a.abs().max(b.abs());
         // A comparison of doubles rejects most pairs cheaply.

@@ -227,9 +227,9 @@ pub struct Sources(Vec<Source>);
 
 impl Sources {
     /// Makes the list from a tool's own text and its arguments.
-    pub fn new(own: Source, given: impl IntoIterator<Item = Source>) -> Sources {
+    pub fn new(main: Source, arguments: impl IntoIterator<Item = Source>) -> Sources {
         let mut sources = Sources(Vec::new());
-        for source in std::iter::once(own).chain(given) {
+        for source in std::iter::once(main).chain(arguments) {
             sources.add(source);
         }
         sources
@@ -244,7 +244,7 @@ impl Sources {
     }
 
     /// Returns the tool's own text.
-    pub fn own(&self) -> &Source {
+    pub fn main(&self) -> &Source {
         &self.0[0]
     }
 
@@ -293,13 +293,13 @@ impl Sources {
 
     /// Returns the folder that must contain mounted files, if it was [set](Source::with_root).
     pub(crate) fn given_root(&self) -> Option<&Path> {
-        self.own().root.as_deref()
+        self.main().root.as_deref()
     }
 
     /// Returns whether a file lies below the folder that must contain mounted files, with links followed. For
     /// a file that does not exist, its name decides.
     pub(crate) fn may_mount(&self, path: &Path) -> bool {
-        let Some(root) = self.own().root() else { return false };
+        let Some(root) = self.main().root() else { return false };
         let root = if root == Path::new("") { Path::new(".") } else { root };
         let real = |path: &Path| {
             let in_real_folder =

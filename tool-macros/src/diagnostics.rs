@@ -81,7 +81,7 @@ fn excerpt(diagnostic: &Diagnostic, sources: &Sources) -> String {
 /// Returns a diagnostic for a location that rustc shows itself.
 fn plain_message(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut text = format!("{} [{}]", diagnostic.message(), diagnostic.code());
-    if let Some((span, label)) = &diagnostic.second {
+    if let Some((span, label)) = &diagnostic.secondary {
         let (source, inside) = sources.locate(*span);
         let call_site = sources.text(*span);
         text.push_str(&format!("\nnote: {label}: `{call_site}`"));

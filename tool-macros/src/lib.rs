@@ -11,7 +11,7 @@ use syn::parse::{Parse, ParseStream};
 use syn::{Ident, LitStr, Token};
 use tool_dsl::diagnostic::{Kind, SyntaxKind};
 use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, compile_with, emit, syntax};
+use tool_dsl::{Compiled, compile, compile_with_arguments, emit, syntax};
 
 /// `include_tool!("tools/ball.tool")` expands to the type that the file's tool describes. The path is
 /// relative to the package's folder. A change of the file, or of one that it mounts, triggers a rebuild.
@@ -59,14 +59,14 @@ impl Call {
         if let Some(name) = &self.name
             && !syntax::is_type_name(&name.to_string())
         {
-            let kind = Kind::from(SyntaxKind::NotTypeName { word: name.to_string() });
+            let kind = Kind::from(SyntaxKind::NotTypeName { name: name.to_string() });
             return Err(syn::Error::new(name.span(), diagnostics::with_help(&kind)));
         }
         let shown = self.path.value();
         let source = read(&at_root(&self.path)?.join(&shown), &shown, &self.path)?;
-        let mut compiled = compile_with(&source, self.given.as_slice());
+        let mut compiled = compile_with_arguments(&source, self.given.as_slice());
         if let Some(name) = &self.name {
-            compiled = compiled.named(&name.to_string());
+            compiled = compiled.renamed(&name.to_string());
         }
         Ok(meaning(&compiled, self.path.span()))
     }
@@ -195,9 +195,9 @@ fn documents() -> bool {
 /// Returns a tool's code and its warnings; for a tool with errors, these and a placeholder type.
 fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.outcome, &compiled.name) {
-        (Ok(accepted), _) if documents() => emit::documented(&accepted.tool),
+        (Ok(accepted), _) if documents() => emit::with_drawing(&accepted.tool),
         (Ok(accepted), _) => emit::emit(&accepted.tool),
-        (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
+        (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::placeholder(name),
         _ => quote! {},
     };
     tokens.extend(match &compiled.outcome {

@@ -118,7 +118,7 @@ fn the_terminal_says_the_same() {
             let place = program.display();
             let title = format!("{} [{}]", report.message(), report.code());
             let help = report.help();
-            let label = report.second.as_ref().map(|(_, label)| label.as_str());
+            let label = report.secondary.as_ref().map(|(_, label)| label.as_str());
             for text in [Some(title.as_str()), Some(&help), label].into_iter().flatten() {
                 assert!(said.contains(text), "{place}: {text}");
             }

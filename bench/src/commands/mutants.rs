@@ -30,7 +30,7 @@ anything reported.
     let (mut totals, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
     for (seed, source) in library().iter().enumerate() {
         let tool = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
-        let proved = Certificate::of(&tool);
+        let proved = Certificate::prove(&tool);
         if let Some(diagnostic) = proved.diagnostics(&tool).first() {
             return Err(format!(
                 "{} is not broken, and: {}",

@@ -30,11 +30,11 @@ boxes where the proof did not come to an end. Times are those of the proof alone
         for source in sources() {
             let tool = compile(&source).into_tool().ok_or("a tool of the library has an error")?;
             let start = Instant::now();
-            let proved = Certificate::of(&tool);
+            let proved = Certificate::prove(&tool);
             let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-            let inner = || proved.borders.iter().filter(|border| border.between.1.is_some());
+            let inner = || proved.borders.iter().filter(|border| border.sides.1.is_some());
             let count = |accept: &dyn Fn(f64) -> bool| {
-                inner().filter(|border| accept(border.jump.high)).count()
+                inner().filter(|border| accept(border.depth_jump.high)).count()
             };
             let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), format_number);
             writeln!(
@@ -50,7 +50,7 @@ boxes where the proof did not come to an end. Times are those of the proof alone
                 count(&|jump| jump > 0.0 && jump <= proved.tolerance),
                 count(&|jump| jump > proved.tolerance),
                 proved.undecided.len(),
-                proved.boxes,
+                proved.examined_boxes,
             )?;
         }
         Ok(Some(Page {

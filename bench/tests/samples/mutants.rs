@@ -56,7 +56,7 @@ fn variants_with_one_defect(text: &str) -> Vec<String> {
 /// Returns an upper bound of the distance from a point inside to the outside: the nearest point outside along some
 /// directions.
 fn distance(interpreter: &mut Interpreter<'_>, [d, z]: [f64; 2], size: f64) -> f64 {
-    let mut inside = |p: [f64; 2]| interpreter.at([p[0].abs(), 0.0, p[1]], 1.0).is_some();
+    let mut inside = |p: [f64; 2]| interpreter.evaluate([p[0].abs(), 0.0, p[1]], 1.0).is_some();
     let mut min_distance = size;
     for k in 0..DIRECTIONS {
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sin_cos();
@@ -88,12 +88,12 @@ fn bound_violation(tool: &CheckedTool, proved: &Certificate, rng: &mut Rng) -> O
     for _ in 0..POINTS {
         let [x, _, z] = cell.sides;
         let p = [rng.between(x.low, x.high), rng.between(z.low, z.high)];
-        let Some(evaluation) = interpreter.at([p[0], 0.0, p[1]], 1.0) else { continue };
+        let Some(evaluation) = interpreter.evaluate([p[0], 0.0, p[1]], 1.0) else { continue };
         let direction = rng.direction();
         let step = 10f64.powf(rng.between(-5.0, -1.0));
         let q = [(p[0] + step * direction[0]).abs(), p[1] + step * direction[1]];
         let other_depth =
-            interpreter.at([q[0], 0.0, q[1]], 1.0).map_or(0.0, |evaluation| evaluation.depth);
+            interpreter.evaluate([q[0], 0.0, q[1]], 1.0).map_or(0.0, |evaluation| evaluation.depth);
         let distance_moved = (q[0] - p[0]).hypot(q[1] - p[1]);
         let slack = 1e-9 + proved.tolerance;
         if let Some(lipschitz) = lipschitz
@@ -130,7 +130,7 @@ fn accepted_variants_keep_their_proved_bounds() {
                 rejected += 1;
                 continue;
             };
-            let proved = Certificate::of(&tool);
+            let proved = Certificate::prove(&tool);
             if let Some(violation) = bound_violation(&tool, &proved, &mut rng) {
                 panic!("{violation}\n{text}");
             }
@@ -151,7 +151,7 @@ fn defects_of_library_tools_are_detected_without_the_originals() {
     // A source stays on its thread.
     let results = parallel::rows(library().len(), |index| {
         let original = *compile(&library()[index]).into_tool().expect("the library compiles");
-        let proved = Certificate::of(&original);
+        let proved = Certificate::prove(&original);
         let diagnostics = proved.diagnostics(&original);
         assert!(diagnostics.is_empty(), "{}: {diagnostics:#?}", original.model.name);
         // Other mutants than those in the table.

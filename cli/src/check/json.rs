@@ -79,28 +79,28 @@ impl<'t> CertificateRow<'t> {
             name: &region.name,
             fraction: facts.share,
             depth: ends(facts.depth),
-            steepness: ends(facts.steepness),
-            is_distance: facts.distance,
+            steepness: ends(facts.gradient_length),
+            is_distance: facts.is_distance,
             niceness: ends(niceness(facts)),
-            niceness_never_rises: facts.falls,
-            rounding_error: facts.rounding,
+            niceness_never_rises: facts.niceness_never_rises,
+            rounding_error: facts.rounding_error,
             direction_error_degrees: facts.direction_error.map(turned),
-            oblique_degrees: facts.oblique.map(|(angle, _)| angle.to_degrees()),
-            oblique_point: facts.oblique.map(|(_, point)| point),
-            niceness_rises_point: facts.rises.map(|(_, point)| point),
-            singular_points: facts.singular.iter().map(Cell::middle).collect(),
-            turns_on_axis: facts.on_axis,
+            oblique_degrees: facts.oblique_witness.map(|(angle, _)| angle.to_degrees()),
+            oblique_point: facts.oblique_witness.map(|(_, point)| point),
+            niceness_rises_point: facts.rising_witness.map(|(_, point)| point),
+            singular_points: facts.singular_cells.iter().map(Cell::middle).collect(),
+            turns_on_axis: facts.turns_on_axis,
         };
         let name = |owner: Option<usize>| {
             owner.map_or("outside", |owner| model.regions[owner].name.as_str())
         };
         let border = |border: &Border| BorderRow {
-            between: [name(Some(border.between.0)), name(border.between.1)],
-            depth_jump: ends(border.jump),
-            magnitude_jump: ends(border.step),
+            between: [name(Some(border.sides.0)), name(border.sides.1)],
+            depth_jump: ends(border.depth_jump),
+            magnitude_jump: ends(border.magnitude_jump),
             jump_point: border.jump_point.map(|(point, _)| point),
-            turn_degrees: turned(border.turn),
-            turn_on_surface_degrees: border.turn_on_surface.map(turned),
+            turn_degrees: turned(border.direction_angle),
+            turn_on_surface_degrees: border.direction_angle_on_surface.map(turned),
             depth: ends(border.depth),
         };
         CertificateRow {
@@ -112,7 +112,7 @@ impl<'t> CertificateRow<'t> {
             continuous: certificate.is_continuous(),
             tolerance: certificate.tolerance,
             slack: certificate.slack,
-            boxes: certificate.boxes,
+            boxes: certificate.examined_boxes,
             regions: model.regions.iter().zip(&certificate.regions).map(region).collect(),
             borders: certificate.borders.iter().map(border).collect(),
             undecided: certificate

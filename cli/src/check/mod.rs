@@ -17,7 +17,7 @@ use tool_dsl::diagnostic::{self, Diagnostic, Severity};
 use tool_dsl::domain::Domain;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
-use tool_dsl::{CheckedTool, Compiled, compile_with};
+use tool_dsl::{CheckedTool, Compiled, compile_with_arguments};
 
 /// The exit status if there are only warnings; files with errors give 1, wrong options 2.
 const WARNED: u8 = 3;
@@ -66,9 +66,9 @@ struct CheckedFile {
 
 impl CheckedFile {
     fn read(file: &Path, params: &ParamArguments) -> Result<CheckedFile, Failure> {
-        let compiled = compile_with(&read_source(file, params)?, &params.sources());
+        let compiled = compile_with_arguments(&read_source(file, params)?, &params.sources());
         let mut diagnostics = compiled.diagnostics().to_vec();
-        let certificate = compiled.tool().map(|tool| Certificate::of(tool));
+        let certificate = compiled.tool().map(|tool| Certificate::prove(tool));
         if let (Some(tool), Some(certificate)) = (compiled.tool(), &certificate) {
             // The certificate finds again some of what compilation found.
             for diagnostic in certificate.diagnostics(tool) {

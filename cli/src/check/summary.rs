@@ -15,7 +15,7 @@ pub(super) fn write(
 ) -> std::io::Result<()> {
     writeln!(out, "  {}", verdict(tool, certificate))?;
     let regions = &certificate.regions;
-    let distances = regions.iter().filter(|facts| facts.distance).count();
+    let distances = regions.iter().filter(|facts| facts.is_distance).count();
     let share = match regions.len() - distances {
         0 => "all".to_owned(),
         others => format!("all but {others}"),
@@ -38,18 +38,21 @@ fn jumps(tool: &CheckedTool, certificate: &Certificate) -> String {
         0 => String::new(),
         count => format!("; {count} not decided"),
     };
-    let jumping = borders.iter().filter(|(border, _)| border.jump.high > certificate.tolerance);
-    let depth = jumping.max_by(|(a, _), (b, _)| a.jump.high.total_cmp(&b.jump.high));
-    let magnitude = borders.iter().max_by(|(a, _), (b, _)| a.step.high.total_cmp(&b.step.high));
+    let jumping =
+        borders.iter().filter(|(border, _)| border.depth_jump.high > certificate.tolerance);
+    let depth = jumping.max_by(|(a, _), (b, _)| a.depth_jump.high.total_cmp(&b.depth_jump.high));
+    let magnitude = borders
+        .iter()
+        .max_by(|(a, _), (b, _)| a.magnitude_jump.high.total_cmp(&b.magnitude_jump.high));
     // The interval of a border that is not proved begins at 0.
     let verb = |jump: Interval| if jump.low > certificate.tolerance { "jumps" } else { "may jump" };
     match (depth, magnitude) {
         (Some((border, name)), _) => {
-            let verb = verb(border.jump);
-            format!("depth {verb} by {} {unit} at {name}{open}", range(border.jump))
+            let verb = verb(border.depth_jump);
+            format!("depth {verb} by {} {unit} at {name}{open}", range(border.depth_jump))
         }
-        (None, Some((border, name))) if border.step.high > certificate.tolerance => {
-            let (verb, step) = (verb(border.step), range(border.step));
+        (None, Some((border, name))) if border.magnitude_jump.high > certificate.tolerance => {
+            let (verb, step) = (verb(border.magnitude_jump), range(border.magnitude_jump));
             format!("no jumps of depth; magnitude {verb} by {step} at {name}{open}")
         }
         _ => format!("no jumps{open}"),
@@ -83,7 +86,7 @@ fn nice(tool: &CheckedTool, certificate: &Certificate) -> String {
     let all = certificate.regions.iter().map(niceness).reduce(hull);
     let shown = all.map_or_else(|| "none".to_owned(), range);
     let regions = tool.model.regions.iter().zip(&certificate.regions);
-    let rising = regions.filter(|(_, facts)| facts.rises.is_some());
+    let rising = regions.filter(|(_, facts)| facts.rising_witness.is_some());
     let rising: Vec<&str> = rising.map(|(region, _)| region.name.as_str()).collect();
     match rising.as_slice() {
         [] => shown,

@@ -29,9 +29,9 @@ pub(super) fn write(
             region.name,
             100.0 * facts.share,
             range(facts.depth),
-            range(facts.steepness),
+            range(facts.gradient_length),
             range(niceness(facts)),
-            facts.rounding,
+            facts.rounding_error,
             kind(facts),
             direction(tool, facts),
         )?;
@@ -47,14 +47,14 @@ pub(super) fn write(
         "border", "depth", "depth jump", "magnitude jump", "turn", "turn on surface"
     )?;
     for (border, name) in borders {
-        let on_surface = border.turn_on_surface.map_or("-".to_owned(), degrees);
+        let on_surface = border.direction_angle_on_surface.map_or("-".to_owned(), degrees);
         writeln!(
             out,
             "  {name:<names$}  {:>13}  {:>13}  {:>14}  {:>15}  {on_surface:>15}",
             range(border.depth),
-            none_or(border.jump),
-            none_or(border.step),
-            degrees(border.turn),
+            none_or(border.depth_jump),
+            none_or(border.magnitude_jump),
+            degrees(border.direction_angle),
         )?;
     }
     writeln!(out)
@@ -66,11 +66,13 @@ pub(super) fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Bor
     let shown = certificate
         .borders
         .iter()
-        .filter(|border| border.jump.high > certificate.tolerance || border.is_joined())
-        .filter(|border| border.between.1.is_some() || !border.is_joined());
+        .filter(|border| {
+            border.depth_jump.high > certificate.tolerance || border.has_equal_depths()
+        })
+        .filter(|border| border.sides.1.is_some() || !border.has_equal_depths());
     for border in shown {
-        match borders.iter_mut().find(|(known, _)| known.between == border.between) {
-            Some((known, _)) => known.join(border),
+        match borders.iter_mut().find(|(known, _)| known.sides == border.sides) {
+            Some((known, _)) => known.merge(border),
             None => borders.push((border.clone(), pair(tool, border))),
         }
     }
@@ -88,8 +90,8 @@ fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
         Some(Interval { low: 0.0, high: 0.0 }) => "steepest descent".to_owned(),
         Some(error) => format!("{} from steepest descent", degrees(error)),
     };
-    if let [first, more @ ..] = facts.singular.as_slice() {
-        text += &format!("; vanishes near {}", tool.model.shown(first.middle()));
+    if let [first, more @ ..] = facts.singular_cells.as_slice() {
+        text += &format!("; vanishes near {}", tool.model.format_point(first.middle()));
         if !more.is_empty() {
             text += &format!(" and {} more points", more.len());
         }
@@ -100,7 +102,7 @@ fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
 /// Describes how a tool's depth relates to the distance to its surface.
 pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     let proved = |bound: Option<f64>| bound.map(format_number);
-    let boxes = certificate.boxes;
+    let boxes = certificate.examined_boxes;
     let slack = match certificate.slack {
         0.0 => String::new(),
         slack => format!(", to within {slack:.0e} {}", tool.model.unit.symbol()),
@@ -132,12 +134,12 @@ pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
 }
 
 fn kind(facts: &RegionFacts) -> &'static str {
-    if facts.distance { "a distance" } else { "other" }
+    if facts.is_distance { "a distance" } else { "other" }
 }
 
 fn pair(tool: &CheckedTool, border: &Border) -> String {
     let regions = &tool.model.regions;
-    let (own, other) = border.between;
+    let (own, other) = border.sides;
     let other = other.map_or("outside", |other| regions[other].name.as_str());
     format!("{} | {other}", regions[own].name)
 }

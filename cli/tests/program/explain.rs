@@ -19,7 +19,7 @@ fn a_code_is_explained_with_remedy_and_example() {
         assert!(said.contains("Example:\n\ntool Ball {\n    units mm;\n"), "{said}");
     }
     let said = stdout(&explain(&["T0201"]));
-    assert!(said.contains("- did you mean `MEANT`?\n"), "{said}");
+    assert!(said.contains("- did you mean `SUGGESTION`?\n"), "{said}");
     let said = stdout(&explain(&["T0692"]));
     assert!(said.contains("No example: it is a bug in the compiler."), "{said}");
 }

@@ -14,16 +14,16 @@ use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::bound::lateral_extent;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, PlanWalk, Scratch, Tape, Value};
+use tool_dsl::interpret::{BLOCK_POINTS, Lanes, OUTPUT_COUNT, PlanEvaluator, Scratch, Tape, Value};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
-use tool_dsl::{Accepted, CheckedTool, compile_with, diagnostic, digest, model};
+use tool_dsl::{Accepted, CheckedTool, compile_with_arguments, diagnostic, digest, model};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
     info: ToolInfo,
     evaluations: Vec<Tape>,
-    plan: PlanWalk,
+    plan: PlanEvaluator,
     clearance_tape: Tape,
     warnings: String,
 }
@@ -82,7 +82,7 @@ impl Interpreted {
     ///
     /// [`ToolError::Invalid`] with all diagnostics if the text or the arguments do not compile.
     pub fn parse_with(source: &Source, arguments: &[Source]) -> Result<Interpreted, ToolError> {
-        let compiled = compile_with(source, arguments);
+        let compiled = compile_with_arguments(source, arguments);
         let diagnostics: Vec<String> =
             compiled.diagnostics().iter().map(|r| r.render(&compiled.sources, false)).collect();
         let diagnostics = diagnostics.join("\n\n");
@@ -92,7 +92,7 @@ impl Interpreted {
                 evaluations: (0..tool.model.regions.len())
                     .map(|k| Tape::evaluation(&tool, k))
                     .collect(),
-                plan: PlanWalk::new(&tool),
+                plan: PlanEvaluator::new(&tool),
                 clearance_tape: Tape::clearance(&tool),
                 warnings: diagnostics,
             }),
@@ -147,7 +147,7 @@ fn info(tool: &CheckedTool) -> ToolInfo {
         },
         outline: model.outline().map(profile_segment).collect(),
         depth: {
-            let Bounds { lower_slope, lipschitz, rounding } = tool.bounds();
+            let Bounds { lower_slope, lipschitz, rounding_error: rounding } = tool.bounds();
             DepthBounds { lower_slope, lipschitz, rounding }
         },
         digest: digest(tool),
@@ -171,8 +171,8 @@ impl Tool for Interpreted {
         if owner[0] >= 0.0 {
             return 0.0;
         }
-        let block = point.map(|coordinate| [coordinate; BLOCK]);
-        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
+        let block = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
+        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK_POINTS]]);
         self.clearance_tape.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
         results[0][0]
     }
@@ -204,12 +204,12 @@ impl Tool for Interpreted {
         let (point, one) = (Enclosure::of_box(sides, reference), Enclosure::constant(1.0));
         let mut enclosure = EvaluationEnclosure::empty();
         let visit = |owner, test| enclosure.include(owner, test);
-        self.plan.each_owner(point, one, &mut scratch.enclosures, visit);
+        self.plan.for_each_owner(point, one, &mut scratch.enclosures, visit);
         Some(enclosure)
     }
 
     fn derivatives(&self, point: [f64; 3], length: f64, scratch: &mut Evaluations) -> Derivatives {
-        let mut results = [Dual::default(); OUTPUTS];
+        let mut results = [Dual::default(); OUTPUT_COUNT];
         let duals = (Dual::point(point), Dual::constant(length));
         self.plan.run(duals.0, duals.1, &mut scratch.duals, &mut results);
         let vector = |from: usize| std::array::from_fn(|k| results[from + k]);
@@ -227,7 +227,7 @@ impl Tool for Interpreted {
 }
 
 impl Value for Dual {
-    fn of(value: f64) -> Dual {
+    fn constant(value: f64) -> Dual {
         Dual::constant(value)
     }
     fn sqrt(self) -> Dual {
@@ -251,7 +251,7 @@ impl Default for Enclosure {
 }
 
 impl Value for Enclosure {
-    fn of(value: f64) -> Enclosure {
+    fn constant(value: f64) -> Enclosure {
         Enclosure::constant(value)
     }
     fn sqrt(self) -> Enclosure {
@@ -268,7 +268,7 @@ impl Value for Enclosure {
         let Ternary { yes, no, .. } = Lane::lt(a, b);
         [yes, no]
     }
-    fn either(self, other: Enclosure) -> Enclosure {
+    fn hull(self, other: Enclosure) -> Enclosure {
         self.hull(other)
     }
     fn min(a: Enclosure, b: Enclosure) -> Enclosure {
@@ -302,7 +302,7 @@ impl Interpreted {
     ) {
         // Results are in this order: owner, depth, magnitude, niceness, direction, gradient.
         let result_count = match outputs {
-            Outputs { gradient: true, .. } => OUTPUTS,
+            Outputs { gradient: true, .. } => OUTPUT_COUNT,
             Outputs { direction: true, .. } => 7,
             Outputs { niceness: true, .. } => 4,
             Outputs { magnitude: true, .. } => 3,
@@ -310,8 +310,8 @@ impl Interpreted {
             _ => 1,
         };
         let coordinates = points.coordinates();
-        for start in (0..points.len()).step_by(BLOCK) {
-            let count = BLOCK.min(points.len() - start);
+        for start in (0..points.len()).step_by(BLOCK_POINTS) {
+            let count = BLOCK_POINTS.min(points.len() - start);
             if count <= MAX_SEPARATE_POINTS {
                 self.evaluate_points(
                     start..start + count,
@@ -345,7 +345,7 @@ impl Interpreted {
         (outputs, result_count, length): (Outputs, usize, f64),
         evaluations: &mut Evaluations,
     ) {
-        let mut results = [0.0; OUTPUTS];
+        let mut results = [0.0; OUTPUT_COUNT];
         for index in indices {
             let point = [x[index], y[index], z[index]];
             self.plan.run(point, length, &mut evaluations.scratch, &mut results[..result_count]);
@@ -366,9 +366,9 @@ impl Interpreted {
         total: usize,
         evaluations: &mut Evaluations,
     ) {
-        let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
-        let mut owners = [-1.0; BLOCK];
-        let count = BLOCK.min(total - start);
+        let mut block: [Lanes; 3] = [[0.0; BLOCK_POINTS]; 3];
+        let mut owners = [-1.0; BLOCK_POINTS];
+        let count = BLOCK_POINTS.min(total - start);
         for (component, list) in block.iter_mut().zip(coordinates) {
             component[..count].copy_from_slice(&list[start..start + count]);
         }
@@ -381,13 +381,13 @@ impl Interpreted {
             return;
         }
         // Fixed-size lists, since a haptic loop may not allocate.
-        let (mut remaining, mut owned) = ([0; BLOCK], [0; BLOCK]);
+        let (mut remaining, mut owned) = ([0; BLOCK_POINTS], [0; BLOCK_POINTS]);
         let mut remaining_count = 0;
         for index in (0..count).filter(|index| owners[*index] >= 0.0) {
             remaining[remaining_count] = index;
             remaining_count += 1;
         }
-        let mut results = [[0.0; BLOCK]; OUTPUTS];
+        let mut results = [[0.0; BLOCK_POINTS]; OUTPUT_COUNT];
         while remaining_count > 0 {
             let region = owners[remaining[0]];
             let (mut owned_count, mut other_count) = (0, 0);
@@ -401,15 +401,15 @@ impl Interpreted {
                 *count_in_list += 1;
             }
             let owned = &owned[..owned_count];
-            let mut gathered: [Lanes; 3] = [[0.0; BLOCK]; 3];
+            let mut gathered: [Lanes; 3] = [[0.0; BLOCK_POINTS]; 3];
             for (lane, index) in owned.iter().enumerate() {
                 for (component, list) in gathered.iter_mut().zip(&block) {
                     component[lane] = list[*index];
                 }
             }
-            results[0] = [region; BLOCK];
+            results[0] = [region; BLOCK_POINTS];
             if owned.len() < MIN_TAPE_POINTS {
-                let mut values = [0.0; OUTPUTS];
+                let mut values = [0.0; OUTPUT_COUNT];
                 for lane in 0..owned.len() {
                     let point = [0, 1, 2].map(|k| gathered[k][lane]);
                     let values = &mut values[..result_count - 1];

@@ -43,25 +43,28 @@ fn bounds(proved: &Certificate) -> (f64, f64) {
 fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 2], f64) {
     let region = |name: &str| tool.model.regions.iter().position(|region| region.name == name);
     let pair = (region(names[0]).expect("a region"), region(names[1]));
-    let mut found = proved.borders.iter().filter(|b| b.between == pair && b.is_joined());
+    let mut found = proved.borders.iter().filter(|b| b.sides == pair && b.has_equal_depths());
     let border = found.next().expect("a border");
     assert!(found.next().is_none());
-    ([border.turn.low.to_degrees(), border.turn.high.to_degrees()], border.depth.low)
+    (
+        [border.direction_angle.low.to_degrees(), border.direction_angle.high.to_degrees()],
+        border.depth.low,
+    )
 }
 
 #[test]
 fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
     let tool = of_library("fig_7_3.tool");
-    let proved = Certificate::of(&tool);
+    let proved = Certificate::prove(&tool);
     assert!(proved.is_continuous() && !proved.is_exact());
     let (least, most) = bounds(&proved);
     assert!((most - 5f64.sqrt()).abs() < 1e-12 && (least - 1.0).abs() < 1e-8, "{least} {most}");
-    assert!(proved.boxes <= 2_500, "{}", proved.boxes);
+    assert!(proved.examined_boxes <= 2_500, "{}", proved.examined_boxes);
     // Equation 7.1: regions whose magnitude is a distance.
-    let distances: Vec<bool> = proved.regions.iter().map(|region| region.distance).collect();
+    let distances: Vec<bool> = proved.regions.iter().map(|region| region.is_distance).collect();
     assert_eq!(distances, [true, true, true, false, true, false, false, true, true]);
     let steep: Vec<f64> =
-        proved.regions.iter().map(|region| region.steepness.high.powi(2).round()).collect();
+        proved.regions.iter().map(|region| region.gradient_length.high.powi(2).round()).collect();
     assert_eq!(steep, [1.0, 1.0, 1.0, 2.0, 1.0, 2.0, 5.0, 1.0, 1.0]);
     let half = 0.5f64.atan().to_degrees();
     for (names, degrees) in [
@@ -92,8 +95,8 @@ fn info_has_the_proved_bounds() {
 #[test]
 fn the_exact_tool_is_exact() {
     let tool = of_library("fig_7_3_exact.tool");
-    let proved = Certificate::of(&tool);
-    assert!(proved.is_exact() && proved.boxes <= 2_500, "{}", proved.boxes);
+    let proved = Certificate::prove(&tool);
+    assert!(proved.is_exact() && proved.examined_boxes <= 2_500, "{}", proved.examined_boxes);
     // The parabola: from 0.93 rad at the axis to a right angle, nowhere less than 2 deep.
     let ([low, high], depth) = border(&tool, &proved, ["spindle/housing.1", "housing.2"]);
     assert!(low < 53.13 && low > 45.0 && (90.0..91.0).contains(&high), "{low} {high}");
@@ -104,7 +107,7 @@ fn the_exact_tool_is_exact() {
 fn every_tool_of_the_library_is_proved() {
     for source in library() {
         let tool = checked(&source);
-        let proved = Certificate::of(&tool);
+        let proved = Certificate::prove(&tool);
         let name = tool.model.name.as_str();
         assert!(proved.is_continuous(), "{name}");
         // The thesis's magnitudes are no distances.
@@ -129,7 +132,7 @@ fn profiles_that_are_smooth_but_for_rounding_are_proved() {
            line to (0, 8.21620674298658) as s2;
          } }",
     );
-    let proved = Certificate::of(&tool);
+    let proved = Certificate::prove(&tool);
     assert!(proved.is_exact(), "{:?}", proved.undecided.first());
     assert!(proved.slack < 1e-7, "{}", proved.slack);
 }
@@ -138,7 +141,7 @@ fn profiles_that_are_smooth_but_for_rounding_are_proved() {
 fn sampled_values_keep_the_proved_bounds() {
     for source in library() {
         let tool = checked(&source);
-        let proved = Certificate::of(&tool);
+        let proved = Certificate::prove(&tool);
         let cell = tool.extent.cell();
         let mut rng = Rng::new(7);
         let mut interpreter = Interpreter::new(&tool);
@@ -154,7 +157,7 @@ fn sampled_values_keep_the_proved_bounds() {
                 }
                 _ => p,
             };
-            let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
+            let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
             let facts = &proved.regions[evaluation.region];
             let name =
                 format!("{}, {}", tool.model.name, tool.model.regions[evaluation.region].name);
@@ -187,7 +190,7 @@ fn a_steeper_depth_has_a_larger_bound() {
             "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
                depth: {factor}*(1 - hypot(d, z - 1)); direction: away from (0, 1); }} }}"
         ));
-        let proved = Certificate::of(&tool);
+        let proved = Certificate::prove(&tool);
         (bounds(&proved), proved.is_exact())
     };
     let ((least, most), exact) = of("1");
@@ -207,7 +210,7 @@ fn core(depth: &str) -> String {
 }
 
 fn cored(depth: &str) -> Certificate {
-    Certificate::of(&text(&core(depth)))
+    Certificate::prove(&text(&core(depth)))
 }
 
 /// Number of points of a region that are enough to show its rounding.
@@ -220,7 +223,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
     for (compiled, restated) in tools() {
         let name = &compiled.info().name;
         let tool = all.iter().find(|tool| tool.model.name == **name).expect("each has a file");
-        let proved = Certificate::of(tool);
+        let proved = Certificate::prove(tool);
         let reference = Reference::new(&restated);
         let owners = owners(compiled, &Nearest::new(&restated));
         let mut worst = vec![0.0f64; proved.regions.len()];
@@ -253,7 +256,7 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
             counts[region] += 1;
         }
         for (region, facts) in proved.regions.iter().enumerate() {
-            let (bound, seen) = (facts.rounding, worst[region]);
+            let (bound, seen) = (facts.rounding_error, worst[region]);
             let place = format!("{name}, {}", tool.model.regions[region].name);
             // The reference has 256 bits.
             assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");
@@ -301,18 +304,18 @@ fn a_pit_in_the_middle_bounds_nothing() {
              }}"
         ))
     };
-    assert!(Certificate::of(&ring("3 - r")).is_exact());
+    assert!(Certificate::prove(&ring("3 - r")).is_exact());
     // A depth of 1 in the middle, which is 3 from the surface.
-    let proved = Certificate::of(&ring("1 + r"));
+    let proved = Certificate::prove(&ring("1 + r"));
     assert!(
         proved.lipschitz().is_some() && proved.lower_slope().is_none(),
         "{:?}",
         proved.lower_slope()
     );
-    let proved = Certificate::of(&ring("1 + max(r, 0.5)"));
+    let proved = Certificate::prove(&ring("1 + max(r, 0.5)"));
     assert!(proved.lower_slope().is_none(), "{:?}", proved.lower_slope());
     // Four slopes that rise from a point.
-    let proved = Certificate::of(&text(
+    let proved = Certificate::prove(&text(
         "tool Frame { units mm; tip z = 2; curve u = d - 5; curve v = z - 5;
            region low where abs(u) <= -v, -v <= 1 { depth: 1 - v; direction: (0, 1); }
            region high where abs(u) <= v, v <= 1 { depth: 1 + v; direction: (0, 1); }
@@ -336,7 +339,7 @@ fn a_pit_in_the_middle_bounds_nothing() {
 /// corners are.
 #[test]
 fn a_point_inside_at_which_depth_is_0_bounds_nothing() {
-    let proved = Certificate::of(&text(
+    let proved = Certificate::prove(&text(
         "tool Point { units mm; curve ball = 3 - hypot(d, z - 3); curve spot = hypot(d - 1, z - 3);
            region ball where 0 <= ball <= spot { depth: ball; }
            region spot where spot <= ball { depth: spot; direction: toward (1, 3); } }",
@@ -375,7 +378,7 @@ fn slivers_beside_corners_have_their_own_depth() {
     let mut inside = 0;
     for _ in 0..20_000 {
         let p = [rng.between(4.3, 4.45), 0.0, rng.between(5.5, 5.7)];
-        let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
+        let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
         let distance = distance([p[0], p[2]]);
         assert!(
             (evaluation.depth - distance).abs() < 1e-12,
@@ -390,7 +393,7 @@ fn slivers_beside_corners_have_their_own_depth() {
 /// A direction that vanishes wherever it could be compared is not reported as straight.
 #[test]
 fn a_direction_that_is_never_known_is_not_straight() {
-    let proved = Certificate::of(&text(
+    let proved = Certificate::prove(&text(
         "solid Two { units mm; curve large = 20 - hypot(x, y, z); curve small = 2 - hypot(x - 30, y, z);
            region large where large >= 0 { depth: large; direction: away from (0, 0, 0); }
            region small where small >= 0 { depth: small; direction: (-y, x - 30, 0); } }",
@@ -403,7 +406,7 @@ fn a_direction_that_is_never_known_is_not_straight() {
 #[test]
 fn direction_errors_are_reported() {
     let of = |direction: &str| {
-        Certificate::of(&text(&format!(
+        Certificate::prove(&text(&format!(
             "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
                depth: 1 - hypot(d, z - 1); direction: {direction}; }} }}"
         )))
@@ -412,8 +415,12 @@ fn direction_errors_are_reported() {
     };
     let straight = of("away from (0, 1)");
     assert_eq!(straight.direction_error.map(|a| (a.low, a.high)), Some((0.0, 0.0)));
-    assert!(straight.on_axis && straight.singular.len() == 1, "{:?}", straight.singular);
-    let [d, _, z] = straight.singular[0].sides;
+    assert!(
+        straight.turns_on_axis && straight.singular_cells.len() == 1,
+        "{:?}",
+        straight.singular_cells
+    );
+    let [d, _, z] = straight.singular_cells[0].sides;
     assert!(d.low <= 0.0 && z.low <= 1.0 && 1.0 <= z.high && z.high - z.low < 0.01);
     let reversed = of("toward (0, 1)");
     assert!(
@@ -425,5 +432,5 @@ fn direction_errors_are_reported() {
     let off = aside.direction_error.expect("it is known somewhere");
     let [least, most] = [off.low, off.high].map(f64::to_degrees);
     assert!(least < 1.0 && (90.0..95.0).contains(&most), "{least} {most}");
-    assert!(aside.singular.is_empty() && aside.on_axis);
+    assert!(aside.singular_cells.is_empty() && aside.turns_on_axis);
 }

@@ -2,7 +2,7 @@
 //! same every time. One is kept as a snapshot.
 
 use std::path::Path;
-use tool_dsl::draw::{Lettering, svg};
+use tool_dsl::draw::{TextRendering, svg};
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 
@@ -24,7 +24,7 @@ fn profile(segments: &str) -> Box<CheckedTool> {
 }
 
 /// Returns the drawing of a tool as SVG.
-fn drawn(tool: &CheckedTool, lettering: Lettering) -> String {
+fn drawn(tool: &CheckedTool, lettering: TextRendering) -> String {
     svg(tool, lettering).expect("a tool with an axis")
 }
 
@@ -41,8 +41,8 @@ fn texts(svg: &str) -> Vec<String> {
 
 fn holds(tool: &CheckedTool) {
     let name = &tool.model.name;
-    let drawing = drawn(tool, Lettering::Strokes);
-    assert_eq!(drawing, drawn(tool, Lettering::Strokes), "{name}: other bytes");
+    let drawing = drawn(tool, TextRendering::Strokes);
+    assert_eq!(drawing, drawn(tool, TextRendering::Strokes), "{name}: other bytes");
     let texts = texts(&drawing);
     for region in &tool.model.regions {
         assert!(texts.contains(&region.name), "{name}: no label {} in {texts:?}", region.name);
@@ -56,7 +56,7 @@ fn holds(tool: &CheckedTool) {
         assert!(texts.contains(&words), "{name}: no legend for {words} in {texts:?}");
     }
     assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}: {drawing}");
-    let page = drawn(tool, Lettering::Page);
+    let page = drawn(tool, TextRendering::Page);
     assert!(page.len() < 20_000, "{name}: {} bytes on a page", page.len());
     assert!(!page.contains('\n'), "{name}: a blank line would end the block in rustdoc");
 }
@@ -98,7 +98,7 @@ fn dimensions_are_in_the_unit_of_the_file() {
         "start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 20) as flute cutting;
          line to (3, 30) as shank; line to (12.9, 30), (14, 31.1), (14, 47.5), (0, 47.5) as nut;",
     );
-    let texts = texts(&drawn(&tool, Lettering::Strokes));
+    let texts = texts(&drawn(&tool, TextRendering::Strokes));
     let expected = ["ball R3", "flute ⌀6", "shank ⌀6", "nut ⌀28"];
     for text in expected {
         assert!(texts.iter().any(|own| own == text), "no {text} in {texts:?}");
@@ -116,7 +116,7 @@ fn dimensions_are_in_the_unit_of_the_file() {
 #[test]
 fn long_tools_are_shortened() {
     let needle = profile("start (0, 0); line to (0.5, 0), (0.5, 60), (0, 60) as shank;");
-    let texts = texts(&drawn(&needle, Lettering::Strokes));
+    let texts = texts(&drawn(&needle, TextRendering::Strokes));
     assert!(texts.iter().any(|text| text == "shortened"), "{texts:?}");
     assert!(texts.iter().any(|text| text == "60 mm"), "{texts:?}");
 }
@@ -124,14 +124,14 @@ fn long_tools_are_shortened() {
 #[test]
 fn the_documentation_includes_the_drawing() {
     let tool = library("unit_sphere.tool");
-    assert!(emit::documented(&tool).to_string().contains("doc = \"<div><svg"));
+    assert!(emit::with_drawing(&tool).to_string().contains("doc = \"<div><svg"));
     assert!(!emit::emit(&tool).to_string().contains("svg"));
 }
 
 #[test]
 fn the_exact_fig_7_3() {
     // One line per element, so that a difference can be read.
-    let drawing = drawn(&library("fig_7_3_exact.tool"), Lettering::Page).replace('>', ">\n");
+    let drawing = drawn(&library("fig_7_3_exact.tool"), TextRendering::Page).replace('>', ">\n");
     insta::with_settings!({ omit_expression => true }, {
         insta::assert_snapshot!("drawing_fig_7_3_exact", drawing);
     });

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use tool_dsl::expr::derive::derivative;
 use tool_dsl::expr::interval::{Cell, Encloser, Interval};
 use tool_dsl::expr::polynomial::Polynomial;
-use tool_dsl::expr::value::{At, Evaluator};
+use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
 use tool_dsl::expr::{Coord, Graph, Id};
 use tool_dsl::number::Number;
 
@@ -183,7 +183,7 @@ proptest! {
         let root = tree.build(&mut graph);
         let slopes = [Coord::D, Coord::Z].map(|by| derivative(&mut graph, root, by));
         let mut evaluator = Evaluator::new(&graph, [root, slopes[0], slopes[1]]);
-        evaluator.set(At::meridian(d, z));
+        evaluator.set(EvaluationPoint::on_meridian(d, z));
         prop_assert!(near(evaluator.get(root), expected.value, 100.0), "{} {:?}", evaluator.get(root), expected);
         if expected.smooth > 1e-6 {
             for (id, slope) in slopes.into_iter().zip(expected.slope) {
@@ -205,7 +205,7 @@ proptest! {
         let mut encloser = Encloser::new(&graph, [root, slope]);
         encloser.set(Cell::half_plane(Interval::new(d, d + width), Interval::new(z, z + height)));
         let mut evaluator = Evaluator::new(&graph, [root, slope]);
-        evaluator.set(At::meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
+        evaluator.set(EvaluationPoint::on_meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
         for id in [root, slope] {
             let (value, within) = (evaluator.get(id), encloser.get(id));
             prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
@@ -229,7 +229,7 @@ proptest! {
         let (mut evaluator, mut encloser) = (Evaluator::new(&graph, all), Encloser::new(&graph, all));
         let sane = expected.value.abs() < 1e6 && expected.slope.iter().all(|s| s.abs() < 1e6);
         if sane && expected.smooth > 1e-6 && d > 1e-3 {
-            evaluator.set(At::point(x, y, p[2]));
+            evaluator.set(EvaluationPoint::new(x, y, p[2]));
             let [radial, axial] = expected.slope;
             for (id, slope) in slopes.into_iter().zip([radial * x / d, radial * y / d, axial]) {
                 prop_assert!(near(evaluator.get(id), slope, 1000.0), "{} {slope}", evaluator.get(id));
@@ -237,7 +237,7 @@ proptest! {
         }
         encloser.set(Cell { sides: [0, 1, 2].map(|k| Interval::new(p[k], p[k] + width[k])) });
         let [x, y, z] = [0, 1, 2].map(|k| (p[k] + part[k] * width[k]).min(p[k] + width[k]));
-        evaluator.set(At::point(x, y, z));
+        evaluator.set(EvaluationPoint::new(x, y, z));
         for id in all {
             let (value, within) = (evaluator.get(id), encloser.get(id));
             prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
@@ -259,7 +259,7 @@ proptest! {
             graph.sub(sum, ad)
         };
         let (one, many) = (linear(1), linear(factor));
-        let polynomial = |id| Polynomial::of(&graph, id).expect("a polynomial");
+        let polynomial = |id| Polynomial::from_expression(&graph, id).expect("a polynomial");
         let ratio = polynomial(many).ratio(&polynomial(one)).expect("a multiple");
         prop_assert_eq!(ratio.to_f64(), factor as f64);
     }
@@ -268,15 +268,15 @@ proptest! {
 /// Constants are rounded once: 0.1 + 0.2 is 0.3, and a third of three is one.
 #[test]
 fn constants_carry_more_than_a_double() {
-    let decimal = |text| Number::decimal(text).expect("a number");
+    let decimal = |text| Number::parse_decimal(text).expect("a number");
     assert_eq!((&decimal("0.1") + &decimal("0.2")).to_f64(), 0.3);
     let third = &Number::int(1) / &Number::int(3);
     assert_eq!((&third * &Number::int(3)).to_f64(), 1.0);
     assert_eq!(Number::pi().to_f64(), std::f64::consts::PI);
     let root = Number::int(2).sqrt().expect("positive");
-    assert!((&root * &root).agrees(&Number::int(2)));
+    assert!((&root * &root).nearly_equals(&Number::int(2)));
     let angle = &(&Number::int(30) * &Number::pi()) / &Number::int(180);
     assert_eq!(angle.sin().to_f64(), 0.5);
-    assert_eq!(decimal("1e300").halves(), None);
-    assert_eq!(decimal("1.5").halves(), Some(3));
+    assert_eq!(decimal("1e300").doubled_exponent(), None);
+    assert_eq!(decimal("1.5").doubled_exponent(), Some(3));
 }

@@ -39,7 +39,7 @@ fn generated(file: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
     let source = Source::read(path).expect("the library has the file");
     let tool = compile(&source).into_tool().expect("a tool of the library has no error");
-    emit::rust(&tool)
+    emit::source_code(&tool)
 }
 
 /// Collects constructs that generated code must not have.
@@ -124,7 +124,7 @@ fn every_tool_of_the_library_has_a_feature() {
 fn digests_of_generated_code() {
     let lines = library().into_iter().map(|source| {
         let tool = compile(&source).into_tool().expect("a tool of the library has no error");
-        let code = emit::rust(&tool);
+        let code = emit::source_code(&tool);
         let digest = fnv(code.as_bytes());
         format!("{} {} lines {digest:016x}\n", tool.model.name, code.lines().count())
     });

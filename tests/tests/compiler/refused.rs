@@ -26,7 +26,7 @@ fn refused(items: &str) -> Vec<&'static str> {
 fn an_expanded_sphere_compiles() {
     let ball = "region ball where z*z - 6mm*z + d^2 <= 0 { depth: 3 - hypot(d, z - 3); }";
     let tool = compiled(ball).into_tool().expect("a ball");
-    let code = emit::rust(&tool);
+    let code = emit::source_code(&tool);
     let contains = code.split("fn contains(").nth(1).expect("it has one");
     assert!(
         contains.split('}').next().is_some_and(|body| body.contains("let q = x * x + y * y")),

@@ -4,7 +4,7 @@ use std::path::Path;
 use tool_dsl::diagnostic::any_error;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
-use tool_dsl::{CheckedTool, compile, compile_with};
+use tool_dsl::{CheckedTool, compile, compile_with_arguments};
 use tools_library::{Block, LBracket};
 use touchoff::Interval;
 use touchoff::Unit;
@@ -113,7 +113,7 @@ fn a_block_with_other_dimensions() {
     for (w, l, h) in [(10, 50, 80), (30, 30, 30), (100, 1, 1)] {
         let given = [("w", w), ("l", l), ("h", h)]
             .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));
-        let compiled = compile_with(&block, &given);
+        let compiled = compile_with_arguments(&block, &given);
         assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
         let tool = compiled.into_tool().expect("a block");
         let mut reference = Interpreter::new(&tool);
@@ -122,7 +122,7 @@ fn a_block_with_other_dimensions() {
         for _ in 0..2_000 {
             let p = half.map(|half| rng.between(-half, half));
             let depth = (0..3).map(|k| half[k] - p[k].abs()).fold(f64::INFINITY, f64::min);
-            let evaluation = reference.at([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
+            let evaluation = reference.evaluate([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
             assert!(
                 (evaluation.depth - depth).abs() < 1e-13,
                 "{p:?}: {}, not {depth}",

@@ -43,7 +43,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
             let radius = outline::radius_between(&section.outline, low, high);
             return EnvelopeSlab { low, high, radius };
         }
-        let within = extent.cell().with(2, Interval::new(low, high));
+        let within = extent.cell().with_side(2, Interval::new(low, high));
         let radius = inward(widest, 0.0, 12, |r| prover.none_beyond(r, widest, within));
         EnvelopeSlab { low, high, radius }
     };
@@ -103,7 +103,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
 /// Returns the ranges of x and y of a solid without an axis, rounded outward as in `ToolInfo`.
 pub fn lateral_extent(extent: &Extent) -> [[f64; 2]; 2] {
     let steps = extent.steps();
-    extent.across.map(|side| [-above(-side.low, steps), above(side.high, steps)])
+    extent.lateral.map(|side| [-above(-side.low, steps), above(side.high, steps)])
 }
 
 /// Returns a short decimal that is at least `value`: a multiple of `1 / steps`.
@@ -123,7 +123,7 @@ fn levels(model: &Model) -> Vec<f64> {
 
 /// Returns the z of a curve that is a plane perpendicular to the axis.
 fn level(model: &Model, value: crate::expr::Id) -> Option<f64> {
-    let polynomial = Polynomial::of(&model.graph, value)?;
+    let polynomial = Polynomial::from_expression(&model.graph, value)?;
     let (mut slope, mut constant) = (None, 0.0);
     for (monomial, factor) in polynomial.terms() {
         match monomial {

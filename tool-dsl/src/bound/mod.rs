@@ -9,7 +9,7 @@ use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;
 use crate::elimination::Linear;
 use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
-use crate::formula::{ANY, CurveIndex, Formula, Signs, possible};
+use crate::formula::{ANY_SIGN, CurveIndex, Formula, Signs, possible};
 use crate::geometry::outline;
 use crate::model::{Model, Region};
 
@@ -59,13 +59,13 @@ impl<'m> Prover<'m> {
     fn of_regions(model: &'m Model) -> Prover<'m> {
         let linear = Linear::new(model);
         let reach = |region: &Region| {
-            let mut signs = vec![ANY; model.curves.len()];
-            region.inside.demand(&mut signs);
+            let mut signs = vec![ANY_SIGN; model.curves.len()];
+            region.inside.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
-            for choices in region.inside.choices() {
+            for choices in region.inside.disjunctions() {
                 let one = |choice: &Formula| {
                     let mut signs = signs.clone();
-                    choice.demand(&mut signs);
+                    choice.narrow_signs(&mut signs);
                     linear.bounding_box(&signs)
                 };
                 let hull = choices.iter().map(one).reduce(|a, b| a.hull(&b));
@@ -77,24 +77,24 @@ impl<'m> Prover<'m> {
     }
 
     /// Selects a box.
-    pub fn set(&mut self, cell: Cell) {
+    pub fn set_box(&mut self, cell: Cell) {
         self.encloser.set(cell);
     }
 
     /// Returns the signs that a curve can have in the selected box.
-    pub fn sign(&mut self, curve: CurveIndex) -> Signs {
+    pub fn signs(&mut self, curve: CurveIndex) -> Signs {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 
     fn classify(&mut self, cell: Cell) -> BoxPosition {
-        self.set(cell);
+        self.set_box(cell);
         let model = self.model;
         let mut position = BoxPosition::Outside;
         for (index, region) in model.regions.iter().enumerate() {
             if !self.reaches[index].meets(&cell) {
                 continue;
             }
-            match region.inside.decided_by(&mut |curve| self.sign(curve)) {
+            match region.inside.decide_with(&mut |curve| self.signs(curve)) {
                 Some(true) => return BoxPosition::Inside,
                 Some(false) => {}
                 None => position = BoxPosition::Unknown,
@@ -112,7 +112,7 @@ impl<'m> Prover<'m> {
     /// point of the box is farther than `widest`.
     fn none_beyond(&mut self, radius: f64, widest: f64, within: Cell) -> bool {
         match self.model.domain {
-            Domain::HalfPlane => self.empty(within.with(0, Interval::new(radius, widest))),
+            Domain::HalfPlane => self.empty(within.with_side(0, Interval::new(radius, widest))),
             Domain::Space => self.empty_within(within, BOXES_PER_CYLINDER_QUERY, radius),
         }
     }
@@ -149,19 +149,19 @@ pub struct Extent {
     /// The largest distance from the axis.
     pub radius: f64,
     /// The ranges of x and y in the domain; for a tool, 0 to the radius, and 0.
-    pub across: [Interval; 2],
+    pub lateral: [Interval; 2],
 }
 
 impl Extent {
     /// Returns the extent of a solid inside a box of the domain and a radius about the axis.
     pub(crate) fn of(cell: Cell, radius: f64) -> Extent {
         let [x, y, z] = cell.sides;
-        Extent { low: z.low, high: z.high, radius, across: [x, y] }
+        Extent { low: z.low, high: z.high, radius, lateral: [x, y] }
     }
 
     /// Returns the box of the domain.
     pub fn cell(&self) -> Cell {
-        let [x, y] = self.across;
+        let [x, y] = self.lateral;
         Cell { sides: [x, y, Interval::new(self.low, self.high)] }
     }
 
@@ -231,10 +231,10 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
             let side = cell.sides[*axis];
             let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
             let end = if *high {
-                let beyond = |v| cell.with(*axis, Interval::new(v, side.high));
+                let beyond = |v| cell.with_side(*axis, Interval::new(v, side.high));
                 inward(side.high, opposite.low, 52, |v| prover.empty(beyond(v)))
             } else {
-                let beyond = |v| cell.with(*axis, Interval::new(side.low, v));
+                let beyond = |v| cell.with_side(*axis, Interval::new(side.low, v));
                 inward(side.low, opposite.high, 52, |v| prover.empty(beyond(v)))
             };
             let side_to_move = &mut cell.sides[*axis];
@@ -247,7 +247,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
         if domain.coordinates().iter().any(is_empty) {
             return Err(Diagnostic::new(
                 model.name_span,
-                CheckKind::NoPoint { file: domain.keyword() },
+                CheckKind::NoPoints { domain: domain.keyword() },
             ));
         }
     }
@@ -287,7 +287,7 @@ fn unbounded_direction(
             Interval::new(-MAX_COORDINATE, -size)
         };
         !prover.empty_within(
-            domain.bounding_cell(MAX_COORDINATE).with(*axis, outer),
+            domain.bounding_cell(MAX_COORDINATE).with_side(*axis, outer),
             20 * BOXES_PER_QUERY,
             0.0,
         )
@@ -307,14 +307,19 @@ fn endless(model: &Model) -> Diagnostic {
         );
         let Some((axis, high)) = out else { continue };
         let coordinate = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
-        let toward = if high { "large" } else { "small" };
+        let direction = if high { "large" } else { "small" };
         let bound = if high { "<= 40" } else { ">= 0" };
         return Diagnostic::new(
             region.span,
-            CheckKind::EndlessRegion { region: region.name.clone(), toward, coordinate, bound },
+            CheckKind::UnboundedRegion {
+                region: region.name.clone(),
+                direction,
+                coordinate,
+                bound,
+            },
         );
     }
-    Diagnostic::new(model.name_span, CheckKind::Endless)
+    Diagnostic::new(model.name_span, CheckKind::UnboundedRegions)
 }
 
 /// Returns the innermost position from `outer` toward `inner` for which `empty` still holds, by bisection.

@@ -7,7 +7,7 @@ kinds! {
     /// Checks of the finished tool.
     CheckKind "T06" "Checks of the finished tool"
 
-    error T0601 OffTip { end: FormattedNumber, tip: FormattedNumber, spindle: Option<char> }
+    error T0601 TipNotAtEnd { end: FormattedNumber, tip: FormattedNumber, spindle: Option<char> }
         "tool that does not end at its tip"
         message "the tool ends at z = {end}, but `tip` is at z = {tip}"
         help (spindle) {
@@ -15,31 +15,31 @@ kinds! {
             None => "write `tip z = {end};`",
         }
         explain "A pose places the tip. The tip must be the end of the tool that points away from the spindle.";
-    error T0602 ConstantOutgrows
+    error T0602 ConstantOverflow
         "constant out of range"
         message "a constant of this tool overflows double precision"
         help "avoid powers of powers of large constants, or write lengths in a larger unit"
         explain "Generated code computes in double precision, in which this constant would be infinite."
         without "no text is known in which each constant alone is in range";
-    error T0603 NoPoint { file: &'static str }
+    error T0603 NoPoints { domain: &'static str }
         "tool without points"
-        message "no point belongs to this {file}"
+        message "no point belongs to this {domain}"
         help "correct the conditions: in each region they contradict each other"
         explain "The compiler has proved that no point satisfies all conditions of any region.";
-    error T0604 EndlessRegion { region: String, toward: &'static str, coordinate: &'static str, bound: &'static str }
+    error T0604 UnboundedRegion { region: String, direction: &'static str, coordinate: &'static str, bound: &'static str }
         "unbounded region"
-        message "region {region} has no proved bound toward {toward} {coordinate}"
+        message "region {region} has no proved bound toward {direction} {coordinate}"
         help "add a condition such as `{coordinate} {bound}`"
         explain "Queries skip everything outside the tool's bounding box, so that box must be proved.";
-    error T0605 Endless
+    error T0605 UnboundedRegions
         "unbounded regions"
         message "the regions have no proved bounds"
         help "add conditions such as `d <= 3, 0 <= z <= 40` to each region"
         explain "Queries skip everything outside the tool's bounding box, so that box must be proved."
         without "the proof for one region decides: no tool is known that is unbounded only as a whole";
-    error T0606 TooManyTests { most: usize }
+    error T0606 TooManyTests { limit: usize }
         "too many tests"
-        message "more than {most} tests are needed to separate the regions"
+        message "more than {limit} tests are needed to separate the regions"
         help "separate the regions by fewer curves"
         explain "Generated code finds the region of a point by the signs of curves. With so many tests it would be slow to compile and to run."
         without "an example would have dozens of curves and take minutes";
@@ -49,105 +49,105 @@ kinds! {
         help "move features apart that are closer than 10^-10 of the tool's size"
         explain "At points near a border between such features rounding decides, so the tests would find the wrong region."
         without "it depends on rounding: no profile is known to cause it";
-    error T0608 Overlap { first: String, second: String, place: String }
+    error T0608 Overlap { first: String, second: String, location: String }
         "overlapping regions"
-        message "regions {first} and {second} overlap, for instance at {place}"
+        message "regions {first} and {second} overlap, for instance at {location}"
         help "bound one of them by the curve that separates them"
         explain "Each point belongs to one region. Regions may share borders, but not interior points.";
-    error T0609 NeverWins { region: String, by: String, more: usize }
+    error T0609 CoveredRegion { region: String, covering: String, more: usize }
         "covered region"
         message (more) {
-            0 => "region {region} has no points of its own: {by}, listed before it, covers it",
-            _ => "region {region} has no points of its own: {by} and {more} more, listed before it, cover it",
+            0 => "region {region} has no points of its own: {covering}, listed before it, covers it",
+            _ => "region {region} has no points of its own: {covering} and {more} more, listed before it, cover it",
         }
         help "remove it, or bound the earlier region by the curve that separates them"
         explain "A point in several regions belongs to the one listed first. That leaves no points for this one.";
-    warning T0610 NoPointSeen { region: String, points: usize }
+    warning T0610 NoSamplePoint { region: String, samples: usize }
         "region without a sample point"
-        message "region {region} contains none of the {points} sample points"
+        message "region {region} contains none of the {samples} sample points"
         help "check whether its conditions contradict each other"
         explain "The compiler takes sample points all over the tool. A region that contains none of them is empty or very small.";
-    error T0611 RootOfNegative { place: String, subject: Subject }
+    error T0611 RootOfNegative { location: String, subject: Subject }
         "square root of a negative number"
-        message "square root of a negative number at {place}, in {subject}"
+        message "square root of a negative number at {location}, in {subject}"
         help "add a condition that the radicand is at least 0, or write `max(0, …)` under the root"
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
-    error T0612 DivisionByZero { place: String, subject: Subject }
+    error T0612 DivisionByZero { location: String, subject: Subject }
         "division by zero"
-        message "division by zero at {place}, in {subject}"
+        message "division by zero at {location}, in {subject}"
         help "add a condition that keeps the region away from this point"
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
-    error T0613 Unbounded { place: String, subject: Subject }
+    error T0613 NumericOverflow { location: String, subject: Subject }
         "numeric overflow"
-        message "numeric overflow at {place}, in {subject}"
+        message "numeric overflow at {location}, in {subject}"
         help "divide by a length of the tool before taking powers"
         explain "Generated code computes in double precision, whose largest number is about 1.8e308.";
-    error T0614 Negative { quantity: &'static str, region: String, value: FormattedNumber, place: String }
+    error T0614 NegativeQuantity { quantity: &'static str, region: String, value: FormattedNumber, location: String }
         "negative quantity"
-        message "`{quantity}` of {region} is {value} at {place}, but must not be negative"
+        message "`{quantity}` of {region} is {value} at {location}, but must not be negative"
         help "change the sign, or restrict the region"
         explain "The depth is 0 on the surface and increases inward. The magnitude must not be negative either.";
-    error T0615 DirectionVanishes { region: String, place: String }
+    error T0615 ZeroDirectionAtPoint { region: String, location: String }
         "direction of length 0 at a point"
-        message "the direction of {region} is the zero vector at {place}"
+        message "the direction of {region} is the zero vector at {location}"
         help "write a vector that is nowhere zero, or `toward` a point"
         explain "The direction is normalized to a unit vector at every point, which is impossible for the zero vector.";
-    error T0616 DirectionTooLong { region: String, place: String }
+    error T0616 DirectionTooLong { region: String, location: String }
         "direction too long"
-        message "the direction of {region} is too long to be normalized at {place}"
+        message "the direction of {region} is too long to be normalized at {location}"
         help "divide it by its length"
         explain "The square of its length overflows in double precision.";
-    error T0617 DeepOnSurface { region: String, depth: FormattedNumber, place: String }
+    error T0617 NonzeroDepthOnSurface { region: String, depth: FormattedNumber, location: String }
         "depth on the surface that is not 0"
-        message "`depth` of {region} is {depth} at {place}, on the surface, where it must be 0"
+        message "`depth` of {region} is {depth} at {location}, on the surface, where it must be 0"
         help "correct the depth, or add the region that is missing beside this one"
         explain "A tool that just touches a part has depth 0 there. Where the tool ends at a larger depth, the force would jump.";
-    warning T0618 SteepDepth { region: String, place: String }
+    warning T0618 SteepDepth { region: String, location: String }
         "depth with an infinite slope"
-        message "`depth` of {region} has an infinite slope at {place}"
+        message "`depth` of {region} has an infinite slope at {location}"
         help "write a depth that grows in proportion to the distance to the surface; certified queries need it"
         explain "A depth such as the square root of the distance gets steeper toward the surface, so no multiple of the distance bounds it.";
-    warning T0619 GrowsUnbounded { quantity: &'static str, region: String, value: FormattedNumber, place: String }
+    warning T0619 UnboundedQuantity { quantity: &'static str, region: String, value: FormattedNumber, location: String }
         "quantity that grows without bound"
-        message "`{quantity}` of {region} grows without bound toward the surface: it is {value} near {place}"
+        message "`{quantity}` of {region} grows without bound toward the surface: it is {value} near {location}"
         help "add a length to the divisor"
         explain "Contact begins on the surface, where this quantity would be infinite.";
-    error T0620 DepthJumps { own: FormattedNumber, other: FormattedNumber, place: String, region: String, beside: String }
+    error T0620 DiscontinuousDepth { depth: FormattedNumber, other_depth: FormattedNumber, location: String, region: String, other_region: String }
         "discontinuous depth"
-        message "depth jumps from {own} to {other} at {place}, between {region} and {beside}"
+        message "depth jumps from {depth} to {other_depth} at {location}, between {region} and {other_region}"
         help "make the depths equal at the border; only a `magnitude:` may jump"
         explain "The depth must be a continuous function of the point. Bounds on the depth along motions rely on it.";
-    warning T0621 ObliqueDirection { region: String, degrees: FormattedNumber, inward: bool, derived: bool, place: String }
+    warning T0621 ObliqueDirection { region: String, degrees: FormattedNumber, inward: bool, derived: bool, location: String }
         "direction other than the steepest descent of the depth"
         message (inward) {
-            true => "the direction of {region} points straight inward at {place}",
-            false => "the direction of {region} is {degrees}° off the steepest descent of its depth at {place}",
+            true => "the direction of {region} points straight inward at {location}",
+            false => "the direction of {region} is {degrees}° off the steepest descent of its depth at {location}",
         }
         help (derived) {
             true => "report this with the file: the direction is derived from the depth, so the compiler has a bug",
             false => "write the direction of steepest descent, or `direction: … allow oblique;` if this is intended",
         }
         explain "A contact pushes along the direction. If it is not the steepest descent of the depth, closed motions gain or lose energy.";
-    warning T0622 NicenessRises { region: String, place: String, rate: FormattedNumber, unit: &'static str }
+    warning T0622 RisingNiceness { region: String, location: String, rate: FormattedNumber, unit: &'static str }
         "niceness that increases with depth"
-        message "`niceness` of {region} increases with depth at {place}, by {rate} per {unit}"
+        message "`niceness` of {region} increases with depth at {location}, by {rate} per {unit}"
         help "change the sign, or write `niceness: … allow rising;` if this is intended"
         explain "Niceness ranks contacts. A search for the nicest posture would move the tool into the part.";
-    warning T0623 NotShownExact
+    warning T0623 DepthNotProvedExact
         "depth of a profile not proved exact"
         message "the depth of this profile is not proved to be the distance to its surface"
         help "report this with the file: it is a bug in the compiler"
         explain "The depth of a profile is the distance to its surface by construction, which `touchoff check` proves once more."
         without "it is a bug in the compiler";
-    warning T0624 Undecided { statement: Statement, place: String, more: usize, exact: bool, bound: Option<FormattedNumber> }
+    warning T0624 Undecided { statement: Statement, location: String, more: usize, exact: bool, factor: Option<FormattedNumber> }
         "undecided proof"
         message (more) {
-            0 => "not decided: {statement} near {place}",
-            _ => "not decided: {statement} near {place}, and {more} similar cases",
+            0 => "not decided: {statement} near {location}",
+            _ => "not decided: {statement} near {location}, and {more} similar cases",
         }
-        help ((exact, bound)) {
+        help ((exact, factor)) {
             (true, _) => "no action needed: a profile's depth is exact by construction, although this proof is incomplete",
-            (false, Some(most)) => "the bound proved during compilation still holds: depth is at most {most} times the distance",
+            (false, Some(factor)) => "the bound proved during compilation still holds: depth is at most {factor} times the distance",
             (false, None) => "simplify the regions: without this proof, no multiple of the distance bounds the depth",
         }
         explain "The prover divides the tool into a limited number of boxes. It found nothing wrong in those that are left."

@@ -53,9 +53,9 @@ impl fmt::Display for Names {
 
 /// Definitions in a cycle, each with the one it needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Links(pub Vec<[String; 2]>);
+pub struct CycleLinks(pub Vec<[String; 2]>);
 
-impl fmt::Display for Links {
+impl fmt::Display for CycleLinks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, [name, needed]) in self.0.iter().enumerate() {
             let comma = if index == 0 { "" } else { ", " };
@@ -67,9 +67,9 @@ impl fmt::Display for Links {
 
 /// Files, each of which mounts the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chain(pub Vec<String>);
+pub struct MountChain(pub Vec<String>);
 
-impl fmt::Display for Chain {
+impl fmt::Display for MountChain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0.join(" mounts "))
     }
@@ -81,7 +81,7 @@ pub enum Expected {
     /// Any of these.
     OneOf(Vec<String>),
     /// A param and its value.
-    Setting,
+    Argument,
     /// Not known.
     Unknown,
 }
@@ -94,7 +94,7 @@ impl fmt::Display for Expected {
                 [one] => f.write_str(one),
                 [most @ .., last] => write!(f, "{} or {last}", most.join(", ")),
             },
-            Expected::Setting => f.write_str("`PARAM = VALUE`"),
+            Expected::Argument => f.write_str("`PARAM = VALUE`"),
             Expected::Unknown => Ok(()),
         }
     }
@@ -154,7 +154,7 @@ pub enum NameStart {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NameRemedy {
     /// A similar name exists.
-    Meant(String),
+    Similar(String),
     /// The name must be defined.
     Define,
     /// The name is in an argument from outside the file, where no names are defined.
@@ -167,7 +167,7 @@ pub enum NameRemedy {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamRemedy {
     /// A similar param exists.
-    Meant(String),
+    Similar(String),
     /// A `let` has the name.
     Let,
     /// The message lists the params.
@@ -178,11 +178,11 @@ pub enum ParamRemedy {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SurfaceRemedy {
     /// A similar surface exists.
-    Meant(String),
+    Similar(String),
     /// The surfaces of the tool.
     List(Names),
     /// The surfaces of the mounted tool with this name.
-    OfPart(Names),
+    OfMount(Names),
     /// A surface of the profile must be named.
     OfProfile,
 }
@@ -225,15 +225,15 @@ impl fmt::Display for Subject {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Statement {
     /// All points of the box belong to this owner.
-    Alone(Option<String>),
+    SingleOwner(Option<String>),
     /// The features that are nearest to its points belong to this owner.
-    Nearest(Option<String>),
+    NearestFeatures(Option<String>),
     /// Depth is continuous from one owner to another.
-    Continues(Option<String>, Option<String>),
+    ContinuousDepth(Option<String>, Option<String>),
     /// Depth is not negative in this owner.
-    NotNegative(Option<String>),
+    NonNegativeDepth(Option<String>),
     /// The regions that meet; this is their number.
-    Crowd(usize),
+    MeetingRegions(usize),
     /// The solid ends on its profile.
     EndsOnProfile,
 }
@@ -245,28 +245,30 @@ impl fmt::Display for Statement {
             None => "the outside".to_owned(),
         };
         match self {
-            Statement::Alone(owner) => write!(f, "whether all points belong to {}", shown(owner)),
-            Statement::Nearest(owner) => {
+            Statement::SingleOwner(owner) => {
+                write!(f, "whether all points belong to {}", shown(owner))
+            }
+            Statement::NearestFeatures(owner) => {
                 write!(f, "whether the nearest features belong to {}", shown(owner))
             }
-            Statement::Continues(from, to) => {
+            Statement::ContinuousDepth(from, to) => {
                 write!(f, "whether depth is continuous from {} to {}", shown(from), shown(to))
             }
-            Statement::NotNegative(owner) => {
+            Statement::NonNegativeDepth(owner) => {
                 write!(f, "whether depth is at least 0 in {}", shown(owner))
             }
-            Statement::Crowd(count) => write!(f, "which of {count} regions meet"),
+            Statement::MeetingRegions(count) => write!(f, "which of {count} regions meet"),
             Statement::EndsOnProfile => f.write_str("whether the solid ends on the profile"),
         }
     }
 }
 
 /// Returns the word of `known` that is nearest to `word`, if it is similar enough.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(edits, candidate)| *edits <= candidate.len().max(word.len()).div_ceil(3))
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+        .filter(|(edits, candidate)| *edits <= candidate.len().max(name.len()).div_ceil(3))
         .min()
         .map(|(_, candidate)| candidate)
 }

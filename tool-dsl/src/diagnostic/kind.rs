@@ -72,7 +72,7 @@ pub fn entry(code: &str) -> Option<&'static Entry> {
 
 /// Returns the rows whose codes are most similar to an unknown code: at most three, and none if no code is
 /// similar.
-pub fn near(code: &str) -> impl Iterator<Item = &'static Entry> {
+pub fn similar_entries(code: &str) -> impl Iterator<Item = &'static Entry> {
     let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
     let min_edits = entries().map(edits).min().filter(|edits| *edits <= MAX_EDITS);
     entries().filter(move |entry| Some(edits(entry)) == min_edits).take(3)

@@ -19,12 +19,12 @@ mod values;
 
 pub use checks::CheckKind;
 pub use data::{
-    Chain, Expected, FormattedNumber, Links, NameRemedy, NameStart, Names, Operation, ParamRemedy,
-    Role, Statement, Subject, SurfaceRemedy, format_number, nearest,
+    CycleLinks, Expected, FormattedNumber, MountChain, NameRemedy, NameStart, Names, Operation,
+    ParamRemedy, Role, Statement, Subject, SurfaceRemedy, format_number, nearest,
 };
 pub use escape::escaped;
 pub(crate) use escape::is_hidden;
-pub use kind::{FAMILIES, Family, Kind, entries, entry, near};
+pub use kind::{FAMILIES, Family, Kind, entries, entry, similar_entries};
 pub use mounts::MountKind;
 pub use profile::ProfileKind;
 pub use refusal::{MAX_DIAGNOSTICS, Refusal, Reported, any_error};
@@ -62,11 +62,11 @@ pub struct Diagnostic {
     /// The location.
     pub span: Span,
     /// A second location with a label of its own.
-    pub second: Option<(Span, String)>,
+    pub secondary: Option<(Span, String)>,
     /// Evidence of the error that this one follows from. Such a diagnostic is not shown.
     pub(crate) caused_by: Option<Reported>,
     /// The arguments of params that may have caused it, as they were written.
-    pub(crate) given: Box<[String]>,
+    pub(crate) arguments: Box<[String]>,
 }
 
 impl Diagnostic {
@@ -74,7 +74,14 @@ impl Diagnostic {
     pub fn new(span: Span, kind: impl Into<Kind>) -> Diagnostic {
         let kind = kind.into();
         let severity = kind.severity();
-        Diagnostic { severity, kind, span, second: None, caused_by: None, given: Box::default() }
+        Diagnostic {
+            severity,
+            kind,
+            span,
+            secondary: None,
+            caused_by: None,
+            arguments: Box::default(),
+        }
     }
 
     /// Returns the code of its kind.
@@ -90,10 +97,10 @@ impl Diagnostic {
     /// Returns the remedy, and the arguments of params that may be the cause.
     pub fn help(&self) -> String {
         let help = self.kind.help();
-        if self.given.is_empty() {
+        if self.arguments.is_empty() {
             return help;
         }
-        format!("{help}; given: {}", Names(self.given.to_vec()))
+        format!("{help}; given: {}", Names(self.arguments.to_vec()))
     }
 
     /// Marks the diagnostic as a consequence of another error in the list. It is then not shown.
@@ -104,15 +111,15 @@ impl Diagnostic {
 
     /// Adds a second location.
     #[must_use]
-    pub fn and(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
-        self.second = Some((span, label.into()));
+    pub fn with_label(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
+        self.secondary = Some((span, label.into()));
         self
     }
 
     /// Moves the locations to a text that begins at `base`.
     pub(crate) fn offset_by(mut self, base: usize) -> Diagnostic {
         self.span = self.span.offset_by(base);
-        self.second = self.second.map(|(span, label)| (span.offset_by(base), label));
+        self.secondary = self.secondary.map(|(span, label)| (span.offset_by(base), label));
         self
     }
 
@@ -129,7 +136,7 @@ impl Diagnostic {
         let primary = AnnotationKind::Primary.span(visible(source, span));
         let mut snippet = excerpt(source).annotation(primary);
         let mut elsewhere = None;
-        if let Some((span, label)) = &self.second {
+        if let Some((span, label)) = &self.secondary {
             let (other, span) = sources.locate(*span);
             let second =
                 AnnotationKind::Context.span(visible(other, span)).label(escaped_lines(label));

@@ -7,30 +7,30 @@ kinds! {
     /// Profiles: segments, arcs, sense.
     ProfileKind "T03" "Profiles"
 
-    error T0301 TooManySegments { most: usize }
+    error T0301 TooManySegments { limit: usize }
         "too many segments"
-        message "the profile has more than {most} segments"
+        message "the profile has more than {limit} segments"
         help "replace runs of short lines by arcs"
         explain "The compiler divides the section into regions by nearest segment. More segments would take minutes."
         without "an example would have hundreds of segments";
-    error T0302 BeginsOffAxis { begin: String, axis: String }
+    error T0302 StartsOffAxis { start: String, axis_point: String }
         "profile that starts off the axis"
-        message "the profile starts at {begin}, not on the axis"
-        help "write `start {axis};`, then `line to {begin}`"
+        message "the profile starts at {start}, not on the axis"
+        help "write `start {axis_point};`, then `line to {start}`"
         explain "A profile is rotated about the axis. It starts and ends on the axis, which closes it.";
-    error T0303 EndsOffAxis { end: String, axis: String }
+    error T0303 EndsOffAxis { end: String, axis_point: String }
         "profile that ends off the axis"
         message "the profile ends at {end}, not on the axis"
-        help "add `line to {axis}` at the end"
+        help "add `line to {axis_point}` at the end"
         explain "A profile is rotated about the axis. It starts and ends on the axis, which closes it.";
-    error T0304 SegmentWithoutLength
+    error T0304 ZeroLengthSegment
         "segment of zero length"
         message "this segment has zero length"
         help "remove it, or correct its end point"
         explain "Its start and end points are equal, so it has no direction and no normal.";
-    error T0305 OffCircle { near: String, far: String }
+    error T0305 UnequalArcRadii { start_radius: String, end_radius: String }
         "arc ends at unequal distances from the centre"
-        message "the arc starts {near} from its centre but ends {far} from it"
+        message "the arc starts {start_radius} from its centre but ends {end_radius} from it"
         help "correct the centre, or write `radius R` and the compiler finds it"
         explain "The start and the end of an arc are equally far from its centre.";
     error T0306 RadiusNotPositive
@@ -48,15 +48,15 @@ kinds! {
         message "this arc is marked `concave`, but its centre lies in the material"
         help "remove `concave`, or move the centre to the other side"
         explain "`concave` marks arcs whose centre lies outside the material. The check finds centres on the wrong side.";
-    error T0309 Concave { centre: String }
+    error T0309 UnmarkedConcave { centre: String }
         "concave arc not marked"
         message "this arc is not marked `concave`, but its centre {centre} lies outside the material"
         help "add `concave`, or move the centre to the other side"
         explain "`concave` marks arcs whose centre lies outside the material. The check finds centres on the wrong side.";
-    error T0310 RadiusTooSmall { radius: FormattedNumber, chord: FormattedNumber, least: FormattedNumber }
+    error T0310 RadiusTooSmall { radius: FormattedNumber, chord: FormattedNumber, min_radius: FormattedNumber }
         "radius too small for its chord"
         message "a radius of {radius} is too small: the end points are {chord} apart"
-        help "write a radius of {least} or more, or move the end points closer together"
+        help "write a radius of {min_radius} or more, or move the end points closer together"
         explain "The end points of an arc are at most two radii apart.";
     error T0311 OnAxis
         "segment on the axis"
@@ -78,36 +78,36 @@ kinds! {
         message "the profile runs clockwise"
         help "reverse the order of the points: start at the low end, with the material on the left"
         explain "The material lies to the left of a profile, seen with `d` to the right and `z` up.";
-    error T0315 AlongAxis { place: String }
+    error T0315 TangentToAxis { location: String }
         "profile tangent to the axis"
-        message "this segment is tangent to the axis at {place}"
+        message "this segment is tangent to the axis at {location}"
         help "make the segment meet the axis at an angle"
         explain "The tip there has an angle of 0, so no direction leads out of the material.";
-    error T0316 TurnsBack { place: String }
+    error T0316 TurnsBack { location: String }
         "segment that turns straight back"
-        message "this segment turns straight back at {place}"
+        message "this segment turns straight back at {location}"
         help "move a point so that the segments enclose an angle"
         explain "The corner has an angle of 0, so no direction leads out of the material.";
-    error T0317 HardlyTurns { least: f64, place: String }
+    error T0317 CornerTooFlat { min_angle: f64, location: String }
         "corner too flat"
-        message "this segment turns by less than {least:e} rad at {place}"
+        message "this segment turns by less than {min_angle:e} rad at {location}"
         help "replace the two segments by one, or make the corner sharper"
         explain "Double precision cannot distinguish such a corner from a smooth transition.";
-    error T0318 MeetsItself { touches: bool, place: String }
+    error T0318 SelfIntersection { touches: bool, location: String }
         "profile that touches or crosses itself"
         message (touches) {
-            true => "this segment touches another one at {place}",
-            false => "this segment crosses another one at {place}",
+            true => "this segment touches another one at {location}",
+            false => "this segment crosses another one at {location}",
         }
         help "move a point so that the segments stay apart"
         explain "A profile bounds one solid. Where it meets itself, inside and outside are ambiguous.";
-    error T0319 Undivided { d: f64, z: f64 }
+    error T0319 DivisionFailed { d: f64, z: f64 }
         "section that cannot be divided into regions"
         message "the section cannot be divided into regions near ({d:.4}, {z:.4})"
         help "change the profile there, or write its regions by hand (docs/language.md)"
         explain "A region holds the points nearest to one segment or corner. Rounding can hide the point where three regions meet."
         without "no outline is known for which the division fails";
-    note T0320 LeftOut { surface: String }
+    note T0320 SegmentLeftOut { surface: String }
         "segment left out"
         message "this segment of `{surface}` has zero length with these params and is left out"
         help "change a param if the segment should be there"

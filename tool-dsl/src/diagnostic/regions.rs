@@ -13,13 +13,13 @@ kinds! {
         message "`{tool}` has no region"
         help "write `profile {{ … }}`, or `region NAME where … {{ depth: …; }}`"
         explain "A tool is a profile from which regions are derived, an assembly of mounted files, or a set of regions written by hand.";
-    error T0402 TooManyRegions { most: usize }
+    error T0402 TooManyRegions { limit: usize }
         "too many regions"
-        message "more than {most} regions"
+        message "more than {limit} regions"
         help "write a `profile` instead: its regions are derived"
         explain "The planner would need minutes to separate more regions."
         without "an example would have hundreds of regions";
-    error T0403 RegionsAlike { name: String }
+    error T0403 DuplicateRegion { name: String }
         "two regions with the same name"
         message "two regions are called `{name}`"
         help "rename one of them"
@@ -29,9 +29,9 @@ kinds! {
         message "a surface cannot be called `cutting`"
         help "write `as NAME cutting`"
         explain "`cutting` after a surface's name marks that surface as cutting. In laws it stands for all cutting surfaces.";
-    error T0405 CuttingDisagrees { name: String, here: bool }
+    error T0405 InconsistentCutting { name: String, marked_here: bool }
         "surface that is both cutting and non-cutting"
-        message (here) {
+        message (marked_here) {
             true => "surface `{name}` is marked `cutting` here but not elsewhere",
             false => "surface `{name}` is marked `cutting` elsewhere but not here",
         }
@@ -42,17 +42,17 @@ kinds! {
         message "this is an angle, not a number or a power of length"
         help "write a number or a power of length"
         explain "Magnitude and niceness are numbers or powers of length.";
-    error T0407 DirectionIsZero { region: String }
+    error T0407 ZeroDirection { region: String }
         "direction of length 0"
         message "the direction of {region} is the zero vector"
         help "write a vector that is not zero, or `toward` a point"
         explain "The direction is normalized to a unit vector, which is impossible for the zero vector.";
-    error T0408 SaidTwice { word: String }
+    error T0408 DuplicateStatement { keyword: String }
         "duplicate statement"
-        message "`{word}` is given twice"
+        message "`{keyword}` is given twice"
         help "remove one of them"
         explain "A tool has one `tip`, one `spindle` and one `regions` item; a region has one value of each quantity.";
-    error T0409 DirectionTwice
+    error T0409 DuplicateDirection
         "duplicate direction"
         message "`direction` is given twice"
         help "remove one of them"
@@ -62,7 +62,7 @@ kinds! {
         message "region {region} has neither `depth` nor `magnitude`, and there is no profile"
         help "write `depth: …;` in it: 0 on the surface, positive inside"
         explain "The depth tells how far a point is inside the tool. Only beside a profile is it derived, as the distance to the surface.";
-    error T0411 DepthOfItself { region: String }
+    error T0411 UndefinedDepth { region: String }
         "magnitude that uses an undefined depth"
         message "`magnitude` of {region} uses `depth`, which is not defined"
         help "write `depth: …;` in the region"
@@ -85,23 +85,23 @@ kinds! {
         message "this depth is constant"
         help "write a depth that is 0 on the surface and increases inward"
         explain "A contact pushes in the direction in which the depth decreases fastest. A constant depth has no such direction.";
-    error T0415 TooManyConditions { most: usize }
+    error T0415 TooManyConditions { limit: usize }
         "too many conditions"
-        message "this region has more than {most} conditions"
+        message "this region has more than {limit} conditions"
         help "combine several of them with `min` or `max`"
         explain "Conditions are the comparisons after `where`."
         without "an example would have hundreds of conditions";
-    error T0416 UnlikeSides { left: Dimension, right: Dimension }
+    error T0416 MixedComparison { left: Dimension, right: Dimension }
         "comparison of different dimensions"
         message "this compares {left} with {right}"
         help "give both sides the same power of length; a number without a unit fits any"
         explain "A comparison of different dimensions would depend on the unit.";
-    error T0417 NicenessOfAll
+    error T0417 NicenessWithoutSurface
         "niceness without a surface"
         message "this `niceness` law does not say for which surfaces"
         help "write `niceness cutting: …;`, or name the surfaces"
         explain "Niceness ranks contacts of cutting surfaces. On all others it is 0, so a law for all surfaces would not hold.";
-    error T0418 TwoLaws { quantity: &'static str, surface: Option<String> }
+    error T0418 DuplicateLaw { quantity: &'static str, surface: Option<String> }
         "two laws for one surface"
         message (surface) {
             Some(surface) => "two laws give the {quantity} of `{surface}`",
@@ -109,24 +109,24 @@ kinds! {
         }
         help "remove one of them"
         explain "For each quantity there is at most one law per surface, one for `cutting`, and one for all surfaces.";
-    error T0419 UnknownSurface { word: String, remedy: SurfaceRemedy }
+    error T0419 UnknownSurface { name: String, remedy: SurfaceRemedy }
         "unknown surface"
-        message "unknown surface `{word}`"
+        message "unknown surface `{name}`"
         help (remedy) {
-            SurfaceRemedy::Meant(meant) => "did you mean `{meant}`?",
+            SurfaceRemedy::Similar(suggestion) => "did you mean `{suggestion}`?",
             SurfaceRemedy::List(surfaces) => "write one of the surfaces {surfaces}",
-            SurfaceRemedy::OfPart(surfaces) => "write a surface of the mounted tool: {surfaces}",
+            SurfaceRemedy::OfMount(surfaces) => "write a surface of the mounted tool: {surfaces}",
             SurfaceRemedy::OfProfile => "write a surface of the profile",
         }
         explain "Surfaces are named by `as` in a profile or a region. Those of a mounted tool begin with the mount's name: `cutter.flute`.";
-    error T0420 IdleNiceness { surface: String }
+    error T0420 NicenessOfNonCutting { surface: String }
         "niceness of a non-cutting surface"
         message "`{surface}` is not marked `cutting`, so its niceness is 0"
         help "mark the surface `cutting`, or remove this niceness"
         explain "Niceness ranks contacts of cutting surfaces. On all others it is 0.";
-    error T0421 SmoothTooLarge { most: usize }
+    error T0421 TooManySmoothSegments { limit: usize }
         "too many segments for `regions smooth`"
-        message "`regions smooth` with more than {most} segments"
+        message "`regions smooth` with more than {limit} segments"
         help "write `regions nearest;`, or replace many short lines by arcs"
         explain "The compiler intersects the cells of each corner with those of each segment, which would take minutes."
         without "an example would have hundreds of segments";
@@ -145,69 +145,69 @@ kinds! {
         message "the tangent length must be more than 0"
         help "write the length before and after each corner over which the direction turns"
         explain "`regions smooth` turns the direction gradually over this length on both sides of each corner.";
-    error T0425 NoTouchingArc { place: String, most: Option<String> }
+    error T0425 NoTangentArc { location: String, max_length: Option<String> }
         "corner that cannot be smoothed"
-        message "no arc touches both segments this close to the corner at {place}"
-        help (most) {
-            Some(most) => "write a tangent length of at most {most}",
+        message "no arc touches both segments this close to the corner at {location}"
+        help (max_length) {
+            Some(max_length) => "write a tangent length of at most {max_length}",
             None => "write the regions by hand",
         }
         explain "A corner is smoothed by an arc that is tangent to both segments, at most the tangent length from the corner.";
-    error T0426 FansTooWide { corners: Option<[String; 2]>, edge: FormattedNumber, most: Option<String> }
+    error T0426 FansTooWide { corners: Option<[String; 2]>, segment_length: FormattedNumber, max_length: Option<String> }
         "tangent length too large"
         message (corners) {
-            Some([first, second]) => "the fans of {first} and {second} do not fit on the segment of length {edge}",
-            None => "the corner's fan does not fit on the segment of length {edge}",
+            Some([first, second]) => "the fans of {first} and {second} do not fit on the segment of length {segment_length}",
+            None => "the corner's fan does not fit on the segment of length {segment_length}",
         }
-        help (most) {
-            Some(most) => "write a tangent length of at most {most}",
+        help (max_length) {
+            Some(max_length) => "write a tangent length of at most {max_length}",
             None => "write the regions by hand",
         }
         explain "At each corner the direction turns in a fan of the tangent length on both sides. The fans at both ends of a segment must fit on it.";
-    error T0427 SmoothUndivided { place: String }
+    error T0427 SmoothDivisionFailed { location: String }
         "smoothed profile that cannot be divided"
-        message "the smoothed profile cannot be divided into regions near {place}"
+        message "the smoothed profile cannot be divided into regions near {location}"
         help "write another tangent length"
         explain "`regions smooth` takes its directions from the profile with rounded corners. Rounding the corners can hide a point where three of its regions meet."
         without "no profile is known for which the division fails";
-    error T0428 NotCovered { place: String }
+    error T0428 UncoveredPoint { location: String }
         "point of a profile without a region"
-        message "no region covers the point {place} inside the profile"
+        message "no region covers the point {location} inside the profile"
         help "widen a region or add one: together they must cover the inside of the profile"
         explain "A contact at a point without a region would have no force.";
-    error T0429 NoPointOfProfile { region: String }
+    error T0429 RegionOutsideProfile { region: String }
         "region outside the profile"
         message "region {region} contains no point inside the profile"
         help "check whether its conditions contradict each other or an earlier region covers it"
         explain "A region beside a profile contains the points inside the profile at which its conditions hold.";
-    error T0430 UnlikeParts { first: Dimension, other: Dimension }
+    error T0430 MixedDirection { first: Dimension, second: Dimension }
         "direction of mixed dimensions"
-        message "this direction mixes {first} and {other}"
+        message "this direction mixes {first} and {second}"
         help "give all components the same dimension"
         explain "The components of a direction are all numbers, or all the same power of length.";
-    error T0431 WrongParts { role: Role, file: &'static str, wanted: usize, count: usize, tuple: String }
+    error T0431 WrongComponentCount { role: Role, domain: &'static str, expected: usize, count: usize, coordinates: String }
         "point or direction with the wrong number of components"
-        message (wanted) {
-            2 => "{role} in a {file} has two numbers, this has {count}",
-            _ => "{role} in a {file} has three numbers, this has {count}",
+        message (expected) {
+            2 => "{role} in a {domain} has two numbers, this has {count}",
+            _ => "{role} in a {domain} has three numbers, this has {count}",
         }
-        help ((role, wanted)) {
+        help ((role, expected)) {
             (Role::Direction, 2) => "write `(radial, axial)`: the components across the axis and along the file's z",
-            (Role::Direction, _) => "write `{tuple}`",
-            _ if count > wanted => "write `{tuple}`; a decimal comma? write `0.5`",
-            _ => "write `{tuple}`",
+            (Role::Direction, _) => "write `{coordinates}`",
+            _ if count > expected => "write `{coordinates}`; a decimal comma? write `0.5`",
+            _ => "write `{coordinates}`",
         }
         explain "Points and directions of a `tool` lie in its half plane and have two components. Those of a `solid` have three.";
-    error T0432 NotInSolid { word: &'static str }
+    error T0432 NotInSolid { keyword: &'static str }
         "item of a tool in a solid"
-        message "`{word}` exists in a `tool` only"
-        help (*word) {
+        message "`{keyword}` exists in a `tool` only"
+        help (*keyword) {
             "tip" => "a `solid` has no axis: remove `tip`, since a pose places the file's origin",
             "spindle" => "a `solid` has no axis: remove `spindle`, since a pose places the file's frame",
             _ => "a `solid` has no axis: write its regions by hand",
         }
         explain "Tip, spindle, profile, mounts and `regions` need the axis of a solid of revolution.";
-    error T0433 DerivedAndWritten
+    error T0433 DerivedAndWrittenRegions
         "`regions` beside regions written by hand"
         message "`regions` cannot be combined with regions written by hand"
         help "remove `regions`, or the regions written by hand"
@@ -222,22 +222,22 @@ kinds! {
         message "`regions` needs a profile from which to derive regions"
         help "write `profile {{ … }}`, or remove `regions`"
         explain "`regions` tells how regions are derived from a profile.";
-    warning T0436 ListedTwice { word: String }
+    warning T0436 DuplicateCurve { name: String }
         "curve listed twice"
-        message "`{word}` is listed twice"
+        message "`{name}` is listed twice"
         help "remove one of them"
         explain "`bsp` lists the curves that are tested first, in this order.";
-    warning T0437 IdleCurve { word: String }
+    warning T0437 UnusedCurve { name: String }
         "curve that no region depends on"
-        message "no region depends on `{word}`"
+        message "no region depends on `{name}`"
         help "remove it from `bsp`"
         explain "`bsp` lists the curves that are tested first. A curve that separates no regions is never tested.";
-    error T0438 UnknownCurve { word: String, meant: Option<String> }
+    error T0438 UnknownCurve { name: String, suggestion: Option<String> }
         "unknown curve"
-        message "unknown curve `{word}`"
-        help (meant) {
-            Some(meant) => "did you mean `{meant}`?",
-            None => "define it above: `curve {word} = …;`",
+        message "unknown curve `{name}`"
+        help (suggestion) {
+            Some(suggestion) => "did you mean `{suggestion}`?",
+            None => "define it above: `curve {name} = …;`",
         }
         explain "`bsp` lists curves by their names.";
 }

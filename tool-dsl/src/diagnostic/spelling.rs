@@ -57,7 +57,7 @@ kinds! {
         message "a number cannot contain `_`"
         help "write the digits without separators, as in `1000`"
         explain "Digits of a number cannot be grouped.";
-    error T0140 NameBegin { start: NameStart }
+    error T0140 InvalidNameStart { start: NameStart }
         "name that does not begin with a letter"
         message "a name must begin with a letter"
         help (start) {
@@ -66,10 +66,10 @@ kinds! {
             NameStart::Digit => "begin the name with a letter",
         }
         explain "Names are ASCII letters, digits and `_`, and begin with a letter.";
-    error T0141 Lookalike { written: char, meant: &'static str }
+    error T0141 Lookalike { written: char, suggestion: &'static str }
         "typographic character"
         message "`{written}` is not part of the language"
-        help "write `{meant}`"
+        help "write `{suggestion}`"
         explain "Operators are ASCII characters. Text copied from a document often has typographic ones instead.";
     error T0142 ByteOrderMark
         "byte order mark"
@@ -91,7 +91,7 @@ kinds! {
         message "there is a space between the number and its unit `{written}`"
         help "write `{number}{unit}`"
         explain "A unit follows its number without a space.";
-    error T0146 JoinedByWord
+    error T0146 LogicalOperator
         "conditions joined by `and` or `or`"
         message "conditions are separated by commas"
         help "for \"and\" write `a <= b, c <= d`; for \"or\" write `min(a, b) <= 0`"
@@ -106,20 +106,20 @@ kinds! {
         message "unnecessary `;`"
         help "remove it: a region ends with `}}`"
         explain "Items that end with `}` have no `;` after it.";
-    error T0149 SecondFile { word: String }
+    error T0149 SecondTool { keyword: String }
         "second tool in a file"
-        message "this is a second {word} in one file"
+        message "this is a second {keyword} in one file"
         help "move it to a file of its own"
         explain "A file holds exactly one `tool` or `solid`. To join several tools, use `mount`.";
-    error T0150 TextNotClosed
+    error T0150 UnclosedText
         "text without a closing quotation mark"
         message "this text has no closing quotation mark"
         help "close it with `\"` on the same line"
         explain "Text between quotation marks cannot continue on the next line.";
-    error T0151 DashInName { written: String, meant: String }
+    error T0151 DashInName { written: String, suggestion: String }
         "dash in a name"
         message "`{written}` is not a name: names cannot contain `-`"
-        help "write `{meant}`"
+        help "write `{suggestion}`"
         explain "Between names `-` is a minus sign. The words of a name are separated by `_`.";
     error T0152 DoubleStar
         "power written `**`"
@@ -131,7 +131,7 @@ kinds! {
         message "`={sign}` is not a comparison"
         help "write `{sign}=`"
         explain "Comparisons are `<=` and `>=`.";
-    error T0154 LongChain
+    error T0154 TooManyComparisons
         "too many comparisons in one condition"
         message "this condition has more than two comparisons"
         help "write further comparisons as conditions of their own: `a <= b <= c, c <= d`"

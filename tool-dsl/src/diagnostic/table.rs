@@ -35,7 +35,7 @@ impl Entry {
     }
 }
 
-/// Writes the placeholders of a template in capitals: `write {meant}` as `write MEANT`.
+/// Writes the placeholders of a template in capitals: `write {limit}` as `write LIMIT`.
 fn capitals(template: &str) -> String {
     let mut shown = String::new();
     let mut rest = template;
@@ -61,7 +61,7 @@ fn capitals(template: &str) -> String {
 /// error T0201 UnknownName { word: String, remedy: NameRemedy }
 ///     "unknown name"
 ///     message "unknown name `{word}`"
-///     help (remedy) { NameRemedy::Meant(meant) => "did you mean `{meant}`?", … }
+///     help (remedy) { NameRemedy::Similar(suggestion) => "did you mean `{suggestion}`?", … }
 ///     explain "…";
 /// ```
 ///
@@ -74,11 +74,11 @@ macro_rules! kinds {
         $(
             $severity:ident $code:ident $name:ident $({ $($field:ident: $type:ty),* $(,)? })?
                 $title:literal
-                message $($message:literal)? $(($said:expr) {
+                message $($message:literal)? $(($message_data:expr) {
                     $($case:pat $(if $guard:expr)? => $template:literal),* $(,)?
                 })?
-                help $($help:literal)? $(($asked:expr) {
-                    $($way:pat $(if $condition:expr)? => $remedy:literal),* $(,)?
+                help $($help:literal)? $(($help_data:expr) {
+                    $($help_case:pat $(if $condition:expr)? => $remedy:literal),* $(,)?
                 })?
                 explain $explanation:literal
                 $(without $reason:literal)?
@@ -126,7 +126,7 @@ macro_rules! kinds {
                 match self {
                     $(Self::$name $({ $($field),* })? => {
                         $(format!($message))?
-                        $(match $said { $($case $(if $guard)? => format!($template)),* })?
+                        $(match $message_data { $($case $(if $guard)? => format!($template)),* })?
                     })*
                 }
             }
@@ -136,7 +136,7 @@ macro_rules! kinds {
                 match self {
                     $(Self::$name $({ $($field),* })? => {
                         $(format!($help))?
-                        $(match $asked { $($way $(if $condition)? => format!($remedy)),* })?
+                        $(match $help_data { $($help_case $(if $condition)? => format!($remedy)),* })?
                     })*
                 }
             }

@@ -1,6 +1,6 @@
 //! Names, units, dimensions, values.
 
-use super::data::{FormattedNumber, Links, NameRemedy, Names, Operation, ParamRemedy, Role};
+use super::data::{CycleLinks, FormattedNumber, NameRemedy, Names, Operation, ParamRemedy, Role};
 use super::table::kinds;
 use crate::dimension::Dimension;
 
@@ -8,72 +8,72 @@ kinds! {
     /// Names, units, dimensions and values.
     ValueKind "T02" "Names, units, dimensions, values"
 
-    error T0201 UnknownName { word: String, remedy: NameRemedy }
+    error T0201 UnknownName { name: String, remedy: NameRemedy }
         "unknown name"
-        message "unknown name `{word}`"
+        message "unknown name `{name}`"
         help (remedy) {
-            NameRemedy::Meant(meant) => "did you mean `{meant}`?",
-            NameRemedy::Define => "define it above, as in `let {word} = 3;`",
+            NameRemedy::Similar(suggestion) => "did you mean `{suggestion}`?",
+            NameRemedy::Define => "define it above, as in `let {name} = 3;`",
             NameRemedy::Constant => "use constants only: numbers with or without a unit, and `pi`",
             NameRemedy::Dash => "in a name write `_` instead of `-`; for a difference put spaces around `-`",
         }
         explain "A name must be a coordinate, `pi`, or defined above by `let`, `param` or `curve`.";
-    error T0202 NameWithoutValue { word: String }
+    error T0202 NameWithoutValue { name: String }
         "name without a value"
-        message "`{word}` has no value, because its definition has an error"
+        message "`{name}` has no value, because its definition has an error"
         help "correct its definition"
         explain "This follows from another error, which is shown instead."
         without "only the error that it follows from is shown";
-    error T0203 UsedAbove { word: String }
+    error T0203 UsedBeforeDefinition { name: String }
         "name used above its definition"
-        message "`{word}` is used above its definition"
+        message "`{name}` is used above its definition"
         help "move the definition above this use"
         explain "A file is read from top to bottom, so a name has a value only below its definition.";
-    error T0204 DefinedTwice { word: String }
+    error T0204 DuplicateDefinition { name: String }
         "name defined twice"
-        message "`{word}` is defined twice"
+        message "`{name}` is defined twice"
         help "remove one definition, or rename it"
         explain "A name has one meaning per file. `let`, `param` and `curve` share one set of names.";
-    error T0205 ReservedName { word: String, meaning: Option<&'static str> }
+    error T0205 ReservedName { name: String, meaning: Option<&'static str> }
         "reserved name"
         message (meaning) {
-            Some(meaning) => "`{word}` is {meaning} and cannot be redefined",
-            None => "`{word}` is a reserved name and cannot be redefined",
+            Some(meaning) => "`{name}` is {meaning} and cannot be redefined",
+            None => "`{name}` is a reserved name and cannot be redefined",
         }
-        help ((word.as_str(), meaning)) {
+        help ((name.as_str(), meaning)) {
             ("d", Some(_)) => "choose another name, such as `D` for a diameter",
             _ => "choose another name",
         }
         explain "Coordinates, functions, `pi` and `depth` have the same meaning in every file.";
-    error T0206 DefinedByItself { word: String, links: Links, more: usize }
+    error T0206 CircularDefinition { name: String, links: CycleLinks, more: usize }
         "circular definition"
         message ((links.0.is_empty(), more)) {
-            (true, _) => "`{word}` is defined in terms of itself",
-            (false, 0) => "`{word}` is defined in terms of itself: {links}",
-            (false, more) => "`{word}` is defined in terms of itself: {links}, and {more} more links lead back to `{word}`",
+            (true, _) => "`{name}` is defined in terms of itself",
+            (false, 0) => "`{name}` is defined in terms of itself: {links}",
+            (false, more) => "`{name}` is defined in terms of itself: {links}, and {more} more links lead back to `{name}`",
         }
         help (links.0.is_empty()) {
-            true => "write a value that does not use `{word}`",
+            true => "write a value that does not use `{name}`",
             false => "give one of these names a value that does not use the others",
         }
         explain "A definition may use only names that are defined above it. It cannot use its own name, directly or through other names.";
-    warning T0207 UnusedName { word: String }
+    warning T0207 UnusedName { name: String }
         "unused name"
-        message "`{word}` is never used"
+        message "`{name}` is never used"
         help "remove it, or correct the name where it should be used"
         explain "A definition that nothing uses changes nothing. Often the name is misspelt where it should be used.";
-    error T0208 OtherCoordinate { word: String, other: &'static str }
+    error T0208 CoordinateOfOtherDomain { name: String, domain: &'static str }
         "coordinate of the other kind of file"
-        message "`{word}` is a coordinate of a `{other}` only"
-        help (*other) {
+        message "`{name}` is a coordinate of a `{domain}` only"
+        help (*domain) {
             "solid" => "in a `tool` use `d`, the distance from the axis, and `z`",
             _ => "in a `solid` use `hypot(x, y)`",
         }
         explain "A `tool` is a solid of revolution, written in `d` and `z`. A `solid` is written in `x`, `y` and `z`.";
-    error T0209 NotConstant { word: Option<String>, role: Role }
+    error T0209 NotConstant { name: Option<String>, role: Role }
         "value that is not constant"
-        message (word) {
-            Some(word) => "`{word}` varies from point to point, but {role} must be constant",
+        message (name) {
+            Some(name) => "`{name}` varies from point to point, but {role} must be constant",
             None => "this varies from point to point, but {role} must be constant",
         }
         help (role) {
@@ -81,48 +81,48 @@ kinds! {
             _ => "use a number, a `let` or a `param`",
         }
         explain "Points, radii, exponents, `let` and `param` are computed once, when the tool is compiled. A function of the coordinates is a `curve`.";
-    error T0210 DepthUnknown
+    error T0210 DepthNotAvailable
         "`depth` where it is not available"
         message "`depth` is not available here"
         help "use `depth` in `magnitude` and `niceness` only"
         explain "The depth of a point depends on its region. Curves and conditions are evaluated first, to find that region.";
-    error T0211 UnknownFunction { word: String, meant: Option<&'static str>, known: &'static [&'static str] }
+    error T0211 UnknownFunction { name: String, suggestion: Option<&'static str>, known: &'static [&'static str] }
         "unknown function"
-        message "unknown function `{word}`"
-        help ((meant, known.join(", "))) {
-            (Some(meant), _) => "did you mean `{meant}`?",
+        message "unknown function `{name}`"
+        help ((suggestion, known.join(", "))) {
+            (Some(suggestion), _) => "did you mean `{suggestion}`?",
             (None, known) => "use one of {known}",
         }
         explain "The compiler has bounds and derivatives for these functions only. Write others in terms of them.";
-    error T0212 WrongArguments { word: String, several: bool, count: usize }
+    error T0212 WrongArgumentCount { function: String, variadic: bool, count: usize }
         "wrong number of arguments"
-        message (several) {
-            true => "`{word}` takes two or more arguments, this has {count}",
-            false => "`{word}` takes one argument, this has {count}",
+        message (variadic) {
+            true => "`{function}` takes two or more arguments, this has {count}",
+            false => "`{function}` takes one argument, this has {count}",
         }
-        help (several) {
-            true => "write `{word}(a, b)`",
-            false => "write `{word}(a)`",
+        help (variadic) {
+            true => "write `{function}(a, b)`",
+            false => "write `{function}(a)`",
         }
         explain "`min`, `max` and `hypot` take two or more arguments, all other functions take one.";
-    error T0213 UnknownUnit { word: String, meant: Option<&'static str>, known: Names }
+    error T0213 UnknownUnit { unit: String, suggestion: Option<&'static str>, known: Names }
         "unknown unit of a number"
-        message "unknown unit `{word}`"
-        help ((word.as_str(), meant)) {
+        message "unknown unit `{unit}`"
+        help ((unit.as_str(), suggestion)) {
             ("in" | "inches" | "zoll", _) => "write `inch`, as in `0.25inch`",
-            (_, Some(meant)) => "did you mean `{meant}`?",
+            (_, Some(suggestion)) => "did you mean `{suggestion}`?",
             _ => "use one of {known}",
         }
         explain "A unit follows its number without a space. A length without a unit is in the unit of its file.";
-    error T0214 UnknownFileUnit { word: String, meant: Option<&'static str> }
+    error T0214 UnknownFileUnit { unit: String, suggestion: Option<&'static str> }
         "unknown unit of a file"
-        message "unknown unit `{word}`"
-        help (meant) {
-            Some(meant) => "write `units {meant};`",
+        message "unknown unit `{unit}`"
+        help (suggestion) {
+            Some(suggestion) => "write `units {suggestion};`",
             None => "use `mm`, `inch` or `m`",
         }
         explain "`units`, the first item of a file, gives the unit of its lengths.";
-    error T0215 NoUnit
+    error T0215 MissingUnit
         "missing unit of length"
         message "the unit of length is missing"
         help "write `units mm;`, `units inch;` or `units m;` as the first item"
@@ -132,14 +132,14 @@ kinds! {
         message "`units` is not the first item"
         help "move `units` above all other items"
         explain "The unit applies to every length in the file, so it comes before all of them.";
-    error T0217 UnitTwice
+    error T0217 DuplicateUnit
         "unit given twice"
         message "the unit is given twice"
         help "remove one; to use another unit for one number, write it there, as in `0.25inch`"
         explain "A file has one unit for all numbers that are written without one.";
-    error T0218 GluedName { number: f64, word: String, factor: String, diameter: bool }
+    error T0218 NumberJoinedToName { number: f64, name: String, factor: String, diameter: bool }
         "number joined to a name"
-        message "`{number}{word}` is not a number with a unit"
+        message "`{number}{name}` is not a number with a unit"
         help (diameter) {
             true => "write `{number}*{factor}`; `d` is the distance from the axis, a radius",
             false => "write `{number}*{factor}`",
@@ -155,17 +155,17 @@ kinds! {
         message "the value {value:e} is out of range"
         help "keep values at 0, or between 1e-90 and 1e90 in absolute value"
         explain "Generated code computes in double precision. Within this range no square or product of two numbers overflows.";
-    error T0221 TooManySteps { most: u32 }
+    error T0221 ExpressionTooDeep { limit: u32 }
         "expression nested too deeply"
         message "this expression is nested too deeply"
-        help "simplify it to at most {most} nested operations, counting those of the curves it uses"
+        help "simplify it to at most {limit} nested operations, counting those of the curves it uses"
         explain "A name counts as the expression that it stands for, so a chain of curves adds up.";
     error T0222 NotLength { role: Role, dimension: Dimension }
         "dimension other than a length"
         message "{role} takes a length, this is {dimension}"
         help "write a number without a unit, or with `mm`, `inch` or `m`"
         explain "Points, radii and positions along the axis are lengths.";
-    error T0223 UnlikeOperands { operation: Operation, left: Dimension, right: Dimension }
+    error T0223 MixedOperands { operation: Operation, left: Dimension, right: Dimension }
         "operands of different dimensions"
         message (operation) {
             Operation::Add => "this adds {left} to {right}",
@@ -183,7 +183,7 @@ kinds! {
         message "division by zero"
         help "correct the divisor: it is always 0"
         explain "The divisor is a constant, so the quotient has no value anywhere.";
-    error T0225 Exponent
+    error T0225 UnsupportedExponent
         "unsupported exponent"
         message "an exponent must be a multiple of 1/2 from -16 to 16"
         help "write a whole or half exponent, as in `d^2` or `d^1.5`"
@@ -193,7 +193,7 @@ kinds! {
         message "an angle cannot be raised to a power"
         help "take `sin`, `cos` or `tan` of it first, which gives a number"
         explain "Angles are arguments of `sin`, `cos` and `tan`. A power of an angle is not a dimension of the language.";
-    error T0227 NoSuchPower
+    error T0227 UndefinedPower
         "undefined power"
         message "this power of a constant is undefined"
         help "correct the base: it is negative with a half exponent, or 0 with a negative one"
@@ -208,20 +208,20 @@ kinds! {
         message "square root of a negative number"
         help "correct the argument: it must be 0 or more"
         explain "The argument is a constant, so the root has no value anywhere.";
-    error T0230 UnlikeArguments { word: String, first: Dimension, other: Dimension }
+    error T0230 MixedArguments { function: String, first: Dimension, second: Dimension }
         "arguments of different dimensions"
-        message "`{word}` combines {first} with {other}"
+        message "`{function}` combines {first} with {second}"
         help "give all arguments the same power of length"
         explain "With arguments of different dimensions the result would depend on the unit.";
-    error T0231 TrigonometryOfVariable { word: String }
+    error T0231 TrigonometryOfVariable { function: String }
         "trigonometric function of a coordinate"
-        message "`{word}` takes constants only, this varies from point to point"
-        help "use only numbers, `let`s and `param`s in the argument of `{word}`"
+        message "`{function}` takes constants only, this varies from point to point"
+        help "use only numbers, `let`s and `param`s in the argument of `{function}`"
         explain "Trigonometric functions are slow, and their last bits differ between machines. They are computed once, when the tool is compiled.";
-    error T0232 NotAngle { word: String, dimension: Dimension, value: f64 }
+    error T0232 NotAngle { function: String, dimension: Dimension, value: f64 }
         "trigonometric function of a number"
-        message "`{word}` takes an angle, this is {dimension}"
-        help "write `{word}({value}deg)` or `{word}({value}rad)`"
+        message "`{function}` takes an angle, this is {dimension}"
+        help "write `{function}({value}deg)` or `{function}({value}rad)`"
         explain "An angle needs a unit, since degrees are easily mistaken for radians.";
     error T0233 HugeAngle
         "angle too large"
@@ -238,27 +238,27 @@ kinds! {
         message "a curve cannot be an angle"
         help "write an expression that is a number or a power of length"
         explain "A curve is zero along a line of the section, and its sign tells the two sides apart.";
-    error T0236 GivenTwice { word: String }
+    error T0236 DuplicateArgument { name: String }
         "param given twice"
-        message "`{word}` is given twice"
+        message "`{name}` is given twice"
         help "remove one of the two values"
         explain "A param takes one value, from a mount, a macro call or the command line.";
-    error T0237 GivenDimension { word: String, wanted: Dimension, found: Dimension }
+    error T0237 ArgumentDimension { name: String, dimension: Dimension, found: Dimension }
         "param value of the wrong dimension"
-        message "`{word}` is {wanted}, but the given value is {found}"
-        help "give {wanted}"
+        message "`{name}` is {dimension}, but the given value is {found}"
+        help "give {dimension}"
         explain "A param has the dimension of its default value.";
-    error T0238 GivenUnit { word: String, number: FormattedNumber, here: &'static str, there: &'static str }
+    error T0238 AmbiguousArgumentUnit { name: String, number: FormattedNumber, file_unit: &'static str, mounted_unit: &'static str }
         "param value without a unit"
-        message "the unit of `{word}` is ambiguous: {number}{here} or {number}{there}"
-        help "write the unit: this file is in {here}, the mounted one in {there}; for a pure number write `{number}{here}/1{here}`"
+        message "the unit of `{name}` is ambiguous: {number}{file_unit} or {number}{mounted_unit}"
+        help "write the unit: this file is in {file_unit}, the mounted one in {mounted_unit}; for a pure number write `{number}{file_unit}/1{file_unit}`"
         explain "The two files have different units and the default has none, so the number could be in either.";
-    error T0239 NoSuchParam { tool: String, word: String, remedy: ParamRemedy, params: Names }
+    error T0239 UnknownParam { tool: String, name: String, remedy: ParamRemedy, params: Names }
         "unknown param"
-        message "`{tool}` has no param `{word}`"
+        message "`{tool}` has no param `{name}`"
         help (remedy) {
-            ParamRemedy::Let => "change `let {word}` to `param {word}` in that file; it has {params}",
-            ParamRemedy::Meant(meant) => "did you mean `{meant}`? it has {params}",
+            ParamRemedy::Let => "change `let {name}` to `param {name}` in that file; it has {params}",
+            ParamRemedy::Similar(suggestion) => "did you mean `{suggestion}`? it has {params}",
             ParamRemedy::List => "it has {params}",
         }
         explain "Only a `param` can be given a value from outside its file.";

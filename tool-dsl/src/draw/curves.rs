@@ -3,8 +3,8 @@
 use crate::bound::Extent;
 use crate::expr::interval::{Cell, Encloser, Interval};
 use crate::expr::polynomial::Polynomial;
-use crate::expr::value::{At, Evaluator};
-use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
 
@@ -52,7 +52,7 @@ impl<'m> Curves<'m> {
         let value = match self.evaluator(curve) {
             CurveEvaluator::Line([a, b, c]) => *a * d + *b * z + *c,
             CurveEvaluator::Bent(bent) => {
-                bent.0.set(At::meridian(d, z));
+                bent.0.set(EvaluationPoint::on_meridian(d, z));
                 bent.0.get(id)
             }
         };
@@ -90,7 +90,7 @@ impl<'m> Curves<'m> {
         if range.low <= 0.0 && range.high >= 0.0 {
             signs |= ZERO;
         }
-        if signs == 0 { ANY } else { signs }
+        if signs == 0 { ANY_SIGN } else { signs }
     }
 
     /// Returns a curve's gradient at a point, by finite differences.
@@ -153,7 +153,7 @@ impl<'m> Curves<'m> {
 
 /// Returns the coefficients of a curve that is a straight line.
 fn line(model: &Model, curve: CurveIndex) -> Option<[f64; 3]> {
-    let polynomial = Polynomial::of(&model.graph, model.curves[curve].value)?;
+    let polynomial = Polynomial::from_expression(&model.graph, model.curves[curve].value)?;
     let mut line = [0.0; 3];
     for (monomial, factor) in polynomial.terms() {
         let index = match monomial {

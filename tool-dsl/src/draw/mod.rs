@@ -33,7 +33,7 @@ use borders::{Border, Nearness, Side};
 use curves::Curves;
 use section::Fineness;
 use shape::Shape;
-pub use sheet::Lettering;
+pub use sheet::TextRendering;
 use sheet::{Anchor, Look, Sheet};
 use view::View;
 
@@ -51,7 +51,7 @@ struct Picture<'m> {
 /// Draws a tool as SVG, on a white background. The drawing has a title and needs no caption.
 ///
 /// Returns `None` for a solid: it has no axis, so no section shows all of it.
-pub fn svg(tool: &CheckedTool, lettering: Lettering) -> Option<String> {
+pub fn svg(tool: &CheckedTool, lettering: TextRendering) -> Option<String> {
     if tool.model.domain == Domain::Space {
         return None;
     }

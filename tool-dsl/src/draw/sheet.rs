@@ -20,7 +20,7 @@ pub(super) const SECONDARY_COLOUR: &str = "#6b7280";
 
 /// The rendering of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lettering {
+pub enum TextRendering {
     /// Strokes of the built-in alphabet: text looks the same everywhere and needs no font.
     Strokes,
     /// SVG text in the font of the page that embeds the drawing: text can be searched, and the file is smaller.
@@ -29,7 +29,7 @@ pub enum Lettering {
 
 /// The drawing so far. Text lies above everything else.
 pub(super) struct Sheet {
-    lettering: Lettering,
+    lettering: TextRendering,
     drawn: String,
     halos: String,
     texts: String,
@@ -39,7 +39,7 @@ pub(super) struct Sheet {
 
 impl Sheet {
     /// Returns an empty sheet.
-    pub(super) fn new(lettering: Lettering) -> Sheet {
+    pub(super) fn new(lettering: TextRendering) -> Sheet {
         let empty = String::new;
         Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), low: None, high: None }
     }
@@ -94,8 +94,8 @@ impl Sheet {
             );
         }
         match self.lettering {
-            Lettering::Strokes => self.strokes(text, [left, base], style),
-            Lettering::Page => self.letters(text, [at[0], base], style),
+            TextRendering::Strokes => self.strokes(text, [left, base], style),
+            TextRendering::Page => self.letters(text, [at[0], base], style),
         }
     }
 
@@ -153,11 +153,11 @@ impl Sheet {
         let [x, y] = low.map(|part| (part - MARGIN).floor());
         let (wide, tall) = ((high[0] + MARGIN - x).ceil(), (high[1] + MARGIN - y).ceil());
         let letters = match self.lettering {
-            Lettering::Strokes => format!(
+            TextRendering::Strokes => format!(
                 "fill=\"none\" stroke=\"{DEFAULT_COLOUR}\" stroke-width=\"1.6\" stroke-linecap=\"round\" \
                  stroke-linejoin=\"round\""
             ),
-            Lettering::Page => format!("fill=\"{DEFAULT_COLOUR}\""),
+            TextRendering::Page => format!("fill=\"{DEFAULT_COLOUR}\""),
         };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{wide}\" height=\"{tall}\" \

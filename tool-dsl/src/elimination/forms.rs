@@ -45,7 +45,7 @@ impl Form {
         let sum = |own: &Number, term: &Number| {
             let term = factor * term;
             // A sum that cancels except for its last bits is 0.
-            if own.agrees(&-&term) { Number::int(0) } else { own + &term }
+            if own.nearly_equals(&-&term) { Number::int(0) } else { own + &term }
         };
         for (variable, term) in &other.factors {
             let own = self.factors.entry(*variable).or_insert(Number::int(0));
@@ -169,7 +169,7 @@ impl<'m> Variables<'m> {
                     continue;
                 };
                 let vanishes = value.to_f64().abs() <= ROUNDING * size;
-                if vanishes && slope.agrees(&Number::int(1)) {
+                if vanishes && slope.nearly_equals(&Number::int(1)) {
                     facts.extend([false, true].map(|sign| negative.clone().signed(form, sign)));
                 }
             }
@@ -288,7 +288,7 @@ fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
 pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
     let root = |id: &Id| matches!(graph.node(*id), Node::Sqrt(_));
     let of_root = |side: &Squared| match side {
-        Squared::Of(a) => graph.needed([*a]).iter().any(root),
+        Squared::Of(a) => graph.dependencies([*a]).iter().any(root),
         Squared::Root(_) => false,
     };
     squares_compared(graph, value).is_some_and(|sides| sides.iter().any(of_root))

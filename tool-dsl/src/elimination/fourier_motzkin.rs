@@ -128,7 +128,8 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     let (x, y) = (-&b.exact.factors[sum.variable], a.exact.factors[sum.variable].clone());
     // Rescaling keeps factors near 1 through repeated combination.
     let scale = Number::from_f64(x.to_f64().abs().max(y.to_f64().abs()).log2().floor().exp2());
-    let rescale = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
+    let rescale =
+        |n: &Number| scale.as_ref().and_then(|scale| n.checked_div(scale)).unwrap_or(n.clone());
     let (x, y) = (rescale(&x), rescale(&y));
     let mut exact = a.exact.combined(&x, &b.exact, &y);
     exact.factors[sum.variable] = Number::int(0);

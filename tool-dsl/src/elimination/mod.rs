@@ -8,7 +8,7 @@ mod fourier_motzkin;
 use crate::expr::Id;
 use crate::expr::interval::{self, Cell, ENTIRE, Interval};
 use crate::expr::polynomial::monomial_of;
-use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY_SIGN, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
 use forms::{Form, Variable, Variables, compares_roots};
@@ -141,7 +141,7 @@ impl Linear {
             else {
                 continue;
             };
-            let Some(end) = (-&constant).over(&factor) else { continue };
+            let Some(end) = (-&constant).checked_div(&factor) else { continue };
             let end = Interval::enclosing(&end);
             // The slack keeps doubles that are computed from the range outside it.
             let size = largest + end.low.abs().max(end.high.abs());
@@ -197,7 +197,7 @@ impl Linear {
                 !(0..self.variables).any(is_nonlinear)
             })
         };
-        let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY);
+        let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY_SIGN);
         constrained.all(|(form, _)| is_straight(form)).then_some(false)
     }
 
@@ -303,7 +303,7 @@ mod tests {
         let (a, b) = (curve_index("a").expect("a curve"), curve_index("b").expect("a curve"));
         let linear = Linear::new(&tool.model);
         let contradictory = |of_a: Signs, of_b: Signs| {
-            let mut signs = vec![ANY; curves.len()];
+            let mut signs = vec![ANY_SIGN; curves.len()];
             (signs[a], signs[b]) = (of_a, of_b);
             linear.contradictory(&signs)
         };

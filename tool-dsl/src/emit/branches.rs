@@ -74,13 +74,13 @@ impl Writer<'_> {
         known: &mut HashMap<*const Tree<L>, BTreeSet<Id>>,
     ) {
         let own = match tree {
-            Tree::Leaf(leaf) => self.graph.needed(needs(leaf)).into_iter().collect(),
+            Tree::Leaf(leaf) => self.graph.dependencies(needs(leaf)).into_iter().collect(),
             Tree::Split { curve, below, above, .. } => {
                 self.always(below, needs, known);
                 self.always(above, needs, known);
                 let [below, above] =
                     [below, above].map(|side| &known[&std::ptr::from_ref(&**side)]);
-                let compared = self.graph.needed(self.compared(*curve));
+                let compared = self.graph.dependencies(self.compared(*curve));
                 below.intersection(above).copied().chain(compared).collect()
             }
         };

@@ -51,7 +51,7 @@ impl<'g> Writer<'g> {
         for root in &all {
             *writer.uses.entry(*root).or_default() += 1;
         }
-        for id in graph.needed(all) {
+        for id in graph.dependencies(all) {
             for operand in graph.node(id).operands() {
                 *writer.uses.entry(operand).or_default() += 1;
             }
@@ -281,7 +281,7 @@ impl<'g> Writer<'g> {
         scope: &mut BTreeSet<Id>,
     ) {
         // Operands come first, so every name is defined before its use.
-        for id in self.graph.needed(roots) {
+        for id in self.graph.dependencies(roots) {
             if self.named(id) && scope.insert(id) {
                 code.word("let").word(&name(id)).sign("=");
                 self.operation(code, id);

@@ -100,7 +100,7 @@ impl Section<'_> {
         let model = &self.tool.model;
         let mut users: BTreeMap<Id, usize> = BTreeMap::new();
         for output in &OUTPUTS {
-            for id in model.graph.needed((output.of)(&model.regions[self.region].outputs)) {
+            for id in model.graph.dependencies((output.of)(&model.regions[self.region].outputs)) {
                 *users.entry(id).or_default() += 1;
             }
         }

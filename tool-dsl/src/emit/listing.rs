@@ -12,7 +12,7 @@ use std::fmt::Write;
 /// Lists the syntax tree of a text, one line per item, without source locations.
 pub fn tree(source: &Source) -> String {
     let Ok(tree) = syntax::parse(source, &mut Vec::new()) else { return String::new() };
-    let head = format!("{:?} {} {:?}\n", tree.domain, tree.name.word, tree.title);
+    let head = format!("{:?} {} {:?}\n", tree.domain, tree.name.text, tree.title);
     tree.items.iter().fold(head, |text, item| text + &unplaced(&format!("{item:?}")) + "\n")
 }
 
@@ -36,7 +36,7 @@ pub fn model(tool: &CheckedTool) -> String {
     // Writing to a String does not fail.
     let _ = writeln!(text, "{:?} {} {:?}", model.domain, model.name, model.title);
     let _ = writeln!(text, "unit {}", model.unit.symbol());
-    let down = if model.frame.down { ", spindle -z" } else { "" };
+    let down = if model.frame.spindle_down { ", spindle -z" } else { "" };
     let _ = writeln!(text, "tip {}{down}", format_number(model.frame.tip.to_f64()));
     for side in tool.extent.cell().sides {
         let _ = writeln!(text, "reach {:?} to {:?}", side.low, side.high);

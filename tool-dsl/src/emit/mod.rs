@@ -16,7 +16,7 @@ use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::digest;
 use crate::domain::Domain;
-use crate::draw::{self, Lettering};
+use crate::draw::{self, TextRendering};
 use crate::expr::Id;
 use crate::model::RegionOutputs;
 use crate::plan::Tree;
@@ -27,15 +27,15 @@ use std::fmt::Write;
 use tokens::{Tokens, literal};
 
 /// Emits the type and its evaluators. The documentation of the type has no drawing, since an editor would
-/// show it as text; see [`documented`].
+/// show it as text; see [`with_drawing`].
 pub fn emit(tool: &CheckedTool) -> TokenStream {
     code(tool, &quote! {})
 }
 
 /// The same with the tool's drawing on the type's page, for rustdoc.
-pub fn documented(tool: &CheckedTool) -> TokenStream {
+pub fn with_drawing(tool: &CheckedTool) -> TokenStream {
     // One line inside a block element, so that nothing in it is parsed as Markdown.
-    let drawing = draw::svg(tool, Lettering::Page).map(|svg| format!("<div>{svg}</div>"));
+    let drawing = draw::svg(tool, TextRendering::Page).map(|svg| format!("<div>{svg}</div>"));
     code(tool, &drawing.map(|drawing| quote! { #[doc = ""] #[doc = #drawing] }).unwrap_or_default())
 }
 
@@ -78,7 +78,7 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
 
 /// Emits a type that has the tool's name and no meaning. After an error it prevents further errors in code
 /// that uses the tool, so that one mistake gives one message.
-pub fn skeleton(name: &str) -> TokenStream {
+pub fn placeholder(name: &str) -> TokenStream {
     let name = Ident::new(name, Span::call_site());
     let mut functions = quote! { fn info() -> &'static ToolInfo { ::core::unreachable!() } };
     let empty = quote! { ::core::unreachable!() };
@@ -178,7 +178,7 @@ fn info(tool: &CheckedTool) -> TokenStream {
         }
     });
     let digest = Literal::u64_suffixed(digest(tool));
-    let rounding = literal(tool.bounds().rounding);
+    let rounding = literal(tool.bounds().rounding_error);
     let [lower_slope, lipschitz] =
         [tool.bounds().lower_slope, tool.bounds().lipschitz].map(|bound| match bound {
             Some(bound) => {
@@ -271,7 +271,7 @@ fn scalar(tool: &CheckedTool) -> TokenStream {
             all.extend(function(output.name, output.with_length, &output.result(), &body));
         }
     }
-    if let Some(tree) = tool.plan.outside.map(&|id: &Id| Some(vec![*id])) {
+    if let Some(tree) = tool.plan.clearance.map(&|id: &Id| Some(vec![*id])) {
         all.extend(function("clearance", false, &quote! { f64 }, &body(tool, &tree)));
     }
     all
@@ -341,7 +341,7 @@ fn of_tests<L>(
 }
 
 /// Formats the code for people, without the drawing in its documentation.
-pub fn rust(tool: &CheckedTool) -> String {
+pub fn source_code(tool: &CheckedTool) -> String {
     let tokens = code(tool, &quote! {});
     match syn::parse2(tokens.clone()) {
         Ok(file) => prettyplease::unparse(&file),

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// derivatives; for a root of 0 it is 0. So the result is finite wherever the function is.
 pub fn derivative(graph: &mut Graph, of: Id, by: Coord) -> Id {
     let mut known = HashMap::new();
-    for id in graph.needed([of]) {
+    for id in graph.dependencies([of]) {
         let result = rule(graph, id, by, &known);
         known.insert(id, result);
     }

@@ -32,7 +32,7 @@ impl Graph {
     }
 
     /// Returns the nodes that some roots need, operands first.
-    pub fn needed(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
+    pub fn dependencies(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
         let mut pending: Vec<Id> = roots.into_iter().collect();
         let mut needed_ids = BTreeSet::new();
         while let Some(id) = pending.pop() {
@@ -309,7 +309,7 @@ impl Graph {
     /// `a / b`; `None` if `b` is the constant 0. A constant divisor becomes a factor.
     pub fn div(&mut self, a: Id, b: Id) -> Option<Id> {
         if let Some(divisor) = self.constant(b).cloned() {
-            let factor = Number::int(1).over(&divisor)?;
+            let factor = Number::int(1).checked_div(&divisor)?;
             if let Some(value) = self.constant(a).cloned() {
                 return Some(self.number(&value / &divisor));
             }

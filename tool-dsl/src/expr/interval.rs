@@ -170,7 +170,7 @@ impl Cell {
 
     /// Replaces the side along an axis.
     #[must_use]
-    pub fn with(mut self, axis: usize, side: Interval) -> Cell {
+    pub fn with_side(mut self, axis: usize, side: Interval) -> Cell {
         self.sides[axis] = side;
         self
     }
@@ -236,7 +236,7 @@ impl<'g> Encloser<'g> {
         let mut values = vec![ENTIRE; graph.nodes().len()];
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
-            let mut order = graph.needed([root]);
+            let mut order = graph.dependencies([root]);
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
                     values[id.index()] = Interval::enclosing(value);
@@ -317,8 +317,8 @@ pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
     let side = cell.sides[axis];
     let middle = middle(side);
     [
-        cell.with(axis, Interval::new(side.low, middle)),
-        cell.with(axis, Interval::new(middle, side.high)),
+        cell.with_side(axis, Interval::new(side.low, middle)),
+        cell.with_side(axis, Interval::new(middle, side.high)),
     ]
 }
 

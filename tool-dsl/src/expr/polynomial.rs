@@ -57,7 +57,7 @@ impl Polynomials {
 
 impl Polynomial {
     /// Returns the polynomial of a node, if it is one.
-    pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
+    pub fn from_expression(graph: &Graph, id: Id) -> Option<Polynomial> {
         let mut polynomials = Polynomials::default();
         polynomials.of(graph, id);
         polynomials.0.remove(&id).flatten()
@@ -84,7 +84,7 @@ impl Polynomial {
     pub(crate) fn plus(mut self, other: &Polynomial) -> Polynomial {
         for (monomial, value) in &other.0 {
             let sum = match self.0.get(monomial) {
-                Some(own) if own.agrees(&-value) => Number::int(0),
+                Some(own) if own.nearly_equals(&-value) => Number::int(0),
                 Some(own) => own + value,
                 None => value.clone(),
             };
@@ -172,7 +172,7 @@ impl Polynomial {
         // leader = -(the rest) / factor
         let mut rest = line.clone();
         rest.0.remove(leading);
-        let rest = rest.scaled(&Number::int(-1).over(factor)?);
+        let rest = rest.scaled(&Number::int(-1).checked_div(factor)?);
         let mut remainder = Polynomial::zero();
         for (monomial, value) in &self.0 {
             let mut others = *monomial;
@@ -264,7 +264,7 @@ impl Polynomial {
 
     /// Returns the polynomial scaled to a gradient of length 1, if it is linear and not constant.
     pub(crate) fn with_unit_slope(&self) -> Option<Polynomial> {
-        Some(self.scaled(&Number::int(1).over(&self.slope_squared()?.sqrt()?)?))
+        Some(self.scaled(&Number::int(1).checked_div(&self.slope_squared()?.sqrt()?)?))
     }
 
     /// Returns the squared length of the gradient, if this is linear.
@@ -299,7 +299,7 @@ impl Polynomial {
         let mut sum = Number::int(0);
         for (monomial, value) in &self.0 {
             match (monomial.iter().sum::<u8>(), monomial.iter().max()) {
-                (2, Some(2)) if value.agrees(&one) => {}
+                (2, Some(2)) if value.nearly_equals(&one) => {}
                 (1, _) => sum = &sum + &(value * value),
                 (0, _) => {}
                 _ => return false,
@@ -311,13 +311,13 @@ impl Polynomial {
             monomial.iter().sum::<u8>() != 1 || self.0.contains_key(&monomial.map(|e| 2 * e))
         };
         let constant = self.0.get(&[0; 4]).cloned().unwrap_or_else(|| Number::int(0));
-        let middle = sum.over(&four).unwrap_or_else(|| Number::int(0));
+        let middle = sum.checked_div(&four).unwrap_or_else(|| Number::int(0));
         let rounding = (&constant - &middle).to_f64().abs();
         self.0.keys().all(squared) && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
     }
 
     /// Writes the sum of its terms as an expression, without the terms that cancelled.
-    pub fn expression(&self, graph: &mut Graph) -> Id {
+    pub fn to_expression(&self, graph: &mut Graph) -> Id {
         let mut sum = graph.int(0);
         for (monomial, factor) in &self.0 {
             let mut term = graph.number(factor.clone());
@@ -347,8 +347,9 @@ impl Polynomial {
         if !self.0.values().zip(other.0.values()).all(near) {
             return None;
         }
-        let factor = leads.0.over(leads.1)?;
-        let same = self.0.values().zip(other.0.values()).all(|(a, b)| a.agrees(&(b * &factor)));
+        let factor = leads.0.checked_div(leads.1)?;
+        let same =
+            self.0.values().zip(other.0.values()).all(|(a, b)| a.nearly_equals(&(b * &factor)));
         same.then_some(factor)
     }
 

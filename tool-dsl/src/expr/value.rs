@@ -13,7 +13,7 @@ pub struct Evaluator<'g> {
 
 /// A point of evaluation: its coordinates in the tool's frame, and the unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct At {
+pub struct EvaluationPoint {
     /// x
     pub x: f64,
     /// y
@@ -28,23 +28,23 @@ pub struct At {
     pub length: f64,
 }
 
-impl At {
+impl EvaluationPoint {
     /// Returns a point of space.
-    pub fn point(x: f64, y: f64, z: f64) -> At {
+    pub fn new(x: f64, y: f64, z: f64) -> EvaluationPoint {
         let q = x * x + y * y;
-        At { x, y, z, d: q.sqrt(), q, length: 1.0 }
+        EvaluationPoint { x, y, z, d: q.sqrt(), q, length: 1.0 }
     }
 
     /// Returns a point of the half plane that contains the profile.
-    pub fn meridian(d: f64, z: f64) -> At {
-        At { x: d, y: 0.0, z, d, q: d * d, length: 1.0 }
+    pub fn on_meridian(d: f64, z: f64) -> EvaluationPoint {
+        EvaluationPoint { x: d, y: 0.0, z, d, q: d * d, length: 1.0 }
     }
 }
 
 impl<'g> Evaluator<'g> {
     /// Makes an evaluator for some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Evaluator<'g> {
-        let mut order = graph.needed(roots);
+        let mut order = graph.dependencies(roots);
         let mut values = vec![0.0; graph.nodes().len()];
         // Constants are rounded once, not at every point.
         order.retain(|id| match graph.constant(*id) {
@@ -58,7 +58,7 @@ impl<'g> Evaluator<'g> {
     }
 
     /// Evaluates the nodes at a point.
-    pub fn set(&mut self, at: At) {
+    pub fn set(&mut self, at: EvaluationPoint) {
         for &id in &self.order {
             let v = |id: Id| self.values[id.index()];
             self.values[id.index()] = match self.graph.node(id) {

@@ -217,7 +217,7 @@ impl Segment {
             Some(circle) => {
                 let radial = |point: &ExactPoint| -> Option<[Number; 2]> {
                     let [d, z] = [0, 1].map(|k| &point[k] - &circle.centre[k]);
-                    Some([d.over(&circle.radius)?, z.over(&circle.radius)?])
+                    Some([d.checked_div(&circle.radius)?, z.checked_div(&circle.radius)?])
                 };
                 let ([ad, az], [bd, bz]) = (radial(&self.from)?, radial(&self.to)?);
                 // cross(a, q) = a_d q_z - a_z q_d
@@ -243,7 +243,7 @@ impl Segment {
 pub(crate) fn unit_between(from: &ExactPoint, to: &ExactPoint) -> Option<[Number; 2]> {
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
     let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
-    Some([d.over(&length)?, z.over(&length)?])
+    Some([d.checked_div(&length)?, z.checked_div(&length)?])
 }
 
 /// Returns `direction · (p - from)`, computed from the difference, so that its rounding error is proportional to

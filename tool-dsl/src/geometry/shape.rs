@@ -2,7 +2,7 @@
 
 use super::outline::{Point, norm};
 use crate::expr::polynomial::Polynomials;
-use crate::expr::value::{At, Evaluator};
+use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Graph, Id};
 
 /// The distance below which a point lies on a curve, relative to the section's size.
@@ -72,7 +72,7 @@ impl<'g> CurveFunction<'g> {
             CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
                 let mut value = |d: f64, z: f64| {
-                    evaluator.set(At::meridian(d, z));
+                    evaluator.set(EvaluationPoint::on_meridian(d, z));
                     evaluator.get(*id)
                 };
                 let value_here = value(p[0], p[1]);
@@ -108,7 +108,7 @@ impl<'g> CurveFunction<'g> {
             }
             CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
-                evaluator.set(At::meridian(p[0], p[1]));
+                evaluator.set(EvaluationPoint::on_meridian(p[0], p[1]));
                 evaluator.get(*id)
             }
         }

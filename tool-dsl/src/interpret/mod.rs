@@ -1,8 +1,8 @@
 //! The interpreter: evaluation of a checked tool without Rust's compiler.
 //!
-//! There are three forms of evaluation. [`Interpreter::at`] follows the rule of the text, region by region in
+//! There are three forms of evaluation. [`Interpreter::evaluate`] follows the rule of the text, region by region in
 //! the order of the list, and is the reference for all generated code. The other two follow the plan, for
-//! tools loaded at run time. [`PlanWalk`] evaluates one point and computes only what that point needs.
+//! tools loaded at run time. [`PlanEvaluator`] evaluates one point and computes only what that point needs.
 //! [`Tape`] is a list of operations, each applied to a block of points before the next.
 //!
 //! All perform the operations of the generated code, with one rounding each. The plan gives the same bits in
@@ -12,11 +12,11 @@
 mod tape;
 mod walk;
 
-pub use tape::{BLOCK, Lanes, Tape};
-pub use walk::{PlanWalk, Registers, Scratch, Value};
+pub use tape::{BLOCK_POINTS, Lanes, Tape};
+pub use walk::{PlanEvaluator, Registers, Scratch, Value};
 
 use crate::checked::CheckedTool;
-use crate::expr::value::{At, Evaluator};
+use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Coord, Id, Node};
 use crate::formula::CurveIndex;
 
@@ -58,8 +58,8 @@ impl<'t> Interpreter<'t> {
 
     /// Evaluates the tool at a point of its frame, in the file's unit; `None` outside. `length` is the length
     /// of the file's unit in units of the part.
-    pub fn at(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
-        self.evaluator.set(At { length, ..At::point(x, y, z) });
+    pub fn evaluate(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
+        self.evaluator.set(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
         let value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
         let region = model.regions.iter().position(|region| region.inside.holds(&value))?;
@@ -78,7 +78,7 @@ impl<'t> Interpreter<'t> {
 
 /// The number of values that the plan gives per point: owner (-1 outside), depth, magnitude, niceness,
 /// direction, gradient.
-pub const OUTPUTS: usize = 10;
+pub const OUTPUT_COUNT: usize = 10;
 
 /// The index of an operand's value.
 type Slot = u32;

@@ -1,6 +1,6 @@
 //! Evaluation of the plan for blocks of points.
 
-use super::{OUTPUTS, Operation, Slot};
+use super::{OUTPUT_COUNT, Operation, Slot};
 use crate::checked::CheckedTool;
 use crate::expr::value::{max, min, quotient};
 use crate::expr::{Coord, Id};
@@ -9,10 +9,10 @@ use crate::plan::Tree;
 use std::collections::HashMap;
 
 /// The number of points that a tape evaluates at a time.
-pub const BLOCK: usize = 64;
+pub const BLOCK_POINTS: usize = 64;
 
 /// One value per point of a block.
-pub type Lanes = [f64; BLOCK];
+pub type Lanes = [f64; BLOCK_POINTS];
 
 /// A part of a tool's plan as a list of operations on blocks of points.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ impl Tape {
     /// Makes the tape of the outputs in a region: depth, magnitude, niceness, direction, gradient.
     pub fn evaluation(tool: &CheckedTool, region: usize) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
-        let mut outputs = Vec::with_capacity(OUTPUTS - 1);
+        let mut outputs = Vec::with_capacity(OUTPUT_COUNT - 1);
         for root in tool.model.regions[region].outputs.roots() {
             let slot = writer.expression(root);
             outputs.push((slot, writer.operations.len()));
@@ -37,14 +37,14 @@ impl Tape {
     /// Makes the tape whose only output is the distance from points outside to the tool.
     pub fn clearance(tool: &CheckedTool) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
-        let slot = writer.tree(&tool.plan.outside);
+        let slot = writer.tree(&tool.plan.clearance);
         Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
     }
 
     /// Allocates the registers that [`Tape::run`] needs.
     pub fn reserve(&self, registers: &mut Vec<Lanes>) {
         if registers.len() < self.operations.len() {
-            registers.resize(self.operations.len(), [0.0; BLOCK]);
+            registers.resize(self.operations.len(), [0.0; BLOCK_POINTS]);
         }
     }
 
@@ -78,7 +78,7 @@ impl Tape {
 
 /// Rounds up to a number of lanes that fills vectors.
 pub(super) fn padded_lanes(count: usize) -> usize {
-    count.next_multiple_of(8).min(BLOCK)
+    count.next_multiple_of(8).min(BLOCK_POINTS)
 }
 
 /// Performs one operation on a block. The loops are written out here, since closures would be compiled
@@ -157,7 +157,7 @@ impl TapeWriter<'_> {
     }
 
     fn expression(&mut self, root: Id) -> Slot {
-        for id in self.tool.model.graph.needed([root]) {
+        for id in self.tool.model.graph.dependencies([root]) {
             if self.slots.contains_key(&id) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! Evaluation of the plan for one point at a time.
 
 use super::tape::{padded_lanes, perform as block};
-use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot};
+use super::{BLOCK_POINTS, Lanes, OUTPUT_COUNT, Operation, Slot};
 use crate::checked::CheckedTool;
 use crate::expr::{Coord, Id};
 use crate::plan::Tree;
@@ -25,10 +25,10 @@ enum PlanNode {
 
 /// A tool's plan in a form that computes only what a point needs.
 #[derive(Clone, Debug)]
-pub struct PlanWalk {
+pub struct PlanEvaluator {
     operations: Vec<Operation>,
     curves: Vec<List>,
-    regions: Vec<[List; OUTPUTS - 1]>,
+    regions: Vec<[List; OUTPUT_COUNT - 1]>,
     forks: Vec<PlanNode>,
 }
 
@@ -43,7 +43,7 @@ pub trait Value:
     + Neg<Output = Self>
 {
     /// Returns a constant.
-    fn of(value: f64) -> Self;
+    fn constant(value: f64) -> Self;
     /// Returns the square root.
     fn sqrt(self) -> Self;
     /// Returns the absolute value.
@@ -55,7 +55,7 @@ pub trait Value:
     fn lt(a: Self, b: Self) -> [bool; 2];
     /// Returns a value that encloses both, for an undecided choice between them.
     #[must_use]
-    fn either(self, _other: Self) -> Self {
+    fn hull(self, _other: Self) -> Self {
         self
     }
 
@@ -75,14 +75,14 @@ pub trait Value:
 /// Returns `then` if a test holds, `other` if it fails, and an enclosure of both if it is undecided.
 fn pick<V: Value>([yes, no]: [bool; 2], then: V, other: V) -> V {
     match (yes, no) {
-        (true, true) => then.either(other),
+        (true, true) => then.hull(other),
         (true, false) => then,
         (false, _) => other,
     }
 }
 
 impl Value for f64 {
-    fn of(value: f64) -> f64 {
+    fn constant(value: f64) -> f64 {
         value
     }
     fn sqrt(self) -> f64 {
@@ -121,15 +121,15 @@ pub struct Registers {
     pending: Vec<(usize, u64)>,
 }
 
-impl PlanWalk {
-    /// Makes the walk of a tool.
-    pub fn new(tool: &CheckedTool) -> PlanWalk {
+impl PlanEvaluator {
+    /// Makes the evaluator of a tool.
+    pub fn new(tool: &CheckedTool) -> PlanEvaluator {
         let graph = &tool.model.graph;
         let slot = |id: &Id| id.index() as Slot;
-        let list = |id: Id| graph.needed([id]).iter().map(slot).collect::<List>();
+        let list = |id: Id| graph.dependencies([id]).iter().map(slot).collect::<List>();
         let mut forks = Vec::new();
         flatten(&tool.plan.owner, &mut forks);
-        PlanWalk {
+        PlanEvaluator {
             operations: graph.nodes().iter().map(|node| Operation::of(node, slot)).collect(),
             curves: tool.model.curves.iter().map(|curve| list(curve.value)).collect(),
             regions: tool
@@ -145,13 +145,13 @@ impl PlanWalk {
         }
     }
 
-    /// Allocates the memory of a walk for a point, so that [`PlanWalk::run`] and [`PlanWalk::evaluate`] do
+    /// Allocates the memory of a walk for a point, so that [`PlanEvaluator::run`] and [`PlanEvaluator::evaluate`] do
     /// not allocate.
     pub fn reserve<V: Value>(&self, scratch: &mut Scratch<V>) {
         scratch.start(self.operations.len());
     }
 
-    /// Allocates the memory of a walk for a block, so that [`PlanWalk::owners`] does not allocate.
+    /// Allocates the memory of a walk for a block, so that [`PlanEvaluator::owners`] does not allocate.
     pub fn reserve_block(&self, registers: &mut Registers) {
         registers.start(self.operations.len());
         // The walk visits each fork at most once per block.
@@ -181,7 +181,7 @@ impl PlanWalk {
             }
         };
         let Some((first, rest)) = results.split_first_mut() else { return };
-        *first = V::of(owner.map_or(-1.0, |owner| owner as f64));
+        *first = V::constant(owner.map_or(-1.0, |owner| owner as f64));
         let Some(owner) = owner else { return };
         self.evaluate_region(owner, point, length, scratch, rest);
     }
@@ -189,7 +189,7 @@ impl PlanWalk {
     /// Visits every possible owner, with its depth, of a point whose coordinates are known to lie between
     /// bounds; `None` is the outside. Also passes the first test on the path that was undecided, if any, and
     /// whether its value is taken to be below 0.
-    pub fn each_owner<V: Value>(
+    pub fn for_each_owner<V: Value>(
         &self,
         point: [V; 3],
         length: V,
@@ -333,7 +333,7 @@ impl Registers {
     /// Invalidates the values of the last block.
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
-            self.values.resize(slots, [0.0; BLOCK]);
+            self.values.resize(slots, [0.0; BLOCK_POINTS]);
             self.done.clear();
             self.done.resize(self.values.len(), 0);
             self.now = 0;
@@ -357,28 +357,28 @@ fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<PlanNode>) {
 
 /// Returns whether a value may be below 0 (or 0, if not strict), and whether it may not be.
 fn below<V: Value>(value: V, strict: bool) -> [bool; 2] {
-    if strict { V::lt(value, V::of(0.0)) } else { V::le(value, V::of(0.0)) }
+    if strict { V::lt(value, V::constant(0.0)) } else { V::le(value, V::constant(0.0)) }
 }
 
 #[inline(always)]
 fn perform<V: Value>(operation: Operation, [x, y, z]: [V; 3], length: V, values: &[V]) -> V {
     let v = |slot: Slot| values[slot as usize];
     match operation {
-        Operation::Const(value) => V::of(value),
+        Operation::Const(value) => V::constant(value),
         Operation::Coord(Coord::X) => x,
         Operation::Coord(Coord::Y) => y,
         Operation::Coord(Coord::Z) => z,
         Operation::Coord(Coord::Q) => x * x + y * y,
         Operation::Coord(Coord::D) => (x * x + y * y).sqrt(),
         Operation::Coord(Coord::Length) => length,
-        Operation::Coord(Coord::PerLength) => V::of(1.0) / length,
+        Operation::Coord(Coord::PerLength) => V::constant(1.0) / length,
         Operation::Neg(a) => -v(a),
         Operation::Add(a, b) => v(a) + v(b),
         Operation::Sub(a, b) => v(a) - v(b),
         Operation::Mul(a, b) => v(a) * v(b),
         Operation::Div(a, b) => v(a) / v(b),
         Operation::Quotient(a, b) => {
-            let zero = V::of(0.0);
+            let zero = V::constant(0.0);
             let ([below, away], [above, beyond]) = (V::le(v(b), zero), V::le(zero, v(b)));
             let is_zero = [below && above, away || beyond];
             if is_zero == [true, false] { zero } else { pick(is_zero, zero, v(a) / v(b)) }

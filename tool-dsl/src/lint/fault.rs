@@ -38,11 +38,11 @@ impl Fault {
     }
 
     /// Returns the diagnostic for an expression that has no value at a point.
-    pub(super) fn kind(&self, place: String, subject: Subject) -> CheckKind {
+    pub(super) fn kind(&self, location: String, subject: Subject) -> CheckKind {
         match self {
-            Fault::Root => CheckKind::RootOfNegative { place, subject },
-            Fault::Quotient => CheckKind::DivisionByZero { place, subject },
-            Fault::Size => CheckKind::Unbounded { place, subject },
+            Fault::Root => CheckKind::RootOfNegative { location, subject },
+            Fault::Quotient => CheckKind::DivisionByZero { location, subject },
+            Fault::Size => CheckKind::NumericOverflow { location, subject },
         }
     }
 }

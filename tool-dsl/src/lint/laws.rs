@@ -77,11 +77,11 @@ impl Linter<'_> {
             if near > MIN_GROWTH_RATIO * far
                 && near > MIN_RATIO_TO_SAMPLES * self.largest[owner][law]
             {
-                let kind = CheckKind::GrowsUnbounded {
+                let kind = CheckKind::UnboundedQuantity {
                     quantity,
                     region: self.model.regions[owner].name.clone(),
                     value: FormattedNumber(near),
-                    place: self.format_point(surface_point),
+                    location: self.format_point(surface_point),
                 };
                 self.report(Diagnostic::new(span, kind));
             }

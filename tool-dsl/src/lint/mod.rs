@@ -9,7 +9,7 @@ use crate::bound::spread;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::domain::Domain;
 use crate::expr::Id;
-use crate::expr::value::{At, Evaluator};
+use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
@@ -157,13 +157,13 @@ impl<'m> Linter<'m> {
 
     /// Selects a point.
     fn set_point(&mut self, [x, y, z]: [f64; 3]) {
-        self.evaluator.set(At::point(x, y, z));
+        self.evaluator.set(EvaluationPoint::new(x, y, z));
     }
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         // A coordinate that is rounding relative to the tool's size is shown as 0.
         let without_rounding = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
-        self.model.domain.shown([x, y, self.model.frame.to_file(z)].map(without_rounding))
+        self.model.domain.format_point([x, y, self.model.frame.to_file(z)].map(without_rounding))
     }
 
     /// Reports at most one diagnostic per location and severity.
@@ -291,7 +291,7 @@ impl<'m> Linter<'m> {
                 let (region, value) = (name.clone(), FormattedNumber(value));
                 Diagnostic::new(
                     span,
-                    CheckKind::Negative { quantity, region, value, place: location },
+                    CheckKind::NegativeQuantity { quantity, region, value, location },
                 )
             } else {
                 continue;
@@ -300,13 +300,13 @@ impl<'m> Linter<'m> {
         }
         let direction = region.raw_direction.0.map(get);
         if !direction.into_iter().all(f64::is_finite) || direction == [0.0; 3] {
-            let kind = CheckKind::DirectionVanishes { region: name.clone(), place: location };
+            let kind = CheckKind::ZeroDirectionAtPoint { region: name.clone(), location };
             return self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
         let [x, y, z] = region.direction.map(get);
         let length_error = (x.hypot(y).hypot(z) - 1.0).abs();
         if length_error.is_nan() || length_error > 1e-9 {
-            let kind = CheckKind::DirectionTooLong { region: name.clone(), place: location };
+            let kind = CheckKind::DirectionTooLong { region: name.clone(), location };
             self.report(Diagnostic::new(region.raw_direction.1, kind));
         }
     }
@@ -352,7 +352,7 @@ impl<'m> Linter<'m> {
                 }
                 _ => {
                     let kind =
-                        CheckKind::NoPointSeen { region: region.name.clone(), points: SAMPLES };
+                        CheckKind::NoSamplePoint { region: region.name.clone(), samples: SAMPLES };
                     Diagnostic::new(region.span, kind)
                 }
             };
@@ -394,7 +394,7 @@ impl<'m> Linter<'m> {
         {
             let kind = CheckKind::SteepDepth {
                 region: region.name.clone(),
-                place: self.format_point(point),
+                location: self.format_point(point),
             };
             self.report(Diagnostic::new(region.law_spans.depth, kind));
         }
@@ -411,7 +411,7 @@ pub(crate) fn deep_on_surface(region: &Region, depth: f64, location: String) -> 
     let (name, depth) = (region.name.clone(), FormattedNumber(depth));
     Diagnostic::new(
         region.law_spans.depth,
-        CheckKind::DeepOnSurface { region: name, depth, place: location },
+        CheckKind::NonzeroDepthOnSurface { region: name, depth, location },
     )
 }
 

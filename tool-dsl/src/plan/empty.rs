@@ -5,7 +5,7 @@ use crate::bound::Prover;
 use crate::domain::Domain;
 use crate::elimination::Linear;
 use crate::expr::interval::halves;
-use crate::formula::{ANY, Signs};
+use crate::formula::{ANY_SIGN, Signs};
 use crate::model::Model;
 
 /// The largest number of boxes in one proof, in the half plane and in space.
@@ -41,9 +41,10 @@ impl<'m> EmptinessProver<'m> {
             Domain::Space => MAX_BOXES_IN_SPACE,
         };
         while let Some(cell) = pending.pop() {
-            self.prover.set(cell);
-            let mut constrained = signs.iter().enumerate().filter(|(_, allowed)| **allowed != ANY);
-            if constrained.any(|(curve, allowed)| self.prover.sign(curve) & allowed == 0) {
+            self.prover.set_box(cell);
+            let mut constrained =
+                signs.iter().enumerate().filter(|(_, allowed)| **allowed != ANY_SIGN);
+            if constrained.any(|(curve, allowed)| self.prover.signs(curve) & allowed == 0) {
                 continue;
             }
             if boxes_left == 0 {

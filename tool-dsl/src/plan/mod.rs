@@ -96,21 +96,21 @@ impl<L: Clone + PartialEq> Tree<L> {
     }
 
     /// Returns the number of tests.
-    pub fn tests(&self) -> usize {
+    pub fn test_count(&self) -> usize {
         match self {
             Tree::Leaf(_) => 0,
-            Tree::Split { below, above, .. } => 1 + below.tests() + above.tests(),
+            Tree::Split { below, above, .. } => 1 + below.test_count() + above.test_count(),
         }
     }
 
     /// Returns the leaf of a point where the curves have these values.
-    pub fn at(&self, value: &impl Fn(CurveIndex) -> f64) -> &L {
+    pub fn leaf_at(&self, value: &impl Fn(CurveIndex) -> f64) -> &L {
         match self {
             Tree::Leaf(leaf) => leaf,
             Tree::Split { curve, strict, below, above } => {
                 let value_here = value(*curve);
                 let holds = if *strict { value_here < 0.0 } else { value_here <= 0.0 };
-                if holds { below.at(value) } else { above.at(value) }
+                if holds { below.leaf_at(value) } else { above.leaf_at(value) }
             }
         }
     }
@@ -124,7 +124,7 @@ pub struct Plan {
     /// True for points that belong to any region.
     pub inside: Tree<bool>,
     /// The distance from a point outside to the tool; without a profile, a lower bound of it.
-    pub outside: Tree<Id>,
+    pub clearance: Tree<Id>,
 }
 
 /// A tool with the order of its splits.
@@ -148,20 +148,20 @@ pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diag
 }
 
 fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
-    let (owner, outside) = match &model.section {
+    let (owner, clearance) = match &model.section {
         Some(section) => {
-            let (owner, outside) = section::trees(model, section)?;
+            let (owner, clearance) = section::trees(model, section)?;
             let is_owned_far_outside = section::has_owner_far_outside(model, section, &owner);
             let owner =
                 if is_owned_far_outside { limited_to_box(model, extent, owner) } else { owner };
-            (owner, limited_outside(model, extent, outside))
+            (owner, limited_outside(model, extent, clearance))
         }
         None => (by_signs(model, extent)?, Tree::Leaf(distance_to_box(model, extent))),
     };
     // Both trees have the same tests, so `inside` agrees with `owner` to the last bit.
     let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
     let inside = inside.unwrap_or(Tree::Leaf(false));
-    Ok(Plan { owner, inside, outside })
+    Ok(Plan { owner, inside, clearance })
 }
 
 /// Returns a tree that tests the section's box first, since curves may recur beyond it.
@@ -236,7 +236,7 @@ fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
 
 /// Returns the error for a tree that exceeds its limit.
 fn too_large(model: &Model) -> Diagnostic {
-    Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: MAX_TESTS })
+    Diagnostic::new(model.name_span, CheckKind::TooManyTests { limit: MAX_TESTS })
 }
 
 /// Returns the cost of evaluating each curve, in additions.
@@ -248,7 +248,12 @@ fn costs(model: &Model) -> Vec<f64> {
         _ => 1.0,
     };
     let curve = |curve: &Curve| {
-        model.graph.needed([curve.value]).into_iter().map(|id| cost(model.graph.node(id))).sum()
+        model
+            .graph
+            .dependencies([curve.value])
+            .into_iter()
+            .map(|id| cost(model.graph.node(id)))
+            .sum()
     };
     model.curves.iter().map(curve).collect()
 }

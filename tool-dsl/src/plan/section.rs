@@ -46,8 +46,9 @@ pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Own
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let [low, high] = outline::bounding_box(&section.outline).map(|end| end[1]);
     let middle = low / 2.0 + high / 2.0;
-    let is_owned =
-        |p: Point| p[0] >= 0.0 && tree.at(&|curve| shapes[curve].value([p[0], p[1]])).is_some();
+    let is_owned = |p: Point| {
+        p[0] >= 0.0 && tree.leaf_at(&|curve| shapes[curve].value([p[0], p[1]])).is_some()
+    };
     let distances = || (1..16).map(|k| size * 8f64.powi(k));
     let any_around = distances().any(|distance| {
         (0..=128).any(|k| {
@@ -106,7 +107,7 @@ fn try_trees(
     let inside = model.regions.iter().map(|region| &region.inside).collect();
     let owners = plan(model, &shapes, size, inner_input, inside)?;
     // A sliver between a curve and its chord may have been given to the wrong owner.
-    let owner = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
+    let owner = |p: Point| *owners.leaf_at(&|curve| shapes[curve].value(p));
     let part = |region: usize| match &section.over {
         Some(over) => over.regions[region].0,
         None => region,
@@ -126,9 +127,9 @@ fn try_trees(
         };
         outside.add(&cell, [whole_piece(&cell, Some(part))], |_| None);
     }
-    let neighbour_conditions = section.outside.iter().map(|part| &part.beside).collect();
+    let neighbour_conditions = section.outside.iter().map(|part| &part.condition).collect();
     let outside = plan(model, &shapes, size, outside, neighbour_conditions)?;
-    let part_at = |p: Point| *outside.at(&|curve| shapes[curve].value(p));
+    let part_at = |p: Point| *outside.leaf_at(&|curve| shapes[curve].value(p));
     let is_free = |p, distance| distance <= ROUNDING * size || owner(p).is_none();
     if let Some(p) = section
         .outer
@@ -234,7 +235,7 @@ fn plan<'m>(
     let candidates = (0..model.curves.len()).collect();
     let tree = planner.tree(&input.pieces, (all, all_corners), candidates)?;
     for (p, owner) in input.witnesses {
-        if *tree.at(&|curve| shapes[curve].value(p)) != owner {
+        if *tree.leaf_at(&|curve| shapes[curve].value(p)) != owner {
             return Err(inseparable_owners(model, p));
         }
     }
@@ -327,7 +328,8 @@ impl Planner<'_> {
                 (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed_rank = |curve: CurveIndex| self.model.first.iter().position(|f| *f == curve);
+        let listed_rank =
+            |curve: CurveIndex| self.model.first_curves.iter().position(|f| *f == curve);
         ranked.sort_by(|a, b| {
             let order = |curve| listed_rank(curve).unwrap_or(usize::MAX);
             order(a.1).cmp(&order(b.1)).then(b.0.total_cmp(&a.0))

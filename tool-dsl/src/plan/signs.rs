@@ -4,8 +4,8 @@ use super::empty::EmptinessProver;
 use super::{MAX_TESTS, Tree, bits, costs, too_large};
 use crate::bound::{Extent, spread};
 use crate::diagnostic::Diagnostic;
-use crate::expr::value::{At, Evaluator};
-use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 
 /// Returns the tree of owners for regions of which only the conditions are known.
@@ -23,7 +23,7 @@ pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usi
         emptiness: EmptinessProver::new(model),
         tests: 0,
     };
-    planner.tree(vec![ANY; model.curves.len()], &all_samples)
+    planner.tree(vec![ANY_SIGN; model.curves.len()], &all_samples)
 }
 
 /// A sample point: its side of each curve, and its owner.
@@ -37,7 +37,7 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     let mut evaluator = Evaluator::new(&model.graph, values);
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
-            evaluator.set(At::point(x, y, z));
+            evaluator.set(EvaluationPoint::new(x, y, z));
             let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
             let owner = model.regions.iter().position(|region| region.inside.holds(&value));
             let signs = (0..model.curves.len())
@@ -110,7 +110,7 @@ impl Planner<'_> {
     fn possible(&self, signs: &[Signs]) -> Vec<Option<usize>> {
         let mut possible = Vec::new();
         for (index, region) in self.model.regions.iter().enumerate() {
-            match region.inside.decided(signs) {
+            match region.inside.decide(signs) {
                 Some(true) => {
                     possible.push(Some(index));
                     return possible;
@@ -136,7 +136,8 @@ impl Planner<'_> {
         }
         let mut tried: Vec<CurveIndex> = Vec::new();
         let mut best: Option<(f64, CurveIndex)> = None;
-        let listed = self.model.first.iter().find(|first| atoms.iter().any(|(c, _)| c == *first));
+        let listed =
+            self.model.first_curves.iter().find(|first| atoms.iter().any(|(c, _)| c == *first));
         for (curve, _) in &atoms {
             if tried.contains(curve) {
                 continue;

@@ -4,7 +4,7 @@
 use crate::expr::interval::halves;
 use crate::expr::interval::{Cell, Encloser};
 use crate::formula::possible;
-use crate::formula::{ANY, CurveIndex, NEGATIVE, Signs, ZERO};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::Tree;
 
@@ -63,7 +63,9 @@ impl<'m> Cover<'m> {
         let known = path.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
         let possible_signs = known.fold(self.sign(*curve), |allowed, signs| allowed & signs);
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
-        for (side, signs) in [(below, possible_signs & low), (above, possible_signs & !low & ANY)] {
+        for (side, signs) in
+            [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)]
+        {
             if signs != 0 {
                 path.push((*curve, signs));
                 self.descend(side, path, claims);

@@ -24,26 +24,28 @@ impl Certificate {
         // One diagnostic per pair of regions, and one per region next to the outside.
         for diagnostic in self.borders.iter().filter_map(|border| jump(model, border)) {
             let same = |other: &Diagnostic| {
-                other.span == diagnostic.span && other.second == diagnostic.second
+                other.span == diagnostic.span && other.secondary == diagnostic.secondary
             };
             if !diagnostics.iter().any(same) {
                 diagnostics.push(diagnostic);
             }
         }
         let facts = || model.regions.iter().zip(&self.regions);
-        let oblique = facts()
-            .filter(|(region, _)| region.source != DirectionSource::Oblique)
-            .filter_map(|(region, facts)| Some((region.raw_direction.1, (region, facts.oblique?))));
+        let oblique =
+            facts().filter(|(region, _)| region.source != DirectionSource::Oblique).filter_map(
+                |(region, facts)| Some((region.raw_direction.1, (region, facts.oblique_witness?))),
+            );
         for (region, (angle, point)) in largest_by_span(oblique) {
-            diagnostics.push(oblique_direction(region, angle, model.shown(point)));
+            diagnostics.push(oblique_direction(region, angle, model.format_point(point)));
         }
-        let rises = facts().filter(|(region, _)| !region.rising).filter_map(|(region, facts)| {
-            Some((region.law_spans.niceness, (region, facts.rises?)))
-        });
+        let rises =
+            facts().filter(|(region, _)| !region.allow_rising).filter_map(|(region, facts)| {
+                Some((region.law_spans.niceness, (region, facts.rising_witness?)))
+            });
         for (region, (rate, point)) in largest_by_span(rises) {
-            let kind = CheckKind::NicenessRises {
+            let kind = CheckKind::RisingNiceness {
                 region: region.name.clone(),
-                place: model.shown(point),
+                location: model.format_point(point),
                 rate: FormattedNumber(rate),
                 unit: model.unit.symbol(),
             };
@@ -57,15 +59,15 @@ impl Certificate {
         let model = &tool.model;
         let mut diagnostics = Vec::new();
         if model.is_exact() && self.is_continuous() && !self.is_exact() {
-            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::NotShownExact));
+            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));
         }
         if let Some(open_proof) = self.undecided.first() {
             let kind = CheckKind::Undecided {
                 statement: open_proof.statement.clone(),
-                place: model.shown(open_proof.cell.middle()),
+                location: model.format_point(open_proof.cell.middle()),
                 more: self.undecided.len() - 1,
                 exact: model.is_exact(),
-                bound: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
+                factor: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
             };
             diagnostics.push(Diagnostic::new(model.name_span, kind));
         }
@@ -76,21 +78,21 @@ impl Certificate {
 /// Returns the error for a border with a point where depth jumps.
 fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
     let (point, [own, other]) = border.jump_point?;
-    let (region, neighbour) = border.between;
+    let (region, neighbour) = border.sides;
     let region = &model.regions[region];
-    let place = model.shown(point);
+    let location = model.format_point(point);
     Some(match neighbour.map(|neighbour| &model.regions[neighbour]) {
-        None => deep_on_surface(region, own, place),
+        None => deep_on_surface(region, own, location),
         Some(neighbour) => {
-            let kind = CheckKind::DepthJumps {
-                own: FormattedNumber(own),
-                other: FormattedNumber(other),
-                place,
+            let kind = CheckKind::DiscontinuousDepth {
+                depth: FormattedNumber(own),
+                other_depth: FormattedNumber(other),
+                location,
                 region: region.name.clone(),
-                beside: neighbour.name.clone(),
+                other_region: neighbour.name.clone(),
             };
             Diagnostic::new(region.law_spans.depth, kind)
-                .and(neighbour.law_spans.depth, "other depth")
+                .with_label(neighbour.law_spans.depth, "other depth")
         }
     })
 }
@@ -115,14 +117,14 @@ fn largest_by_span<'t>(
 }
 
 /// Returns the warning for a direction that is certainly not that of steepest descent.
-fn oblique_direction(region: &Region, angle: f64, place: String) -> Diagnostic {
+fn oblique_direction(region: &Region, angle: f64, location: String) -> Diagnostic {
     let kind = CheckKind::ObliqueDirection {
         region: region.name.clone(),
         degrees: FormattedNumber(angle.to_degrees()),
         // The tolerance covers the rounding of the angle, a few units in the last place.
         inward: angle > PI - 1e-6,
         derived: region.source == DirectionSource::Derived,
-        place,
+        location,
     };
     Diagnostic::new(region.raw_direction.1, kind)
 }

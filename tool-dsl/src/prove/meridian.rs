@@ -69,10 +69,10 @@ impl Meridian {
         let facts = proved.regions.into_iter().zip(&model.regions).zip(shares);
         let regions = facts.map(|((facts, region), share)| RegionFacts {
             share,
-            oblique: facts.oblique.map(|(angle, point)| (angle, self.point(point))),
-            rises: facts.rises.map(|(rate, point)| (rate, self.point(point))),
-            singular: facts.singular.iter().map(|cell| self.cell(cell)).collect(),
-            rounding: errors.over(region.depth, &whole),
+            oblique_witness: facts.oblique_witness.map(|(angle, point)| (angle, self.point(point))),
+            rising_witness: facts.rising_witness.map(|(rate, point)| (rate, self.point(point))),
+            singular_cells: facts.singular_cells.iter().map(|cell| self.cell(cell)).collect(),
+            rounding_error: errors.over(region.depth, &whole),
             ..facts
         });
         let regions = regions.collect();
@@ -127,7 +127,7 @@ impl<'g> RotationBehaviour<'g> {
     /// Returns whether a node is invariant: a polynomial if `y ∂/∂z - z ∂/∂y` of it is 0, any other node if
     /// its operands are.
     fn is_invariant(&mut self, id: Id) -> bool {
-        for id in self.graph.needed([id]) {
+        for id in self.graph.dependencies([id]) {
             if !self.known.contains_key(&id) {
                 let node = self.graph.node(id);
                 let is_invariant = match self.polynomials.of(self.graph, id).and_then(in_space) {
@@ -229,7 +229,9 @@ fn in_half_plane(model: &Model, axis: usize, perpendicular: [usize; 2]) -> Optio
         let evaluation = [region.depth, region.magnitude, region.niceness];
         evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
     });
-    for id in model.graph.needed(evaluation.chain(model.curves.iter().map(|curve| curve.value))) {
+    for id in
+        model.graph.dependencies(evaluation.chain(model.curves.iter().map(|curve| curve.value)))
+    {
         let at = |id: &Id| mapped[id];
         let image = match model.graph.node(id) {
             Node::Const(value) => graph.number(value.clone()),

@@ -76,7 +76,7 @@ pub struct Certificate {
     /// is below 0 inside, in the file's unit.
     pub tolerance: f64,
     /// The number of boxes examined.
-    pub boxes: usize,
+    pub examined_boxes: usize,
     /// The least slope of the depth toward the surface.
     min_slope: f64,
     /// The slack of all bounds, in the file's unit: `c · distance - slack ≤ depth ≤ L · distance + slack`,
@@ -95,50 +95,50 @@ pub struct RegionFacts {
     /// The range of depths, in the file's unit.
     pub depth: Interval,
     /// The range of the length of the depth's gradient.
-    pub steepness: Interval,
+    pub gradient_length: Interval,
     /// True if the depth is the distance to a line, a circle or a point.
-    pub distance: bool,
+    pub is_distance: bool,
     /// The range of magnitudes.
     pub magnitude: Interval,
     /// The range of niceness, before values below 0 are replaced by 0.
     pub niceness: Interval,
     /// True if niceness nowhere grows with depth, according to the product of both gradients, within 1e-9 of
     /// the product of their lengths. The tolerance is needed because a file's constants have few digits.
-    pub falls: bool,
+    pub niceness_never_rises: bool,
     /// The angle between the direction and the steepest descent of depth, in radians, if it is known
     /// anywhere.
     pub direction_error: Option<Interval>,
     /// The largest angle that is certain at a point, in radians, and that point in the tool's frame. Present
     /// only where the direction is not that of steepest descent.
-    pub oblique: Option<(f64, [f64; 3])>,
+    pub oblique_witness: Option<(f64, [f64; 3])>,
     /// The largest rate at which niceness rises with depth at the points examined, per unit of depth, and
     /// that point in the tool's frame.
-    pub rises: Option<(f64, [f64; 3])>,
+    pub rising_witness: Option<(f64, [f64; 3])>,
     /// The boxes where the direction vanishes; there it is along z.
-    pub singular: Vec<Cell>,
+    pub singular_cells: Vec<Cell>,
     /// True if the direction is perpendicular to an axis that the region touches, so that it turns there by
     /// up to half a turn.
-    pub on_axis: bool,
+    pub turns_on_axis: bool,
     /// A bound of the difference between the computed depth and the exact value of its expression, in the
     /// file's unit.
-    pub rounding: f64,
+    pub rounding_error: f64,
 }
 
 impl RegionFacts {
     const NONE: RegionFacts = RegionFacts {
         share: 0.0,
         depth: ZERO,
-        steepness: ZERO,
-        distance: false,
+        gradient_length: ZERO,
+        is_distance: false,
         magnitude: ZERO,
         niceness: ZERO,
-        falls: true,
+        niceness_never_rises: true,
         direction_error: None,
-        oblique: None,
-        rises: None,
-        singular: Vec::new(),
-        on_axis: false,
-        rounding: 0.0,
+        oblique_witness: None,
+        rising_witness: None,
+        singular_cells: Vec::new(),
+        turns_on_axis: false,
+        rounding_error: 0.0,
     };
 }
 
@@ -149,17 +149,17 @@ pub type JumpPoint = ([f64; 3], [f64; 2]);
 #[derive(Clone, Debug)]
 pub struct Border {
     /// A region and its neighbour, `None` for the outside.
-    pub between: (usize, Option<usize>),
+    pub sides: (usize, Option<usize>),
     /// A curve that separates them.
     pub curve: CurveIndex,
     /// The difference of their depths on it, 0 if they agree exactly. The depth of the outside is 0.
-    pub jump: Interval,
+    pub depth_jump: Interval,
     /// The difference of their magnitudes on it.
-    pub step: Interval,
+    pub magnitude_jump: Interval,
     /// The angle between their directions, in radians.
-    pub turn: Interval,
+    pub direction_angle: Interval,
     /// The same angle where they meet on the surface, if they do.
-    pub turn_on_surface: Option<Interval>,
+    pub direction_angle_on_surface: Option<Interval>,
     /// The depths at which they meet.
     pub depth: Interval,
     /// A point of the tool's frame where depth jumps, with both depths, if one was found.
@@ -177,22 +177,23 @@ pub struct OpenProof {
 
 impl Border {
     /// Adds the facts of another border between the same two owners.
-    pub fn join(&mut self, other: &Border) {
-        self.jump = self.jump.hull(other.jump);
-        self.step = self.step.hull(other.step);
-        self.turn = self.turn.hull(other.turn);
-        self.turn_on_surface = match (self.turn_on_surface, other.turn_on_surface) {
-            (Some(a), Some(b)) => Some(a.hull(b)),
-            (is_one, other) => is_one.or(other),
-        };
+    pub fn merge(&mut self, other: &Border) {
+        self.depth_jump = self.depth_jump.hull(other.depth_jump);
+        self.magnitude_jump = self.magnitude_jump.hull(other.magnitude_jump);
+        self.direction_angle = self.direction_angle.hull(other.direction_angle);
+        self.direction_angle_on_surface =
+            match (self.direction_angle_on_surface, other.direction_angle_on_surface) {
+                (Some(a), Some(b)) => Some(a.hull(b)),
+                (is_one, other) => is_one.or(other),
+            };
         self.depth = self.depth.hull(other.depth);
         self.jump_point = self.jump_point.or(other.jump_point);
     }
 
     /// Returns whether depths agree exactly on the border. Otherwise it is a point where other regions lie
     /// between the two.
-    pub fn is_joined(&self) -> bool {
-        self.jump.high == 0.0
+    pub fn has_equal_depths(&self) -> bool {
+        self.depth_jump.high == 0.0
     }
 }
 
@@ -205,19 +206,19 @@ pub struct Bounds {
     pub lipschitz: Option<f64>,
     /// A bound of the difference between a computed depth and one that satisfies these bounds, in the file's
     /// unit: rounding, and [`Certificate::slack`].
-    pub rounding: f64,
+    pub rounding_error: f64,
 }
 
 impl Bounds {
     /// Returns the bounds that can be proved quickly, and diagnostics for the errors found.
     ///
-    /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves
+    /// The depth of a profile is the distance by construction, which [`Certificate::prove`] proves
     /// independently. Regions by hand are examined in a few thousand boxes, except for their owners, which
     /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
-        let rounding = rounding::bound_over_tool(tool);
+        let rounding_error = rounding::bound_over_tool(tool);
         let is_written = |region: &Region| region.source == DirectionSource::Written;
-        let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding };
+        let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
         if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
             return (exact, Vec::new());
         }
@@ -228,8 +229,8 @@ impl Bounds {
             return (exact, diagnostics);
         }
         let [min_slope, lipschitz] = [certificate.lower_slope(), certificate.lipschitz()];
-        let rounding = rounding + certificate.slack;
-        (Bounds { lower_slope: min_slope, lipschitz, rounding }, diagnostics)
+        let rounding_error = rounding_error + certificate.slack;
+        (Bounds { lower_slope: min_slope, lipschitz, rounding_error }, diagnostics)
     }
 }
 
@@ -246,20 +247,21 @@ fn prove_with_budget(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> 
 
 impl Certificate {
     /// Proves as much as possible about a tool.
-    pub fn of(tool: &PlannedTool) -> Certificate {
+    pub fn prove(tool: &PlannedTool) -> Certificate {
         prove_with_budget(tool, MAX_BOXES, true)
     }
 
     /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
     pub fn is_continuous(&self) -> bool {
-        let joined = |border: &Border| border.jump.high <= self.tolerance;
+        let joined = |border: &Border| border.depth_jump.high <= self.tolerance;
         self.undecided.is_empty() && self.borders.iter().all(joined)
     }
 
     /// Returns `L`, if it is proved: depth is at most `L` times the distance to the surface, and changes by
     /// at most `L` times the length of a path, up to the [slack](Certificate::slack).
     pub fn lipschitz(&self) -> Option<f64> {
-        let steepest = self.regions.iter().map(|region| region.steepness.high).fold(0.0, f64::max);
+        let steepest =
+            self.regions.iter().map(|region| region.gradient_length.high).fold(0.0, f64::max);
         (self.is_continuous() && steepest.is_finite()).then_some(steepest)
     }
 

@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn slopes_are_compared_by_the_flattest_part_of_a_curve() {
         let mut graph = Graph::default();
-        let mut number = |text: &str| graph.number(Number::decimal(text).expect("a number"));
+        let mut number = |text: &str| graph.number(Number::parse_decimal(text).expect("a number"));
         let [less, more, flat] = ["0.9999999", "1.0000001", "0.001"].map(&mut number);
         let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
         let [own, other, linear_part] = [less, more, flat].map(|factor| graph.mul(factor, z));

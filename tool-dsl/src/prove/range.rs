@@ -140,7 +140,7 @@ mod tests {
     fn ranges(text: &str) -> Vec<(String, [f64; 2])> {
         let compiled = compile(&Source::new("a.tool", text));
         let tool = compiled.into_tool().expect("a tool");
-        let facts = Certificate::of(&tool).regions;
+        let facts = Certificate::prove(&tool).regions;
         let names = tool.model.regions.iter().map(|region| region.name.clone());
         names.zip(facts.iter().map(|facts| [facts.niceness.low, facts.niceness.high])).collect()
     }

@@ -70,7 +70,7 @@ impl<'g> Forms<'g> {
 
     /// Returns the form of a node, if it has one.
     pub(super) fn of(&mut self, id: Id) -> Option<RootForm> {
-        for id in self.graph.needed([id]) {
+        for id in self.graph.dependencies([id]) {
             if !self.forms.contains_key(&id) {
                 let form = self.node(id);
                 self.forms.insert(id, form);
@@ -123,7 +123,7 @@ impl RootForm {
             (Some((k, p)), Some((m, q))) => {
                 // |√P - √Q| is at most √|P - Q|.
                 let squares = p.clone().plus(&q.scaled(&minus_one)).over(cell).abs();
-                k.agrees(m).then(|| polynomial.plus(squares.sqrt()).high)
+                k.nearly_equals(m).then(|| polynomial.plus(squares.sqrt()).high)
             }
             _ => None,
         }
@@ -160,7 +160,7 @@ impl RootForm {
         let root = match (&self.root, &other.root) {
             (root, None) | (None, root) => root.clone(),
             (Some((k, p)), Some((m, q))) => {
-                let same = p.ratio(q).is_some_and(|ratio| ratio.agrees(&Number::int(1)));
+                let same = p.ratio(q).is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)));
                 let sum = k + m;
                 same.then(|| (!sum.is_zero()).then(|| (sum, p.clone())))?
             }
@@ -187,7 +187,7 @@ impl RootForm {
         };
         let Some((k, p)) = &divisor.root else {
             let divisor = divisor.polynomial.constant()?;
-            return Some(self.scaled(&Number::int(1).over(&divisor)?));
+            return Some(self.scaled(&Number::int(1).checked_div(&divisor)?));
         };
         Some(conjugate.scaled(&self.polynomial.ratio(&divisor.times_conjugate(k, p)?)?))
     }
@@ -290,9 +290,11 @@ impl RootForm {
     /// 1.
     pub(super) fn is_distance(&self) -> bool {
         match &self.root {
-            None => self.polynomial.slope_squared().is_some_and(|s| s.agrees(&Number::int(1))),
+            None => {
+                self.polynomial.slope_squared().is_some_and(|s| s.nearly_equals(&Number::int(1)))
+            }
             Some((k, p)) => {
-                k.abs().agrees(&Number::int(1))
+                k.abs().nearly_equals(&Number::int(1))
                     && self.polynomial.constant().is_some()
                     && p.is_squared_distance()
             }

@@ -60,7 +60,7 @@ impl<'g> RoundingErrors<'g> {
         domain: Domain,
         roots: impl IntoIterator<Item = Id>,
     ) -> RoundingErrors<'g> {
-        let needed = roots.into_iter().map(|root| (root, graph.needed([root]))).collect();
+        let needed = roots.into_iter().map(|root| (root, graph.dependencies([root]))).collect();
         let unknown = Rounded { value: ENTIRE, error: f64::INFINITY };
         RoundingErrors { graph, domain, needed, values: vec![unknown; graph.nodes().len()] }
     }

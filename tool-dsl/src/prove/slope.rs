@@ -230,7 +230,7 @@ impl<'g> Slopes<'g> {
         let mut values = vec![unknown; graph.nodes().len()];
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
-            let mut order = graph.needed([root]);
+            let mut order = graph.dependencies([root]);
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
                     values[id.index()] = Slope::constant(Interval::enclosing(value));

@@ -43,7 +43,7 @@ impl RootSum {
         let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
         let (factor, under) = self.roots.first()?;
         let (other, _) = difference.roots.iter().find(|(_, own)| is_same_radicand(own, under))?;
-        let ratio = factor.over(other)?;
+        let ratio = factor.checked_div(other)?;
         let rest = difference.scaled(&-&ratio).plus(self.clone());
         (rest.polynomial.is_zero() && rest.roots.is_empty()).then_some(ratio)
     }
@@ -57,7 +57,7 @@ impl RootSum {
         for (factor, under) in other.roots {
             match self.roots.iter_mut().find(|(_, own)| is_same_radicand(own, &under)) {
                 // A sum that cancels in 256 bits is 0.
-                Some((own, _)) if own.agrees(&-&factor) => *own = Number::int(0),
+                Some((own, _)) if own.nearly_equals(&-&factor) => *own = Number::int(0),
                 Some((own, _)) => *own = &*own + &factor,
                 None => self.roots.push((factor, under)),
             }
@@ -68,5 +68,5 @@ impl RootSum {
 }
 
 fn is_same_radicand(a: &Polynomial, b: &Polynomial) -> bool {
-    a.ratio(b).is_some_and(|ratio| ratio.agrees(&Number::int(1)))
+    a.ratio(b).is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)))
 }

@@ -106,7 +106,7 @@ impl Contact {
         let [[ad, az], [bd, bz]] = &self.slopes;
         let (dot_product, _) = Number::sum(&[ad * bd, az * bz]);
         let (length, _) = Number::sum(&[ad * ad, az * az]);
-        let Some(ratio) = (&Number::int(to * from) * &dot_product).over(&length) else {
+        let Some(ratio) = (&Number::int(to * from) * &dot_product).checked_div(&length) else {
             return false;
         };
         if ratio.is_zero() || ratio.is_negative() {

@@ -77,7 +77,7 @@ impl Tangency {
         tangency.add(a, false, line, only)?;
         tangency.add(b, true, line, only)?;
         if let (Some((k, p)), Some((m, q))) = (a.root(), b.root())
-            && k.agrees(m)
+            && k.nearly_equals(m)
             && tangency.rest.is_zero()
         {
             tangency.radicands = Some([p.on_line(line)?, q.on_line(line)?]);
@@ -115,7 +115,7 @@ impl Tangency {
             return Some(());
         };
         let [rest, slope, square] = coefficients(&under.on_line(line)?, monomial_of_axis)?;
-        let foot = -&slope.over(&(&Number::int(2) * &square))?;
+        let foot = -&slope.checked_div(&(&Number::int(2) * &square))?;
         let squared_distance = &rest - &(&(&foot * &foot) * &square);
         let scale = square.sqrt()?;
         self.roots.push(Root {

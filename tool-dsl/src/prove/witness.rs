@@ -5,7 +5,7 @@ use super::{JumpPoint, TOLERANCE};
 use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
-use crate::expr::value::{At, Evaluator};
+use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::CurveIndex;
 use crate::geometry::outline::{Segment, points_with_normals};
 use crate::plan::PlannedTool;
@@ -102,9 +102,9 @@ impl<'t> Witness<'t> {
     }
 
     pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
-        self.values.set(At::point(x, y, z));
+        self.values.set(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
-        *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
+        *self.tool.plan.owner.leaf_at(&|curve: CurveIndex| self.values.get(curves[curve].value))
     }
 
     /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether

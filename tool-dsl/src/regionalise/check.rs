@@ -48,8 +48,10 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     ];
     for (segment, tangent, point) in axis_ends {
         if tangent[0].abs() < TANGENT_SINE {
-            diagnostics
-                .push(Diagnostic::new(segment.span, ProfileKind::AlongAxis { place: show(point) }));
+            diagnostics.push(Diagnostic::new(
+                segment.span,
+                ProfileKind::TangentToAxis { location: show(point) },
+            ));
         }
     }
     // Segments that already have a diagnostic. Their neighbours would only repeat it.
@@ -57,20 +59,20 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     for (index, pair) in outline.windows(2).enumerate() {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
         if cross(before, after).abs() < TANGENT_SINE && dot(before, after) < 0.0 {
-            let place = show(pair[0].ends()[1]);
+            let location = show(pair[0].ends()[1]);
             diagnostics.push(
-                Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { place })
-                    .and(pair[0].span, "previous segment"),
+                Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { location })
+                    .with_label(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
-            let place = show(pair[0].ends()[1]);
+            let location = show(pair[0].ends()[1]);
             diagnostics.push(
                 Diagnostic::new(
                     pair[1].span,
-                    ProfileKind::HardlyTurns { least: TANGENT_SINE, place },
+                    ProfileKind::CornerTooFlat { min_angle: TANGENT_SINE, location },
                 )
-                .and(pair[0].span, "previous segment"),
+                .with_label(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         }
@@ -90,12 +92,12 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                 diagnostics.push(
                     Diagnostic::new(
                         b.span,
-                        ProfileKind::MeetsItself {
+                        ProfileKind::SelfIntersection {
                             touches: is_end(a) || is_end(b),
-                            place: show(point),
+                            location: show(point),
                         },
                     )
-                    .and(a.span, "other segment"),
+                    .with_label(a.span, "other segment"),
                 );
                 reported.extend([i, j]);
             }

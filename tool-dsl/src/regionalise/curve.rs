@@ -160,7 +160,8 @@ impl Section<'_> {
         let middle = [0, 1].map(|k| &circle.centre[k] + &(&outward[k] * &circle.radius));
         let square = outline::squared_distance(graph, &middle);
         let rise = outline::linear(graph, outward, &middle)?;
-        let (per_radius, two) = (graph.number(Number::int(1).over(&circle.radius)?), graph.int(2));
+        let (per_radius, two) =
+            (graph.number(Number::int(1).checked_div(&circle.radius)?), graph.int(2));
         let (scaled, rise) = (graph.mul(per_radius, square), graph.mul(two, rise));
         let numerator = graph.add(scaled, rise);
         let (distance, one) = (outline::distance(graph, &circle.centre)?, graph.int(1));

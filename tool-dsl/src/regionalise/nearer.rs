@@ -94,7 +94,7 @@ impl Section<'_> {
             return Some(if is_axis_parallel { expanded(graph, difference) } else { difference });
         }
         let offset = [0, 1].map(|k| &second.from[k] - &first.from[k]);
-        let along = (&(&offset[0] * &bz) - &(&offset[1] * &bd)).over(&sine)?;
+        let along = (&(&offset[0] * &bz) - &(&offset[1] * &bd)).checked_div(&sine)?;
         let intersection = [&ad, &az].map(|direction| direction * &along);
         let intersection = [0, 1].map(|k| &first.from[k] + &intersection[k]);
         // Normals are the directions turned left.
@@ -225,8 +225,8 @@ fn difference_from_common_corner(
 
 /// Returns the difference as an expanded polynomial, so that squares which cancel are not subtracted at every point.
 fn expanded(graph: &mut Graph, difference: Id) -> Id {
-    match Polynomial::of(graph, difference) {
-        Some(polynomial) => polynomial.expression(graph),
+    match Polynomial::from_expression(graph, difference) {
+        Some(polynomial) => polynomial.to_expression(graph),
         None => difference,
     }
 }

@@ -4,7 +4,7 @@ use super::cells::Cell;
 use crate::expr::Graph;
 use crate::expr::polynomial::Polynomials;
 use crate::formula::Curve;
-use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::formula::{ANY_SIGN, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
 use crate::geometry::outline::{Point, Segment, bounding_box, minus, norm};
 use crate::geometry::shape::CurveFunction;
@@ -44,7 +44,7 @@ pub(crate) fn divided(
     size: f64,
 ) -> Vec<(Piece, Vec<usize>)> {
     let mut parts = Vec::new();
-    divide(piece, (vec![ANY; shapes.len()], 0), conditions, shapes, size, &mut parts);
+    divide(piece, (vec![ANY_SIGN; shapes.len()], 0), conditions, shapes, size, &mut parts);
     parts
 }
 
@@ -62,10 +62,10 @@ fn divide(
 ) {
     loop {
         let undecided = conditions[decided..].iter().enumerate();
-        let mut undecided =
-            undecided.filter_map(|(k, condition)| Some((k, condition.first_open(&signs)?)));
+        let mut undecided = undecided
+            .filter_map(|(k, condition)| Some((k, condition.first_undecided_curve(&signs)?)));
         let Some((before, curve)) = undecided.next() else {
-            let holds = |k: &usize| conditions[*k].decided(&signs) == Some(true);
+            let holds = |k: &usize| conditions[*k].decide(&signs) == Some(true);
             parts.push((piece, (0..conditions.len()).filter(holds).collect()));
             return;
         };

@@ -181,7 +181,8 @@ impl Arm<'_> {
                 ([-&z, d], true)
             }
             Some(circle) => {
-                let radial = offset(point, &circle.centre).map(|part| part.over(&circle.radius));
+                let radial =
+                    offset(point, &circle.centre).map(|part| part.checked_div(&circle.radius));
                 let [Some(d), Some(z)] = radial else { return None };
                 ([d, z], !circle.convex)
             }
@@ -201,7 +202,7 @@ impl Arm<'_> {
         let Some(circle) = &self.segment.circle else {
             return Some(point_along(corner, &self.direction_from_corner()?, length));
         };
-        let angle = length.over(&circle.radius)?;
+        let angle = length.checked_div(&circle.radius)?;
         if angle.to_f64() >= PI {
             return None;
         }
@@ -235,7 +236,7 @@ impl Arm<'_> {
             None => {
                 let own = self.normal(self.corner())?;
                 let height = product(&offset(point, self.corner()), &own);
-                height.over(&(&Number::int(1) - &product(normal, &own)))
+                height.checked_div(&(&Number::int(1) - &product(normal, &own)))
             }
             Some(circle) => {
                 let offset = offset(point, &circle.centre);
@@ -243,9 +244,9 @@ impl Arm<'_> {
                 let radial = product(&offset, normal);
                 let two = Number::int(2);
                 if self.is_alike(circle) {
-                    numerator.over(&(&two * &(&circle.radius + &radial)))
+                    numerator.checked_div(&(&two * &(&circle.radius + &radial)))
                 } else {
-                    (-&numerator).over(&(&two * &(&circle.radius - &radial)))
+                    (-&numerator).checked_div(&(&two * &(&circle.radius - &radial)))
                 }
             }
         }
@@ -262,7 +263,7 @@ impl Arm<'_> {
             ));
         };
         let signed_radius = if self.is_alike(circle) { -radius } else { radius.clone() };
-        let ratio = circle.radius.over(&(&circle.radius + &signed_radius))?;
+        let ratio = circle.radius.checked_div(&(&circle.radius + &signed_radius))?;
         Some(point_along(&circle.centre, &offset(centre, &circle.centre), &ratio))
     }
 
@@ -276,7 +277,7 @@ impl Arm<'_> {
     fn half_arc_on_axis(&self, length: &Number) -> Option<Corner> {
         let to = self.point(length)?;
         let normal = self.normal(&to)?;
-        let radius = (-&to[0]).over(&normal[0])?;
+        let radius = (-&to[0]).checked_div(&normal[0])?;
         if radius.to_f64() <= 0.0 || !self.admits_radius(&radius) {
             return None;
         }

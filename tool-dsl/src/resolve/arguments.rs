@@ -52,10 +52,13 @@ fn read_arguments<'t>(
     let mut arguments: Vec<Argument<'t>> = Vec::new();
     for setting in settings {
         let name = &setting.name;
-        if let Some(first) = arguments.iter().find(|other| other.setting.name.word == name.word) {
+        if let Some(first) = arguments.iter().find(|other| other.setting.name.text == name.text) {
             diagnostics.push(
-                Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
-                    .and(first.setting.name.span, "first value"),
+                Diagnostic::new(
+                    name.span,
+                    ValueKind::DuplicateArgument { name: name.text.clone() },
+                )
+                .with_label(first.setting.name.span, "first value"),
             );
             continue;
         }
@@ -76,7 +79,7 @@ pub(super) fn value_of(
     arguments: &[Argument<'_>],
     unit: Unit,
 ) -> Result<(Number, Dimension), Diagnostic> {
-    match arguments.iter().find(|argument| argument.setting.name.word == param.name.word) {
+    match arguments.iter().find(|argument| argument.setting.name.text == param.name.text) {
         Some(argument) => argument.replace_default(&param.value, default.1, unit),
         None => Ok(default),
     }
@@ -89,30 +92,30 @@ impl Argument<'_> {
         default_dimension: Dimension,
         unit: Unit,
     ) -> Result<(Number, Dimension), Diagnostic> {
-        let Definition { name: Name { word, .. }, value } = self.setting;
+        let Definition { name: Name { text: word, .. }, value } = self.setting;
         let Some(dimension) = default_dimension.common(self.dimension) else {
             let diagnostic = Diagnostic::new(
                 value.span,
-                ValueKind::GivenDimension {
-                    word: word.clone(),
-                    wanted: default_dimension,
+                ValueKind::ArgumentDimension {
+                    name: word.clone(),
+                    dimension: default_dimension,
                     found: self.dimension,
                 },
             )
-            .and(default.span, "default value");
+            .with_label(default.span, "default value");
             return Err(diagnostic);
         };
         let power = match dimension {
             // For a length, a number without a unit is in the unit of the file in which it is written.
             Dimension::Length(power) => power,
-            Dimension::Bare if self.unit != unit && !self.value.is_zero() => {
+            Dimension::Dimensionless if self.unit != unit && !self.value.is_zero() => {
                 return Err(Diagnostic::new(
                     value.span,
-                    ValueKind::GivenUnit {
-                        word: word.clone(),
+                    ValueKind::AmbiguousArgumentUnit {
+                        name: word.clone(),
                         number: FormattedNumber(self.value.to_f64()),
-                        here: self.unit.symbol(),
-                        there: unit.symbol(),
+                        file_unit: self.unit.symbol(),
+                        mounted_unit: unit.symbol(),
                     },
                 ));
             }
@@ -141,29 +144,29 @@ pub(super) fn report_unknown_params(
         .items
         .iter()
         .filter_map(|item| match item {
-            Item::Param(definition) => Some(definition.name.word.as_str()),
+            Item::Param(definition) => Some(definition.name.text.as_str()),
             _ => None,
         })
         .collect();
     for Argument { setting: Definition { name, .. }, .. } in arguments {
-        let word = name.word.as_str();
+        let word = name.text.as_str();
         if params.contains(&word) {
             continue;
         }
         let other = tool.items.iter().find_map(|item| match item {
-            Item::Let(definition) if definition.name.word == word => Some(definition),
+            Item::Let(definition) if definition.name.text == word => Some(definition),
             _ => None,
         });
         let remedy = match (other, nearest(word, params.iter().copied())) {
             (Some(_), _) => ParamRemedy::Let,
-            (None, Some(meant)) => ParamRemedy::Meant(meant.to_owned()),
+            (None, Some(suggestion)) => ParamRemedy::Similar(suggestion.to_owned()),
             (None, None) => ParamRemedy::List,
         };
-        let (tool, params) = (tool.name.word.clone(), Names::new(params.iter().copied()));
-        let kind = ValueKind::NoSuchParam { tool, word: word.to_owned(), remedy, params };
+        let (tool, params) = (tool.name.text.clone(), Names::new(params.iter().copied()));
+        let kind = ValueKind::UnknownParam { tool, name: word.to_owned(), remedy, params };
         let diagnostic = Diagnostic::new(name.span, kind);
         diagnostics.push(match other {
-            Some(other) => diagnostic.and(other.name.span, "defined by `let` here"),
+            Some(other) => diagnostic.with_label(other.name.span, "defined by `let` here"),
             None => diagnostic,
         });
     }

@@ -17,19 +17,22 @@ impl Lowering {
         span: Span,
         may: Allowed,
     ) -> Lowered {
-        let word = name.word.as_str();
+        let word = name.text.as_str();
         let expected_count = match word {
             "min" | "max" | "hypot" => 2..=usize::MAX,
             "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
             _ => {
-                let (word, meant) = (word.to_owned(), nearest(word, FUNCTIONS));
-                let kind = ValueKind::UnknownFunction { word, meant, known: &FUNCTIONS };
+                let kind = ValueKind::UnknownFunction {
+                    name: word.to_owned(),
+                    suggestion: nearest(word, FUNCTIONS),
+                    known: &FUNCTIONS,
+                };
                 return Err(Diagnostic::new(name.span, kind));
             }
         };
         if !expected_count.contains(&arguments.len()) {
-            let (word, several) = (word.to_owned(), *expected_count.start() == 2);
-            let kind = ValueKind::WrongArguments { word, several, count: arguments.len() };
+            let (function, variadic) = (word.to_owned(), *expected_count.start() == 2);
+            let kind = ValueKind::WrongArgumentCount { function, variadic, count: arguments.len() };
             return Err(Diagnostic::new(span, kind));
         }
         if matches!(word, "sin" | "cos" | "tan") {
@@ -56,10 +59,10 @@ impl Lowering {
             dimension = dimension.common(of_other).ok_or_else(|| {
                 Diagnostic::new(
                     argument.span,
-                    ValueKind::UnlikeArguments {
-                        word: word.to_owned(),
+                    ValueKind::MixedArguments {
+                        function: word.to_owned(),
                         first: dimension,
-                        other: of_other,
+                        second: of_other,
                     },
                 )
             })?;
@@ -83,13 +86,13 @@ impl Lowering {
         let Some(angle) = self.graph.constant(id).cloned() else {
             return Err(Diagnostic::new(
                 span,
-                ValueKind::TrigonometryOfVariable { word: word.to_owned() },
+                ValueKind::TrigonometryOfVariable { function: word.to_owned() },
             ));
         };
         if dimension != Dimension::Angle {
             return Err(Diagnostic::new(
                 argument.span,
-                ValueKind::NotAngle { word: word.to_owned(), dimension, value: angle.to_f64() },
+                ValueKind::NotAngle { function: word.to_owned(), dimension, value: angle.to_f64() },
             ));
         }
         if angle.to_f64().abs() > 1e6 {
@@ -104,6 +107,6 @@ impl Lowering {
             }
             _ => &angle.sin() / &cos,
         };
-        Ok((self.graph.number(value), Dimension::Bare))
+        Ok((self.graph.number(value), Dimension::Dimensionless))
     }
 }

@@ -88,7 +88,7 @@ impl Curves {
 /// Returns whether a sum has a `min`, `max` or `abs` among its terms.
 fn has_corner(graph: &Graph, value: Id) -> bool {
     let mut corner = std::collections::BTreeSet::new();
-    for id in graph.needed([value]) {
+    for id in graph.dependencies([value]) {
         let has = match graph.node(id) {
             Node::Max(..) | Node::Min(..) | Node::Abs(_) => true,
             Node::Neg(a) => corner.contains(a),

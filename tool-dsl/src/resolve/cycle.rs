@@ -1,6 +1,6 @@
 //! Cycles of definitions.
 
-use crate::diagnostic::{Diagnostic, Links, Reported, ValueKind};
+use crate::diagnostic::{CycleLinks, Diagnostic, Reported, ValueKind};
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Expr, ExprKind};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub(super) fn refused<'t>(
 ) -> BTreeMap<String, Reported> {
     let mut of_name: BTreeMap<&str, &Definition> = BTreeMap::new();
     for definition in definitions {
-        of_name.entry(&definition.name.word).or_insert(definition);
+        of_name.entry(&definition.name.text).or_insert(definition);
     }
     let mut refused = BTreeMap::new();
     let mut done: BTreeMap<&str, bool> = BTreeMap::new();
@@ -24,16 +24,16 @@ pub(super) fn refused<'t>(
     let mut roots: Vec<&Definition> = of_name.values().copied().collect();
     roots.sort_by_key(|definition| definition.name.span.start);
     for root in roots {
-        if done.contains_key(root.name.word.as_str()) {
+        if done.contains_key(root.name.text.as_str()) {
             continue;
         }
         // The path from the root; each step has the names still to be followed. It is iterative rather than recursive,
         // since a chain of definitions may be as long as a file.
-        done.insert(&root.name.word, false);
+        done.insert(&root.name.text, false);
         let mut path = vec![Step::new(root, root.name.span)];
         while let Some(step) = path.last_mut() {
             let Some((word, span)) = step.pending.pop() else {
-                done.insert(&step.definition.name.word, true);
+                done.insert(&step.definition.name.text, true);
                 path.pop();
                 continue;
             };
@@ -41,7 +41,7 @@ pub(super) fn refused<'t>(
             match done.get(word) {
                 Some(true) => {}
                 Some(false) => {
-                    let first = path.iter().position(|step| step.definition.name.word == word);
+                    let first = path.iter().position(|step| step.definition.name.text == word);
                     let cycle = &path[first.unwrap_or_default()..];
                     let known = cycle.iter().any(|step| refused.contains_key(step.word()));
                     if !known {
@@ -74,7 +74,7 @@ impl<'t> Step<'t> {
     }
 
     fn word(&self) -> &'t str {
-        &self.definition.name.word
+        &self.definition.name.text
     }
 }
 
@@ -96,15 +96,15 @@ pub(super) fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
 
 /// Returns the error for a cycle. `span` is where its last definition mentions the first one.
 fn circular(cycle: &[Step<'_>], span: Span) -> Diagnostic {
-    let word = cycle[0].word().to_owned();
+    let name = cycle[0].word().to_owned();
     let [_, second, ..] = cycle else {
-        let kind = ValueKind::DefinedByItself { word, links: Links(Vec::new()), more: 0 };
+        let kind = ValueKind::CircularDefinition { name, links: CycleLinks(Vec::new()), more: 0 };
         return Diagnostic::new(span, kind);
     };
     let next = cycle.iter().skip(1).chain(&cycle[..1]);
     let link = |(step, next): (&Step<'_>, &Step<'_>)| [step.word(), next.word()].map(str::to_owned);
     let links: Vec<[String; 2]> = cycle.iter().zip(next).take(MAX_LISTED_LINKS).map(link).collect();
     let more = cycle.len() - links.len();
-    let kind = ValueKind::DefinedByItself { word, links: Links(links), more };
-    Diagnostic::new(span, kind).and(second.span, "first link of the cycle")
+    let kind = ValueKind::CircularDefinition { name, links: CycleLinks(links), more };
+    Diagnostic::new(span, kind).with_label(second.span, "first link of the cycle")
 }

@@ -11,7 +11,7 @@ use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
-use crate::model::{DirectionSource, Outside, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, OutsidePart, Over, Region, Section, Surface};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::source::Span;
 
@@ -66,7 +66,7 @@ pub(super) fn derived(
         Err(Undivided([d, z])) => {
             let at = nearest_span(&outline, [d, z]).unwrap_or(span);
             let z = lowering.frame.to_file(z);
-            let diagnostic = Diagnostic::new(at, ProfileKind::Undivided { d, z });
+            let diagnostic = Diagnostic::new(at, ProfileKind::DivisionFailed { d, z });
             diagnostics.push(diagnostic);
             return FromProfile::default();
         }
@@ -101,8 +101,8 @@ pub(super) fn derived(
     let zero = lowering.graph.int(0);
     let outside = beside
         .iter()
-        .map(|part| Outside {
-            beside: formula(&part.inside, curves, &mut lowering.graph),
+        .map(|part| OutsidePart {
+            condition: formula(&part.inside, curves, &mut lowering.graph),
             clearance: lowering.graph.max(zero, part.depth),
         })
         .collect();

@@ -29,20 +29,22 @@ impl RegionResolver<'_> {
             [resolve_direction] => Ok(Some(RawDirection {
                 parts: self.direction(&resolve_direction.direction)?,
                 span: resolve_direction.span,
-                source: match resolve_direction.oblique {
+                source: match resolve_direction.allow_oblique {
                     true => DirectionSource::Oblique,
                     false => DirectionSource::Written,
                 },
             })),
-            [first, second, ..] => Err(Diagnostic::new(second.span, RegionKind::DirectionTwice)
-                .and(first.span, "first direction")),
+            [first, second, ..] => {
+                Err(Diagnostic::new(second.span, RegionKind::DuplicateDirection)
+                    .with_label(first.span, "first direction"))
+            }
         }
     }
 
     /// Returns the vector of a direction, not normalised.
     fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Diagnostic> {
         match direction {
-            Direction::Along(tuple) => self.along(tuple),
+            Direction::Vector(tuple) => self.along(tuple),
             Direction::AwayFrom(tuple) => self.direction_from_point(tuple),
             Direction::Toward(tuple) => {
                 let from_point = self.direction_from_point(tuple)?;
@@ -53,19 +55,19 @@ impl RegionResolver<'_> {
 
     fn along(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
         let domain = self.lowering.domain;
-        let (mut parts, mut dimension) = (Vec::new(), Dimension::Bare);
+        let (mut parts, mut dimension) = (Vec::new(), Dimension::Dimensionless);
         for part in components(tuple, domain, Role::Direction)? {
             let (id, of_part) = self.lowering.lower(part, Allowed::Coordinates)?;
             let common_dimension = dimension.common(of_part).filter(|d| *d != Dimension::Angle);
             dimension = common_dimension.ok_or_else(|| {
                 Diagnostic::new(
                     tuple.span,
-                    RegionKind::UnlikeParts { first: dimension, other: of_part },
+                    RegionKind::MixedDirection { first: dimension, second: of_part },
                 )
             })?;
             parts.push(id);
         }
-        let down = self.lowering.frame.down;
+        let down = self.lowering.frame.spindle_down;
         let graph = &mut self.lowering.graph;
         let [x, y, z] = domain.vector(graph, &parts);
         Ok([x, y, if down { graph.neg(z) } else { z }])
@@ -93,16 +95,16 @@ impl RegionResolver<'_> {
 
 /// Returns the components of a tuple, which has to have as many as the domain has coordinates.
 fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
-    let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
-    if count == wanted {
-        return Ok(tuple.parts.iter().collect());
+    let (count, expected) = (tuple.components.len(), domain.coordinates().len());
+    if count == expected {
+        return Ok(tuple.components.iter().collect());
     }
-    let (file, shown) = (domain.keyword(), domain.tuple());
-    let kind = RegionKind::WrongParts { role, file, wanted, count, tuple: shown };
+    let (domain, coordinates) = (domain.keyword(), domain.tuple());
+    let kind = RegionKind::WrongComponentCount { role, domain, expected, count, coordinates };
     Err(Diagnostic::new(tuple.span, kind))
 }
 
 /// Returns the two components of a point of a tool.
 pub(super) fn pair(tuple: &Tuple, role: Role) -> Result<[&Expr; 2], Diagnostic> {
-    components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.parts[0], &tuple.parts[1]])
+    components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.components[0], &tuple.components[1]])
 }

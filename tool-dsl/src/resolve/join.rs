@@ -152,7 +152,7 @@ fn crossing(segment: &Segment, plane: &Number) -> Number {
     let [[d, z], [to_d, to_z]] = [&segment.from, &segment.to];
     match &segment.circle {
         None => {
-            let part = (plane - z).over(&(to_z - z)).unwrap_or_else(|| Number::int(0));
+            let part = (plane - z).checked_div(&(to_z - z)).unwrap_or_else(|| Number::int(0));
             d + &(&part * &(to_d - d))
         }
         Some(circle) => {

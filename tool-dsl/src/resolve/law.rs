@@ -29,7 +29,7 @@ impl<'t> Laws<'t> {
             self.own
                 .iter()
                 .filter(is(quantity))
-                .find(|law| law.surfaces.iter().any(|name| name.word == word))
+                .find(|law| law.surfaces.iter().any(|name| name.text == word))
         };
         for_word(&surface.name)
             .or_else(|| if surface.cutting { for_word("cutting") } else { None })
@@ -51,12 +51,12 @@ impl<'t> Laws<'t> {
             }
             let what = law.quantity.keyword();
             if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
-                diagnostics.push(Diagnostic::new(law.span, RegionKind::NicenessOfAll));
+                diagnostics.push(Diagnostic::new(law.span, RegionKind::NicenessWithoutSurface));
             }
             let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
                 vec![("", law.span)]
             } else {
-                law.surfaces.iter().map(|name| (name.word.as_str(), name.span)).collect()
+                law.surfaces.iter().map(|name| (name.text.as_str(), name.span)).collect()
             };
             for (word, span) in words {
                 if let Some((.., first)) =
@@ -64,8 +64,8 @@ impl<'t> Laws<'t> {
                 {
                     let surface = (!word.is_empty()).then(|| word.to_owned());
                     diagnostics.push(
-                        Diagnostic::new(span, RegionKind::TwoLaws { quantity: what, surface })
-                            .and(*first, "first law"),
+                        Diagnostic::new(span, RegionKind::DuplicateLaw { quantity: what, surface })
+                            .with_label(*first, "first law"),
                     );
                 }
                 known_laws.push((law.quantity, word, span));
@@ -81,10 +81,10 @@ impl<'t> Laws<'t> {
                         let of_part = format!(".{word}");
                         let qualified_name = known.clone().find(|name| name.ends_with(&of_part));
                         let remedy = match qualified_name.or(nearest(word, known)) {
-                            Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
+                            Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
                             None => named(word, surfaces),
                         };
-                        let kind = RegionKind::UnknownSurface { word: word.to_owned(), remedy };
+                        let kind = RegionKind::UnknownSurface { name: word.to_owned(), remedy };
                         diagnostics.push(Diagnostic::new(span, kind));
                     }
                     Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
@@ -102,15 +102,15 @@ fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
     let of = format!("{word}.");
     let names = || surfaces.iter().map(|surface| surface.name.as_str());
     if names().any(|name| name.starts_with(&of)) {
-        SurfaceRemedy::OfPart(Names::new(names().filter(|name| name.starts_with(&of))))
+        SurfaceRemedy::OfMount(Names::new(names().filter(|name| name.starts_with(&of))))
     } else {
         SurfaceRemedy::List(Names::new(names().take(8)))
     }
 }
 
 pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
-    Diagnostic::new(span, RegionKind::IdleNiceness { surface: surface.name.clone() })
-        .and(surface.span, "not marked `cutting` here")
+    Diagnostic::new(span, RegionKind::NicenessOfNonCutting { surface: surface.name.clone() })
+        .with_label(surface.span, "not marked `cutting` here")
 }
 
 /// Returns a filter of laws by quantity.

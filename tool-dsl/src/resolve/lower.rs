@@ -75,9 +75,9 @@ impl Lowering {
         name: &Name,
         (id, dimension): (Id, Dimension),
     ) -> Result<(), Diagnostic> {
-        let word = name.word.as_str();
+        let word = name.text.as_str();
         if let Some(meaning) = self.domain.meaning(word) {
-            let kind = ValueKind::ReservedName { word: word.to_owned(), meaning: Some(meaning) };
+            let kind = ValueKind::ReservedName { name: word.to_owned(), meaning: Some(meaning) };
             return Err(Diagnostic::new(name.span, kind));
         }
         if COORDINATES.contains(&word)
@@ -85,16 +85,16 @@ impl Lowering {
             || word == "pi"
             || word == "depth"
         {
-            let kind = ValueKind::ReservedName { word: word.to_owned(), meaning: None };
+            let kind = ValueKind::ReservedName { name: word.to_owned(), meaning: None };
             return Err(Diagnostic::new(name.span, kind));
         }
         let value = Value { id, dimension, span: name.span, used: false };
         if let Some(earlier) = self.values.get(word) {
             return Err(Diagnostic::new(
                 name.span,
-                ValueKind::DefinedTwice { word: word.to_owned() },
+                ValueKind::DuplicateDefinition { name: word.to_owned() },
             )
-            .and(earlier.span, "first definition"));
+            .with_label(earlier.span, "first definition"));
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
@@ -109,7 +109,7 @@ impl Lowering {
     ) {
         if let Err(diagnostic) = defined {
             let reported = Reported::push(diagnostics, diagnostic);
-            self.broken.insert(name.word.clone(), reported);
+            self.broken.insert(name.text.clone(), reported);
         }
     }
 
@@ -150,7 +150,10 @@ impl Lowering {
             return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
         }
         if self.graph.height(id) > MAX_HEIGHT {
-            return Err(Diagnostic::new(expr.span, ValueKind::TooManySteps { most: MAX_HEIGHT }));
+            return Err(Diagnostic::new(
+                expr.span,
+                ValueKind::ExpressionTooDeep { limit: MAX_HEIGHT },
+            ));
         }
         Ok((id, dimension))
     }
@@ -158,7 +161,7 @@ impl Lowering {
     fn node(&mut self, expr: &Expr, may: Allowed) -> Lowered {
         match &expr.kind {
             ExprKind::Number(value, None) => {
-                Ok((self.graph.number(value.clone()), Dimension::Bare))
+                Ok((self.graph.number(value.clone()), Dimension::Dimensionless))
             }
             ExprKind::Number(value, Some(unit)) => self.measured(value, unit, expr.span),
             ExprKind::Name(word) => self.name(word, expr.span, may),
@@ -177,8 +180,8 @@ impl Lowering {
     }
 
     fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> Lowered {
-        let word = unit.word.as_str();
-        if let Some(from) = Unit::from_word(word) {
+        let word = unit.text.as_str();
+        if let Some(from) = Unit::from_symbol(word) {
             let value = value * &from.factor_to(self.unit);
             return Ok((self.graph.number(value), LENGTH));
         }
@@ -195,24 +198,32 @@ impl Lowering {
                     (Domain::Space, "d") => "hypot(x, y)".to_owned(),
                     _ => word.to_owned(),
                 };
-                let word = word.to_owned();
-                Err(Diagnostic::new(span, ValueKind::GluedName { number, word, factor, diameter }))
+                let name = word.to_owned();
+                Err(Diagnostic::new(
+                    span,
+                    ValueKind::NumberJoinedToName { number, name, factor, diameter },
+                ))
             }
             _ => {
-                let meant = UNITS.into_iter().find(|unit| unit.eq_ignore_ascii_case(word));
-                let (word, known) = (word.to_owned(), Names::new(UNITS));
-                Err(Diagnostic::new(unit.span, ValueKind::UnknownUnit { word, meant, known }))
+                let suggestion = UNITS.into_iter().find(|unit| unit.eq_ignore_ascii_case(word));
+                let known = Names::new(UNITS);
+                Err(Diagnostic::new(
+                    unit.span,
+                    ValueKind::UnknownUnit { unit: word.to_owned(), suggestion, known },
+                ))
             }
         }
     }
 
     fn name(&mut self, word: &str, span: Span, may: Allowed) -> Lowered {
         let coordinate = match word {
-            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Bare)),
+            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Dimensionless)),
             "depth" => {
                 return match may {
                     Allowed::Depth(depth) => Ok((depth, LENGTH)),
-                    Allowed::Coordinates => Err(Diagnostic::new(span, ValueKind::DepthUnknown)),
+                    Allowed::Coordinates => {
+                        Err(Diagnostic::new(span, ValueKind::DepthNotAvailable))
+                    }
                     Allowed::Constants(role) => Err(not_constant(span, Some(word), role)),
                 };
             }
@@ -220,8 +231,8 @@ impl Lowering {
         };
         let coordinate = coordinate.map(|(coordinate, ..)| *coordinate);
         if coordinate.is_none() && COORDINATES.contains(&word) {
-            let other = if word == "d" { "tool" } else { "solid" };
-            let kind = ValueKind::OtherCoordinate { word: word.to_owned(), other };
+            let domain = if word == "d" { "tool" } else { "solid" };
+            let kind = ValueKind::CoordinateOfOtherDomain { name: word.to_owned(), domain };
             return Err(Diagnostic::new(span, kind));
         }
         if let Some(coordinate) = coordinate {
@@ -240,19 +251,22 @@ impl Lowering {
                     && let Allowed::Constants(role) = may
                 {
                     return Err(not_constant(span, Some(word), role)
-                        .and(*definition, "defined as a curve here"));
+                        .with_label(*definition, "defined as a curve here"));
                 }
-                return Err(Diagnostic::new(span, ValueKind::UsedAbove { word: word.to_owned() })
-                    .and(*definition, "defined here"));
+                return Err(Diagnostic::new(
+                    span,
+                    ValueKind::UsedBeforeDefinition { name: word.to_owned() },
+                )
+                .with_label(*definition, "defined here"));
             }
             let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
             let known = self.values.keys().map(String::as_str).chain(coordinates);
             let known = known.chain(["pi", "depth"]);
             let remedy = match nearest(word, known) {
-                Some(meant) => NameRemedy::Meant(meant.to_owned()),
+                Some(suggestion) => NameRemedy::Similar(suggestion.to_owned()),
                 None => NameRemedy::Define,
             };
-            let kind = ValueKind::UnknownName { word: word.to_owned(), remedy };
+            let kind = ValueKind::UnknownName { name: word.to_owned(), remedy };
             return Err(Diagnostic::new(span, kind));
         };
         value.used = true;
@@ -291,7 +305,7 @@ impl Lowering {
             _ => (da.over(db), Operation::Divide),
         };
         let dimension = dimension.ok_or_else(|| {
-            Diagnostic::new(span, ValueKind::UnlikeOperands { operation, left: da, right: db })
+            Diagnostic::new(span, ValueKind::MixedOperands { operation, left: da, right: db })
         })?;
         let id = match operator {
             Binary::Add => self.graph.add(a, b),
@@ -308,17 +322,18 @@ impl Lowering {
     fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
         let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
-        let halves = value
-            .halves()
-            .filter(|_| of_exponent == Dimension::Bare)
-            .ok_or_else(|| Diagnostic::new(exponent.span, ValueKind::Exponent))?;
+        let halves =
+            value
+                .doubled_exponent()
+                .filter(|_| of_exponent == Dimension::Dimensionless)
+                .ok_or_else(|| Diagnostic::new(exponent.span, ValueKind::UnsupportedExponent))?;
         let dimension = dimension
             .power(halves)
             .ok_or_else(|| Diagnostic::new(span, ValueKind::PowerOfAngle))?;
         let id = self
             .graph
             .power(base_id, halves)
-            .ok_or_else(|| Diagnostic::new(span, ValueKind::NoSuchPower))?;
+            .ok_or_else(|| Diagnostic::new(span, ValueKind::UndefinedPower))?;
         Ok((id, dimension))
     }
 }
@@ -332,11 +347,11 @@ pub(super) fn in_range(value: &Number, span: Span) -> Result<(), Diagnostic> {
 }
 
 fn not_constant(span: Span, word: Option<&str>, role: Role) -> Diagnostic {
-    Diagnostic::new(span, ValueKind::NotConstant { word: word.map(str::to_owned), role })
+    Diagnostic::new(span, ValueKind::NotConstant { name: word.map(str::to_owned), role })
 }
 
 /// Returns the error for the use of a name whose definition was rejected.
 pub(super) fn without_value(span: Span, word: &str, refused: Reported) -> Diagnostic {
-    let kind = ValueKind::NameWithoutValue { word: word.to_owned() };
+    let kind = ValueKind::NameWithoutValue { name: word.to_owned() };
     Diagnostic::new(span, kind).caused_by(refused)
 }

@@ -67,8 +67,8 @@ pub fn resolve(
     }
     let mut curves = Curves::default();
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
-        if let Some(value) = lowering.values.get(&definition.name.word) {
-            curves.name(&definition.name.word, value.id);
+        if let Some(value) = lowering.values.get(&definition.name.text) {
+            curves.name(&definition.name.text, value.id);
         }
     }
     let laws: Vec<&Law> = tool
@@ -122,15 +122,15 @@ pub fn resolve(
     if let Some(reported) = without_shape.or(Reported::among(diagnostics)) {
         return Err(reported);
     }
-    for (word, value) in &lowering.values {
+    for (name, value) in &lowering.values {
         if !value.used {
             diagnostics
-                .push(Diagnostic::new(value.span, ValueKind::UnusedName { word: word.clone() }));
+                .push(Diagnostic::new(value.span, ValueKind::UnusedName { name: name.clone() }));
         }
     }
     Ok(Model {
         domain: tool.domain,
-        name: tool.name.word.clone(),
+        name: tool.name.text.clone(),
         name_span: tool.name.span,
         title: tool.title.clone(),
         unit,
@@ -139,7 +139,7 @@ pub fn resolve(
         curves: curves.list,
         surfaces,
         regions,
-        first,
+        first_curves: first,
         section,
     })
 }
@@ -148,7 +148,7 @@ pub fn resolve(
 fn report_items_of_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Reported> {
     let mut refused = None;
     for item in &tool.items {
-        let (span, word) = match item {
+        let (span, keyword) = match item {
             Item::Tip(expr) => (expr.span, "tip"),
             Item::Spindle { span, .. } => (*span, "spindle"),
             Item::Profile(profile) => (profile.span, "profile"),
@@ -156,7 +156,7 @@ fn report_items_of_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Optio
             Item::Regions { span, .. } => (*span, "regions"),
             _ => continue,
         };
-        let diagnostic = Diagnostic::new(span, RegionKind::NotInSolid { word });
+        let diagnostic = Diagnostic::new(span, RegionKind::NotInSolid { keyword });
         refused = Some(Reported::push(diagnostics, diagnostic));
     }
     refused
@@ -174,8 +174,11 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
         let Item::Regions { span, smooth } = item else { continue };
         if let Some((first, _)) = regions_item {
             diagnostics.push(
-                Diagnostic::new(*span, RegionKind::SaidTwice { word: "regions".to_owned() })
-                    .and(first, "first definition"),
+                Diagnostic::new(
+                    *span,
+                    RegionKind::DuplicateStatement { keyword: "regions".to_owned() },
+                )
+                .with_label(first, "first definition"),
             );
         }
         regions_item = regions_item.or(Some((*span, smooth.as_ref())));
@@ -183,8 +186,8 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
     match (regions_item, by_hand.first()) {
         (Some((span, _)), Some(region)) => {
             diagnostics.push(
-                Diagnostic::new(span, RegionKind::DerivedAndWritten)
-                    .and(region.name.span, "first region written by hand"),
+                Diagnostic::new(span, RegionKind::DerivedAndWrittenRegions)
+                    .with_label(region.name.span, "first region written by hand"),
             );
             Divider::Features
         }
@@ -220,7 +223,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     if let (Some(first), Some(second)) = (first, profiles.next()) {
         diagnostics.push(
             Diagnostic::new(second.span, RegionKind::SecondProfile)
-                .and(first.span, "first profile"),
+                .with_label(first.span, "first profile"),
         );
     }
     let mounts: Vec<&Mount> = tool
@@ -230,8 +233,8 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
         .collect();
     if let (Some(profile), Some(mount)) = (first, mounts.first()) {
         diagnostics.push(
-            Diagnostic::new(mount.span, MountKind::ProfileAndMounts)
-                .and(profile.span, "profile of this file"),
+            Diagnostic::new(mount.span, MountKind::ProfileWithMounts)
+                .with_label(profile.span, "profile of this file"),
         );
     }
     for item in &tool.items {
@@ -240,7 +243,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
                 diagnostics.push(Diagnostic::new(*span, RegionKind::NoProfile));
             }
             Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
-                diagnostics.push(Diagnostic::new(*span, MountKind::FrameOfMounts));
+                diagnostics.push(Diagnostic::new(*span, MountKind::FrameWithMounts));
             }
             _ => {}
         }
@@ -265,7 +268,7 @@ fn definitions(
 
 /// Returns the file's unit, which has to be the first item and stated exactly once.
 fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
-    let missing = |span: Span| Diagnostic::new(span, ValueKind::NoUnit);
+    let missing = |span: Span| Diagnostic::new(span, ValueKind::MissingUnit);
     let Some(Item::Units(name)) = tool.items.first() else {
         let later = tool.items.iter().find_map(|item| match item {
             Item::Units(name) => Some(name.span),
@@ -279,19 +282,18 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
     if let Some(Item::Units(second_unit)) =
         tool.items[1..].iter().find(|i| matches!(i, Item::Units(_)))
     {
-        return Err(
-            Diagnostic::new(second_unit.span, ValueKind::UnitTwice).and(name.span, "first unit")
-        );
+        return Err(Diagnostic::new(second_unit.span, ValueKind::DuplicateUnit)
+            .with_label(name.span, "first unit"));
     }
-    Unit::from_word(&name.word).ok_or_else(|| {
-        let meant = match name.word.as_str() {
+    Unit::from_symbol(&name.text).ok_or_else(|| {
+        let suggestion = match name.text.as_str() {
             "in" | "inches" | "IN" => Some("inch"),
             "millimetre" | "millimeter" | "MM" => Some("mm"),
             "meter" | "metre" => Some("m"),
             word if word.len() > 2 => nearest(word, ["mm", "inch"]),
             _ => None,
         };
-        let kind = ValueKind::UnknownFileUnit { word: name.word.clone(), meant };
+        let kind = ValueKind::UnknownFileUnit { unit: name.text.clone(), suggestion };
         Diagnostic::new(name.span, kind)
     })
 }
@@ -311,11 +313,11 @@ fn constants(
             Item::Param(definition) => (definition, true),
             _ => continue,
         };
-        if lowering.broken.contains_key(&definition.name.word) {
+        if lowering.broken.contains_key(&definition.name.text) {
             continue;
         }
         if is_param || lowering.is_parametric(&definition.value) {
-            lowering.parametric.insert(definition.name.word.clone());
+            lowering.parametric.insert(definition.name.text.clone());
         }
         let value = lowering.constant(&definition.value, Role::Let);
         let value = value.and_then(|value| match is_param {
@@ -338,7 +340,7 @@ fn constants(
 fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>) {
     let (mut tip, mut spindle): (Option<Span>, Option<Span>) = (None, None);
     for item in &tool.items {
-        let (previous_span, span, word) = match item {
+        let (previous_span, span, keyword) = match item {
             Item::Tip(expr) => {
                 match lowering.length(expr, Role::Tip) {
                     Ok(value) => {
@@ -350,15 +352,18 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
                 (&mut tip, expr.span, "tip")
             }
             Item::Spindle { down, span } => {
-                lowering.frame.down = *down;
+                lowering.frame.spindle_down = *down;
                 (&mut spindle, *span, "spindle")
             }
             _ => continue,
         };
         if let Some(first) = previous_span.replace(span) {
             diagnostics.push(
-                Diagnostic::new(span, RegionKind::SaidTwice { word: word.to_owned() })
-                    .and(first, "first definition"),
+                Diagnostic::new(
+                    span,
+                    RegionKind::DuplicateStatement { keyword: keyword.to_owned() },
+                )
+                .with_label(first, "first definition"),
             );
         }
     }
@@ -381,13 +386,13 @@ fn first_curves(
             Ok(Some(curve)) if first.contains(&curve) => {
                 diagnostics.push(Diagnostic::new(
                     name.span,
-                    RegionKind::ListedTwice { word: name.word.clone() },
+                    RegionKind::DuplicateCurve { name: name.text.clone() },
                 ));
             }
             Ok(Some(curve)) => first.push(curve),
             Ok(None) => diagnostics.push(Diagnostic::new(
                 name.span,
-                RegionKind::IdleCurve { word: name.word.clone() },
+                RegionKind::UnusedCurve { name: name.text.clone() },
             )),
             Err(diagnostic) => diagnostics.push(diagnostic),
         }
@@ -400,13 +405,16 @@ fn curve_of(
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Result<Option<usize>, Diagnostic> {
-    let Some(value) = lowering.values.get_mut(&name.word) else {
-        if let Some(reported) = lowering.broken.get(&name.word) {
-            return Err(lower::without_value(name.span, &name.word, *reported));
+    let Some(value) = lowering.values.get_mut(&name.text) else {
+        if let Some(reported) = lowering.broken.get(&name.text) {
+            return Err(lower::without_value(name.span, &name.text, *reported));
         }
-        let meant = nearest(&name.word, lowering.values.keys().map(String::as_str));
-        let (word, meant) = (name.word.clone(), meant.map(str::to_owned));
-        return Err(Diagnostic::new(name.span, RegionKind::UnknownCurve { word, meant }));
+        let suggestion = nearest(&name.text, lowering.values.keys().map(String::as_str));
+        let suggestion = suggestion.map(str::to_owned);
+        return Err(Diagnostic::new(
+            name.span,
+            RegionKind::UnknownCurve { name: name.text.clone(), suggestion },
+        ));
     };
     value.used = true;
     let id = value.id;

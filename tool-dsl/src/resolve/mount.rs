@@ -6,7 +6,9 @@ use super::law::Laws;
 use super::lower::{Allowed, Lowering};
 use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
-use crate::diagnostic::{Chain, CheckKind, Diagnostic, FormattedNumber, MountKind, Reported, Role};
+use crate::diagnostic::{
+    CheckKind, Diagnostic, FormattedNumber, MountChain, MountKind, Reported, Role,
+};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::geometry::outline::{Segment, bounding_box};
@@ -66,7 +68,7 @@ pub(super) fn assemble_mounts(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Outlined, Reported> {
     let mut mounting = Mounting { sources, diagnostics, chain: Vec::new(), mounted: 0, full: None };
-    mounting.chain.push(mounting.sources.own().base);
+    mounting.chain.push(mounting.sources.main().base);
     let part = mounting.assemble(mounts, lowering)?;
     let mut scopes = Vec::new();
     for mut scope in part.scopes {
@@ -111,24 +113,24 @@ impl Mounting<'_> {
         let mut parts = Vec::new();
         let mut reported_error = None;
         for (index, mount) in mounts.iter().enumerate() {
-            if let Some(first) = mounts[..index].iter().find(|m| m.name.word == mount.name.word) {
+            if let Some(first) = mounts[..index].iter().find(|m| m.name.text == mount.name.text) {
                 self.diagnostics.push(
                     Diagnostic::new(
                         mount.name.span,
-                        MountKind::MountsAlike { name: mount.name.word.clone() },
+                        MountKind::DuplicateMount { name: mount.name.text.clone() },
                     )
-                    .and(first.name.span, "first mount of this name"),
+                    .with_label(first.name.span, "first mount of this name"),
                 );
             }
             let at = self.mount_height(mount, index, lowering);
-            let given = arguments::from_mount(&mount.with, lowering, self.diagnostics);
+            let given = arguments::from_mount(&mount.arguments, lowering, self.diagnostics);
             let part = self.resolve_mount(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
                     let names = part.left_out.iter();
                     lowering
                         .left_out
-                        .extend(names.map(|name| format!("{}.{name}", mount.name.word)));
+                        .extend(names.map(|name| format!("{}.{name}", mount.name.text)));
                     parts.push((
                         *mount,
                         at,
@@ -145,7 +147,7 @@ impl Mounting<'_> {
         }
         let mut parts = parts.into_iter();
         let (mut last, mut height, mut assembly) = parts.next().ok_or_else(|| {
-            let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NothingMounted);
+            let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NoMount);
             Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
@@ -167,17 +169,17 @@ impl Mounting<'_> {
         index: usize,
         lowering: &mut Lowering,
     ) -> Result<Number, Reported> {
-        if mount.name.word == "cutting" {
-            self.diagnostics.push(Diagnostic::new(mount.name.span, MountKind::PartCalledCutting));
+        if mount.name.text == "cutting" {
+            self.diagnostics.push(Diagnostic::new(mount.name.span, MountKind::MountCalledCutting));
         }
         if let Some(span) = mount.cutting {
             self.diagnostics.push(Diagnostic::new(span, MountKind::CuttingMount));
         }
-        let wrong = match (index, &mount.at) {
+        let wrong = match (index, &mount.position) {
             (0, None) => return Ok(Number::int(0)),
-            (0, Some(at)) => Diagnostic::new(at.span, MountKind::FirstMountPlaced),
+            (0, Some(at)) => Diagnostic::new(at.span, MountKind::FirstMountWithPosition),
             (_, None) => {
-                Diagnostic::new(mount.span, MountKind::NoPlace { name: mount.name.word.clone() })
+                Diagnostic::new(mount.span, MountKind::NoPosition { name: mount.name.text.clone() })
             }
             (_, Some(at)) => match lowering.length(at, Role::At) {
                 Ok(height) => return Ok(height),
@@ -220,7 +222,7 @@ impl Mounting<'_> {
         if self.mounted > MAX_MOUNTS {
             let by = mount.file.span;
             // Reported only once, however many mounts follow.
-            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MAX_MOUNTS });
+            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { limit: MAX_MOUNTS });
             let diagnostic = match self.full {
                 Some(reported) => diagnostic.caused_by(reported),
                 None => diagnostic,
@@ -233,7 +235,7 @@ impl Mounting<'_> {
             // The message shows none of the file's text, since it may be any file.
             let diagnostic = Diagnostic::new(
                 mount.file.span,
-                MountKind::NotTool { file: mount.file.word.clone() },
+                MountKind::NotATool { file: mount.file.text.clone() },
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
@@ -244,7 +246,7 @@ impl Mounting<'_> {
 
     /// Returns the text of a mounted file.
     fn source(&mut self, mount: &Mount) -> Result<Source, Diagnostic> {
-        let (written, by) = (mount.file.word.as_str(), mount.file.span);
+        let (written, by) = (mount.file.text.as_str(), mount.file.span);
         let location = self
             .sources
             .resolve_path(by, written)
@@ -269,7 +271,7 @@ impl Mounting<'_> {
         chain.push(source.name.clone());
         Err(Diagnostic::new(
             by,
-            MountKind::MountsItself { file: written.to_owned(), chain: Chain(chain) },
+            MountKind::MountCycle { file: written.to_owned(), chain: MountChain(chain) },
         ))
     }
 
@@ -286,7 +288,7 @@ impl Mounting<'_> {
             let file = &mount.file;
             let diagnostic = Diagnostic::new(
                 file.span,
-                MountKind::SolidMounted { file: mount.file.word.clone() },
+                MountKind::MountedSolid { file: mount.file.text.clone() },
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
@@ -315,7 +317,7 @@ impl Mounting<'_> {
                 let regions = tree.items.iter().any(|item| matches!(item, Item::Region(_)));
                 let diagnostic = Diagnostic::new(
                     file.span,
-                    MountKind::NoOutline { file: mount.file.word.clone(), regions },
+                    MountKind::NoMountedProfile { file: mount.file.text.clone(), regions },
                 );
                 return Err(Reported::push(self.diagnostics, diagnostic));
             }
@@ -331,7 +333,7 @@ impl Mounting<'_> {
         let own = part.scopes.len();
         for (surface, niceness) in part.surfaces.iter().zip(&mut part.niceness) {
             if let Some(law) = laws.find(Quantity::Niceness, surface).filter(|_| surface.cutting) {
-                *niceness = Some((own, law.value.clone(), law.rising));
+                *niceness = Some((own, law.value.clone(), law.allow_rising));
             }
         }
         Ok(part)
@@ -357,7 +359,7 @@ impl MountedPart {
         self.outline = transformed_outline(&self.outline, scale, &zero, 0);
         self.transform_scopes(scale, &zero);
         for surface in &mut self.surfaces {
-            surface.name = format!("{}.{}", mount.name.word, surface.name);
+            surface.name = format!("{}.{}", mount.name.text, surface.name);
         }
         self
     }
@@ -376,16 +378,16 @@ impl MountedPart {
         (mount, at): (&Mount, &Number),
         mut part: MountedPart,
     ) -> Result<(), Diagnostic> {
-        let span = mount.at.as_ref().map_or(mount.span, |at| at.span);
-        let (below, z) = (last.name.word.clone(), FormattedNumber(at.to_f64()));
+        let span = mount.position.as_ref().map_or(mount.span, |at| at.span);
+        let (below, z) = (last.name.text.clone(), FormattedNumber(at.to_f64()));
         if at <= height {
             return Err(Diagnostic::new(
                 span,
                 MountKind::NotAbove {
-                    name: mount.name.word.clone(),
+                    name: mount.name.text.clone(),
                     z,
-                    below,
-                    height: FormattedNumber(height.to_f64()),
+                    previous: below,
+                    previous_z: FormattedNumber(height.to_f64()),
                 },
             ));
         }
@@ -397,20 +399,22 @@ impl MountedPart {
                 let (length, top) = (FormattedNumber(top - height.to_f64()), FormattedNumber(top));
                 Diagnostic::new(
                     span,
-                    MountKind::TooShort { below, z, top, length, first: height.is_zero() },
+                    MountKind::TooShort { name: below, z, top, length, first: height.is_zero() },
                 )
-                .and(last.name.span, "lower tool")
+                .with_label(last.name.span, "lower tool")
             }
-            JoinError::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
+            JoinError::Point => {
+                Diagnostic::new(span, MountKind::ZeroRadiusAtPlane { name: below, z })
+            }
             JoinError::Back(segment) => {
-                Diagnostic::new(span, MountKind::PlaneCutsTwice { below, z })
-                    .and(segment.span, "second crossing")
+                Diagnostic::new(span, MountKind::PlaneCutsTwice { name: below, z })
+                    .with_label(segment.span, "second crossing")
             }
             JoinError::NoFace(segment) => Diagnostic::new(
                 mount.file.span,
-                MountKind::NoFace { file: mount.file.word.clone() },
+                MountKind::NoFlatFace { file: mount.file.text.clone() },
             )
-            .and(segment.span, "first segment"),
+            .with_label(segment.span, "first segment"),
         })?;
         part.transform_scopes(&Number::int(1), at);
         let scopes = self.scopes.len();
@@ -449,9 +453,9 @@ pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
     let tip = FormattedNumber(frame.tip.to_f64());
     let is_upside_down = other.abs() <= 1e-6 * size;
-    let spindle = is_upside_down.then_some(if frame.down { '+' } else { '-' });
+    let spindle = is_upside_down.then_some(if frame.spindle_down { '+' } else { '-' });
     Diagnostic::new(
         frame.tip_span,
-        CheckKind::OffTip { end: FormattedNumber(frame.to_file(end)), tip, spindle },
+        CheckKind::TipNotAtEnd { end: FormattedNumber(frame.to_file(end)), tip, spindle },
     )
 }

@@ -12,7 +12,7 @@ pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[I
     let constants = vector.map(|part| graph.constant(part).cloned());
     if let [Some(x), Some(y), Some(z)] = constants {
         let norm = (&(&(&x * &x) + &(&y * &y)) + &(&z * &z)).sqrt()?;
-        let (x, y, z) = (x.over(&norm)?, y.over(&norm)?, z.over(&norm)?);
+        let (x, y, z) = (x.checked_div(&norm)?, y.checked_div(&norm)?, z.checked_div(&norm)?);
         return Some([graph.number(x), graph.number(y), graph.number(z)]);
     }
     let [x, y, z] = vector.map(|part| graph.mul(part, part));

@@ -57,7 +57,7 @@ impl Divider<'_> {
         match self {
             Divider::Smooth(length) if outline.len() > MAX_SMOOTH_SEGMENTS => Err(Diagnostic::new(
                 length.span,
-                RegionKind::SmoothTooLarge { most: MAX_SMOOTH_SEGMENTS },
+                RegionKind::TooManySmoothSegments { limit: MAX_SMOOTH_SEGMENTS },
             )),
             _ => Ok(()),
         }
@@ -107,12 +107,12 @@ fn written(
     surfaces: &[Surface],
 ) -> Result<Option<usize>, Diagnostic> {
     let name = &region.name;
-    if let Some(first) = regions.iter().find(|r| r.name.word == name.word)
+    if let Some(first) = regions.iter().find(|r| r.name.text == name.text)
         && first.name.span != name.span
     {
         let diagnostic =
-            Diagnostic::new(name.span, RegionKind::RegionsAlike { name: name.word.clone() });
-        return Err(diagnostic.and(first.name.span, "first region of this name"));
+            Diagnostic::new(name.span, RegionKind::DuplicateRegion { name: name.text.clone() });
+        return Err(diagnostic.with_label(first.name.span, "first region of this name"));
     }
     if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
         return Err(Diagnostic::new(depth.value.span, RegionKind::DepthBesideProfile));
@@ -123,14 +123,14 @@ fn written(
             if let Some(cutting) = region.cutting {
                 return Err(Diagnostic::new(cutting, RegionKind::CuttingBesideProfile));
             }
-            let found = surfaces.iter().position(|surface| surface.name == surface_name.word);
+            let found = surfaces.iter().position(|surface| surface.name == surface_name.text);
             found.map(Some).ok_or_else(|| {
                 let known = surfaces.iter().map(|surface| surface.name.as_str());
-                let remedy = match nearest(&surface_name.word, known) {
-                    Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
+                let remedy = match nearest(&surface_name.text, known) {
+                    Some(suggestion) => SurfaceRemedy::Similar(suggestion.to_owned()),
                     None => SurfaceRemedy::OfProfile,
                 };
-                let kind = RegionKind::UnknownSurface { word: surface_name.word.clone(), remedy };
+                let kind = RegionKind::UnknownSurface { name: surface_name.text.clone(), remedy };
                 Diagnostic::new(surface_name.span, kind)
             })
         }
@@ -159,14 +159,14 @@ fn fans<'t>(
             Some(piece) => outline[piece].ends()[1],
             None => outline[0].ends()[0],
         };
-        Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
+        Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)])
     };
     let pieces = smooth::rounded(outline, &width).map_err(|rough| {
         let max_length = smooth::largest_fitting_length(outline, &width);
         match rough {
             Rough::Untouched(behind) => Diagnostic::new(
                 span,
-                RegionKind::NoTouchingArc { place: formatted(behind, lowering), most: max_length },
+                RegionKind::NoTangentArc { location: formatted(behind, lowering), max_length },
             ),
             Rough::Short(piece, size, count) => {
                 let [from, to] =
@@ -176,11 +176,11 @@ fn fans<'t>(
                     span,
                     RegionKind::FansTooWide {
                         corners,
-                        edge: FormattedNumber(size),
-                        most: max_length,
+                        segment_length: FormattedNumber(size),
+                        max_length,
                     },
                 )
-                .and(outline[piece].span, "segment too short")
+                .with_label(outline[piece].span, "segment too short")
             }
         }
     })?;
@@ -189,7 +189,9 @@ fn fans<'t>(
     let undivided = |Undivided([d, z]): Undivided| {
         Diagnostic::new(
             span,
-            RegionKind::SmoothUndivided { place: Domain::HalfPlane.shown([d, 0.0, z]) },
+            RegionKind::SmoothDivisionFailed {
+                location: Domain::HalfPlane.format_point([d, 0.0, z]),
+            },
         )
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
@@ -231,9 +233,10 @@ impl Conditions<'_> {
         let Overlay { pairs, uncovered: head, doubly_covered: double } =
             overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
         let formatted =
-            |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
+            |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = head {
-            diagnostics.push(Diagnostic::new(span, RegionKind::NotCovered { place: formatted(p) }));
+            diagnostics
+                .push(Diagnostic::new(span, RegionKind::UncoveredPoint { location: formatted(p) }));
         }
         if let Some((first, second, p)) = double
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
@@ -241,8 +244,8 @@ impl Conditions<'_> {
             let (a, b) = (&a.name, &b.name);
             let is_left = pairs.iter().any(|(_, condition)| *condition == second);
             diagnostics.push(match is_left {
-                true => overlapping(&a.word, (&b.word, b.span), formatted(p), a.span),
-                false => never_wins(&b.word, b.span, (&a.word, a.span), 0),
+                true => overlapping(&a.text, (&b.text, b.span), formatted(p), a.span),
+                false => never_wins(&b.text, b.span, (&a.text, a.span), 0),
             });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
@@ -253,7 +256,7 @@ impl Conditions<'_> {
                 let name = &region.name;
                 diagnostics.push(Diagnostic::new(
                     name.span,
-                    RegionKind::NoPointOfProfile { region: name.word.clone() },
+                    RegionKind::RegionOutsideProfile { region: name.text.clone() },
                 ));
             }
         }
@@ -308,7 +311,7 @@ impl Conditions<'_> {
                     }
                     (None, ..) => part.own_direction(),
                 };
-                let (name, span) = (region.name.word.clone(), region.name.span);
+                let (name, span) = (region.name.text.clone(), region.name.span);
                 let head = RegionHead { name, span, owner, inside };
                 or_report(
                     evaluation.finish(head, (depth, span), (magnitude, niceness), direction),
@@ -328,18 +331,19 @@ pub(crate) fn never_wins(
 ) -> Diagnostic {
     Diagnostic::new(
         span,
-        CheckKind::NeverWins { region: name.to_owned(), by: first.to_owned(), more },
+        CheckKind::CoveredRegion { region: name.to_owned(), covering: first.to_owned(), more },
     )
-    .and(at, "region listed before it")
+    .with_label(at, "region listed before it")
 }
 
-/// Returns the error for two regions that have points in common, for instance at `place`. The first region is at `at`.
+/// Returns the error for two regions that have points in common, for instance at `location`. The first region is at `at`.
 pub(crate) fn overlapping(
     first: &str,
     (second, span): (&str, Span),
-    place: String,
+    location: String,
     at: Span,
 ) -> Diagnostic {
     let (first, second) = (first.to_owned(), second.to_owned());
-    Diagnostic::new(span, CheckKind::Overlap { first, second, place }).and(at, "overlapping region")
+    Diagnostic::new(span, CheckKind::Overlap { first, second, location })
+        .with_label(at, "overlapping region")
 }

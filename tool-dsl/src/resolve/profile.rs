@@ -9,7 +9,7 @@ use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::source::Span;
-use crate::syntax::tree::{Arc, Expr, PathSegment, Profile, Round, Tuple};
+use crate::syntax::tree::{Arc, ArcCircle, Expr, PathSegment, Profile, Tuple};
 
 /// The maximum number of segments of a profile. Dividing more would take minutes.
 const MAX_SEGMENTS: usize = 256;
@@ -25,22 +25,22 @@ pub(super) fn outline(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
     let before = diagnostics.len();
-    if let Some(beyond) = profile.pieces.get(MAX_SEGMENTS) {
+    if let Some(beyond) = profile.segments.get(MAX_SEGMENTS) {
         let diagnostic =
-            Diagnostic::new(beyond.span, ProfileKind::TooManySegments { most: MAX_SEGMENTS });
+            Diagnostic::new(beyond.span, ProfileKind::TooManySegments { limit: MAX_SEGMENTS });
         return Err(Reported::push(diagnostics, diagnostic));
     }
     let mut surfaces = Vec::new();
     let mut segments = Vec::new();
     let mut from = exact_point(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
     let mut begin = &profile.start;
-    for piece in &profile.pieces {
-        let ends = [std::mem::replace(&mut begin, &piece.to), &piece.to];
-        let to = exact_point(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
+    for piece in &profile.segments {
+        let ends = [std::mem::replace(&mut begin, &piece.end), &piece.end];
+        let to = exact_point(&piece.end, lowering).map_err(|r| diagnostics.push(r)).ok();
         if from.is_some() && from == to && is_parametric(ends, lowering) {
-            let surface = piece.surface.word.clone();
+            let surface = piece.surface.text.clone();
             lowering.left_out.insert(surface.clone());
-            diagnostics.push(Diagnostic::new(piece.span, ProfileKind::LeftOut { surface }));
+            diagnostics.push(Diagnostic::new(piece.span, ProfileKind::SegmentLeftOut { surface }));
             continue;
         }
         let surface = surface(piece, &mut surfaces, diagnostics);
@@ -57,7 +57,7 @@ pub(super) fn outline(
     }
     without_error(&diagnostics[before..])?;
     if segments.is_empty() {
-        let diagnostic = Diagnostic::new(profile.span, ProfileKind::SegmentWithoutLength);
+        let diagnostic = Diagnostic::new(profile.span, ProfileKind::ZeroLengthSegment);
         return Err(Reported::push(diagnostics, diagnostic));
     }
     off_axis(profile, &segments, diagnostics);
@@ -73,11 +73,11 @@ pub(super) fn outline(
             let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
             let circle =
                 segment.circle.map(|circle| Circle { centre: to_tool(&circle.centre), ..circle });
-            let ends = if frame.down { [to, from] } else { [from, to] };
+            let ends = if frame.spindle_down { [to, from] } else { [from, to] };
             Segment::new(ends, circle, segment.surface, segment.span)
         })
         .collect();
-    if frame.down {
+    if frame.spindle_down {
         outline.reverse();
     }
     Ok((outline, surfaces))
@@ -91,25 +91,25 @@ fn shown([d, z]: [f64; 2]) -> String {
 /// Reports a profile that does not begin or does not end on the axis.
 fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagnostic>) {
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
-    let [begin, end] = [first.ends()[0], last.ends()[1]];
-    let axis = |[_, z]: [f64; 2]| shown([0.0, z]);
-    if begin[0] != 0.0 {
+    let [start, end] = [first.ends()[0], last.ends()[1]];
+    let axis_point = |[_, z]: [f64; 2]| shown([0.0, z]);
+    if start[0] != 0.0 {
         diagnostics.push(Diagnostic::new(
             profile.start.span,
-            ProfileKind::BeginsOffAxis { begin: shown(begin), axis: axis(begin) },
+            ProfileKind::StartsOffAxis { start: shown(start), axis_point: axis_point(start) },
         ));
     }
     if end[0] != 0.0 {
         diagnostics.push(Diagnostic::new(
             last.span,
-            ProfileKind::EndsOffAxis { end: shown(end), axis: axis(end) },
+            ProfileKind::EndsOffAxis { end: shown(end), axis_point: axis_point(end) },
         ));
     }
 }
 
 /// Returns whether a coordinate of one of the ends depends on a param.
 fn is_parametric(ends: [&Tuple; 2], lowering: &Lowering) -> bool {
-    ends.iter().flat_map(|end| &end.parts).any(|part| lowering.is_parametric(part))
+    ends.iter().flat_map(|end| &end.components).any(|part| lowering.is_parametric(part))
 }
 
 fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
@@ -136,7 +136,7 @@ fn segment(
 ) -> Result<Segment, Diagnostic> {
     let span = piece.span;
     if from == to {
-        return Err(Diagnostic::new(span, ProfileKind::SegmentWithoutLength));
+        return Err(Diagnostic::new(span, ProfileKind::ZeroLengthSegment));
     }
     let circle = match &piece.arc {
         None => None,
@@ -151,21 +151,25 @@ fn circle(
     span: Span,
     lowering: &mut Lowering,
 ) -> Result<Circle, Diagnostic> {
-    let (centre, radius) = match &arc.round {
-        Round::Center(tuple) => {
+    let (centre, radius) = match &arc.circle {
+        ArcCircle::Center(tuple) => {
             let centre = exact_point(tuple, lowering)?;
             let [a, b] = ends.map(|end| distance(end, &centre));
             let (a_size, b_size) = (a.to_f64(), b.to_f64());
             if (a_size - b_size).abs() > MAX_CIRCLE_DEVIATION_IN_RADII * a_size.max(b_size) {
-                let (mut near, mut far) = (format_number(a_size), format_number(b_size));
-                if near == far {
-                    (near, far) = (a_size.to_string(), b_size.to_string());
+                let (mut start_radius, mut end_radius) =
+                    (format_number(a_size), format_number(b_size));
+                if start_radius == end_radius {
+                    (start_radius, end_radius) = (a_size.to_string(), b_size.to_string());
                 }
-                return Err(Diagnostic::new(span, ProfileKind::OffCircle { near, far }));
+                return Err(Diagnostic::new(
+                    span,
+                    ProfileKind::UnequalArcRadii { start_radius, end_radius },
+                ));
             }
-            if a.agrees(&b) { (centre, a) } else { midway(ends, &centre) }
+            if a.nearly_equals(&b) { (centre, a) } else { midway(ends, &centre) }
         }
-        Round::Radius(expr) => {
+        ArcCircle::Radius(expr) => {
             let radius = lowering.length(expr, Role::Radius)?;
             if radius.to_f64() <= 0.0 {
                 return Err(Diagnostic::new(expr.span, ProfileKind::RadiusNotPositive));
@@ -183,9 +187,10 @@ fn circle(
     let convex = if half { arc.concave.is_none() } else { turn > 0.0 };
     match (convex, arc.concave) {
         (true, Some(said)) => Err(Diagnostic::new(said, ProfileKind::NotConcave)),
-        (false, None) => {
-            Err(Diagnostic::new(span, ProfileKind::Concave { centre: shown(doubles(&centre)) }))
-        }
+        (false, None) => Err(Diagnostic::new(
+            span,
+            ProfileKind::UnmarkedConcave { centre: shown(doubles(&centre)) },
+        )),
         _ => Ok(Circle { centre, radius, convex }),
     }
 }
@@ -229,8 +234,11 @@ fn by_radius(
     let near = short.to_f64().abs() <= rounding * c * c;
     let offset = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(offset), true) = (offset, r > 0.0) else {
-        let [radius, chord, least] = [r, c, c / 2.0].map(FormattedNumber);
-        return Err(Diagnostic::new(span, ProfileKind::RadiusTooSmall { radius, chord, least }));
+        let [radius, chord, min_radius] = [r, c, c / 2.0].map(FormattedNumber);
+        return Err(Diagnostic::new(
+            span,
+            ProfileKind::RadiusTooSmall { radius, chord, min_radius },
+        ));
     };
     // The material is on the left: an arc that bulges out of it has its centre there.
     let offset = if concave { -&offset } else { offset };

@@ -11,7 +11,7 @@ use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{DirectionSource, LawSpans, Region, Surface};
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
+use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, ScalarProperty, Tool};
 
 /// The maximum number of regions of a tool. Planning more would take minutes.
 const MAX_REGIONS_OR_CONDITIONS: usize = 256;
@@ -32,13 +32,13 @@ pub(super) fn regions(
     if written.is_empty() {
         diagnostics.push(Diagnostic::new(
             tool.name.span,
-            RegionKind::NoRegion { tool: tool.name.word.clone() },
+            RegionKind::NoRegion { tool: tool.name.text.clone() },
         ));
     }
     if let Some(beyond) = written.get(MAX_REGIONS_OR_CONDITIONS) {
         diagnostics.push(Diagnostic::new(
             beyond.name.span,
-            RegionKind::TooManyRegions { most: MAX_REGIONS_OR_CONDITIONS },
+            RegionKind::TooManyRegions { limit: MAX_REGIONS_OR_CONDITIONS },
         ));
         return Default::default();
     }
@@ -48,13 +48,13 @@ pub(super) fn regions(
     laws.check(&surfaces, &lowering.left_out, diagnostics);
     let mut regions: Vec<Region> = Vec::new();
     for (written, owner) in written.into_iter().zip(owners) {
-        if let Some(earlier) = regions.iter().find(|r| r.name == written.name.word) {
+        if let Some(earlier) = regions.iter().find(|r| r.name == written.name.text) {
             diagnostics.push(
                 Diagnostic::new(
                     written.name.span,
-                    RegionKind::RegionsAlike { name: earlier.name.clone() },
+                    RegionKind::DuplicateRegion { name: earlier.name.clone() },
                 )
-                .and(earlier.span, "first region of this name"),
+                .with_label(earlier.span, "first region of this name"),
             );
         }
         let evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
@@ -83,10 +83,10 @@ pub(super) fn named_surface(
     surfaces: &mut Vec<Surface>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> usize {
-    if name.word == "cutting" {
+    if name.text == "cutting" {
         diagnostics.push(Diagnostic::new(name.span, RegionKind::SurfaceCalledCutting));
     }
-    match surfaces.iter().position(|surface| surface.name == name.word) {
+    match surfaces.iter().position(|surface| surface.name == name.text) {
         Some(at) => {
             if surfaces[at].cutting != cutting {
                 let there =
@@ -94,15 +94,18 @@ pub(super) fn named_surface(
                 diagnostics.push(
                     Diagnostic::new(
                         name.span,
-                        RegionKind::CuttingDisagrees { name: name.word.clone(), here: cutting },
+                        RegionKind::InconsistentCutting {
+                            name: name.text.clone(),
+                            marked_here: cutting,
+                        },
                     )
-                    .and(surfaces[at].span, there),
+                    .with_label(surfaces[at].span, there),
                 );
             }
             at
         }
         None => {
-            surfaces.push(Surface { name: name.word.clone(), cutting, span: name.span });
+            surfaces.push(Surface { name: name.text.clone(), cutting, span: name.span });
             surfaces.len() - 1
         }
     }
@@ -183,7 +186,7 @@ impl RegionResolver<'_> {
         let direction = outputs::unit(graph, raw_direction.parts, 2).ok_or_else(|| {
             Diagnostic::new(
                 raw_direction.span,
-                RegionKind::DirectionIsZero { region: head.name.clone() },
+                RegionKind::ZeroDirection { region: head.name.clone() },
             )
         })?;
         let is_depth = magnitude.is_none();
@@ -204,7 +207,7 @@ impl RegionResolver<'_> {
             raw_direction: (raw_direction.parts, raw_direction.span),
             source: raw_direction.source,
             niceness: niceness.value,
-            rising: niceness.rising,
+            allow_rising: niceness.rising,
             outputs,
         })
     }
@@ -224,7 +227,7 @@ impl RegionResolver<'_> {
         let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
         let (magnitude, niceness) = self.laws(written, depth.0, diagnostics);
         let direction = or_report(self.resolve_direction(written), diagnostics);
-        let (name, span) = (written.name.word.clone(), written.name.span);
+        let (name, span) = (written.name.text.clone(), written.name.span);
         let head = RegionHead { name, span, owner, inside: inside? };
         let direction = direction?.unwrap_or_else(|| RawDirection {
             parts: self.steepest_descent(depth.0),
@@ -254,15 +257,15 @@ impl RegionResolver<'_> {
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
-    ) -> Result<Option<&'w Scalar>, Diagnostic> {
+    ) -> Result<Option<&'w ScalarProperty>, Diagnostic> {
         let mut matching = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
         let first = matching.next();
         if let (Some(first), Some(second)) = (first, matching.next()) {
             return Err(Diagnostic::new(
                 second.span,
-                RegionKind::SaidTwice { word: quantity.keyword().to_owned() },
+                RegionKind::DuplicateStatement { keyword: quantity.keyword().to_owned() },
             )
-            .and(first.span, "first definition"));
+            .with_label(first.span, "first definition"));
         }
         Ok(first)
     }
@@ -277,7 +280,7 @@ impl RegionResolver<'_> {
                     let name = &written.name;
                     return Err(Diagnostic::new(
                         name.span,
-                        RegionKind::NoDepth { region: name.word.clone() },
+                        RegionKind::NoDepth { region: name.text.clone() },
                     ));
                 }
             },
@@ -285,7 +288,7 @@ impl RegionResolver<'_> {
         if let (Quantity::Magnitude, Some(span)) = (by, first_mention(value, "depth")) {
             return Err(Diagnostic::new(
                 span,
-                RegionKind::DepthOfItself { region: written.name.word.clone() },
+                RegionKind::UndefinedDepth { region: written.name.text.clone() },
             ));
         }
         let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
@@ -306,7 +309,7 @@ impl RegionResolver<'_> {
     /// Without any of them it is 1 on a cutting surface, and 0 on others.
     pub(super) fn niceness(
         &mut self,
-        own: Option<&Scalar>,
+        own: Option<&ScalarProperty>,
         depth: Id,
     ) -> Result<Niceness, Diagnostic> {
         let constant = |value: Id| Niceness { value, span: self.surface.span, rising: false };
@@ -316,9 +319,9 @@ impl RegionResolver<'_> {
                 None => Ok(constant(self.lowering.graph.int(0))),
             };
         }
-        let own = own.map(|own| (&own.value, own.rising));
+        let own = own.map(|own| (&own.value, own.allow_rising));
         let law = self.laws.find(Quantity::Niceness, self.surface);
-        let law = law.map(|law| (&law.value, law.rising));
+        let law = law.map(|law| (&law.value, law.allow_rising));
         match (own.or(law), self.laws.niceness_by_surface.get(&self.surface.name)) {
             (Some((value, rising)), _) => {
                 let span = value.span;
@@ -347,7 +350,7 @@ pub(super) fn inside(
     if let Some(beyond) = written.conditions.get(MAX_REGIONS_OR_CONDITIONS) {
         diagnostics.push(Diagnostic::new(
             beyond.span,
-            RegionKind::TooManyConditions { most: MAX_REGIONS_OR_CONDITIONS },
+            RegionKind::TooManyConditions { limit: MAX_REGIONS_OR_CONDITIONS },
         ));
         return None;
     }
@@ -371,7 +374,7 @@ fn condition(
         if left.1.common(right.1).is_none_or(|d| d == Dimension::Angle) {
             return Err(Diagnostic::new(
                 condition.span,
-                RegionKind::UnlikeSides { left: left.1, right: right.1 },
+                RegionKind::MixedComparison { left: left.1, right: right.1 },
             ));
         }
         let graph = &mut lowering.graph;

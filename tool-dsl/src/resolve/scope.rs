@@ -19,7 +19,11 @@ impl Lowering {
             domain,
             graph: Graph::default(),
             unit,
-            frame: Frame { tip: Number::int(0), down: false, tip_span: Span { start: 0, end: 0 } },
+            frame: Frame {
+                tip: Number::int(0),
+                spindle_down: false,
+                tip_span: Span { start: 0, end: 0 },
+            },
             scale: Number::int(1),
             values: BTreeMap::new(),
             declared: BTreeMap::new(),
@@ -32,7 +36,7 @@ impl Lowering {
     /// Returns the state for a tool of which nothing is lowered yet.
     pub(super) fn of(tool: &Tool, unit: Unit) -> Lowering {
         let declared = definitions(tool, |_| true)
-            .map(|definition| (definition.name.word.clone(), definition.name.span))
+            .map(|definition| (definition.name.text.clone(), definition.name.span))
             .collect();
         let mut lowering = Lowering { declared, ..Lowering::new(tool.domain, unit) };
         lowering.frame.tip_span = tool.name.span;
@@ -52,7 +56,7 @@ impl Lowering {
         self.scale = &self.scale / scale;
         let by = &self.scale * by;
         self.frame.tip =
-            if self.frame.down { &self.frame.tip + &by } else { &self.frame.tip - &by };
+            if self.frame.spindle_down { &self.frame.tip + &by } else { &self.frame.tip - &by };
     }
 
     /// Converts a length of the tool to the file's unit.
@@ -73,7 +77,7 @@ impl Lowering {
 
     /// Defines a curve, a function of the coordinates, or reports its error.
     pub(super) fn curve(&mut self, definition: &Definition, diagnostics: &mut Vec<Diagnostic>) {
-        if !self.broken.contains_key(&definition.name.word) {
+        if !self.broken.contains_key(&definition.name.text) {
             let defined = self.curve_value(definition);
             self.report(&definition.name, defined, diagnostics);
         }

@@ -23,7 +23,7 @@ impl Reader<'_> {
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
             self.diagnostics
-                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooTall { most: MAX_HEIGHT }));
+                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooDeep { limit: MAX_HEIGHT }));
         }
         expr
     }
@@ -133,7 +133,7 @@ impl Reader<'_> {
         // Longer numbers and exponents far out of range would take too long to convert.
         let exponent = text[..digits].rsplit_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
         let sane = digits <= 400 && exponent.parse::<i32>().is_ok_and(|e| e.abs() <= 400);
-        let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
+        let value = match sane.then(|| Number::parse_decimal(&text[..digits])).flatten() {
             Some(value) if value.is_in_range() => value,
             _ => {
                 self.diagnostics.push(Diagnostic::new(span, SyntaxKind::NumberOutOfRange));
@@ -141,7 +141,7 @@ impl Reader<'_> {
             }
         };
         let suffix = (digits < text.len()).then(|| Name {
-            word: text[digits..].to_owned(),
+            text: text[digits..].to_owned(),
             span: Span { start: span.start + digits, end: span.end },
         });
         ExprKind::Number(value, suffix)

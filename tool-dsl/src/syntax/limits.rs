@@ -29,12 +29,12 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
     if let Some(pair) = long {
         return Some(Diagnostic::new(
             span(&pair, MAX_NAME_BYTES),
-            SyntaxKind::NameTooLong { letters: pair.as_str().len(), most: MAX_NAME_BYTES },
+            SyntaxKind::NameTooLong { letters: pair.as_str().len(), limit: MAX_NAME_BYTES },
         ));
     }
     let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let beyond = pairs.flatten().find(is_root)?.into_inner().nth(MAX_ITEMS)?;
-    Some(Diagnostic::new(span(&beyond, 1), SyntaxKind::TooManyItems { most: MAX_ITEMS }))
+    Some(Diagnostic::new(span(&beyond, 1), SyntaxKind::TooManyItems { limit: MAX_ITEMS }))
 }
 
 /// Checks the text's length, its comments and its brackets. A comment that does not end is rejected here: pest would
@@ -44,7 +44,7 @@ pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
         let end = Span { start: 0, end: 1 };
         return Err(Diagnostic::new(
             end,
-            SyntaxKind::TextTooLong { bytes: text.len(), most: MAX_SOURCE_BYTES },
+            SyntaxKind::TextTooLong { bytes: text.len(), limit: MAX_SOURCE_BYTES },
         ));
     }
     let mut depth = 0usize;
@@ -54,13 +54,13 @@ pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
             Kind::Mark(')' | '}' | ']') => depth = depth.saturating_sub(1),
             Kind::Unended => {
                 let opens = Span { start, end: start + 2 };
-                return Err(Diagnostic::new(opens, SyntaxKind::CommentNotClosed));
+                return Err(Diagnostic::new(opens, SyntaxKind::UnclosedComment));
             }
             Kind::TooDeep => {
                 let span = Span { start: end - 2, end };
                 return Err(Diagnostic::new(
                     span,
-                    SyntaxKind::CommentsTooDeep { most: MAX_NESTING },
+                    SyntaxKind::CommentsTooDeep { limit: MAX_NESTING },
                 ));
             }
             _ => {}
@@ -68,7 +68,7 @@ pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
         if depth > MAX_NESTING {
             return Err(Diagnostic::new(
                 Span { start, end },
-                SyntaxKind::BracketsTooDeep { most: MAX_NESTING },
+                SyntaxKind::BracketsTooDeep { limit: MAX_NESTING },
             ));
         }
     }

@@ -37,17 +37,18 @@ impl Reader<'_> {
         span: Span,
     ) -> Option<Mount> {
         let mut file = self.name(&inner.next()?);
-        self.diagnostics.extend(refuse::hidden(&file.word, file.span));
-        file.word = file.word.trim_matches('"').to_owned();
+        self.diagnostics.extend(refuse::hidden(&file.text, file.span));
+        file.text = file.text.trim_matches('"').to_owned();
         let (name, cutting) = self.surface(inner.next()?);
-        let mut mount = Mount { file, name: name?, cutting, with: Vec::new(), at: None, span };
+        let mut mount =
+            Mount { file, name: name?, cutting, arguments: Vec::new(), position: None, span };
         for pair in inner {
             let rule = pair.as_rule();
             let parts = pair.into_inner().filter(|part| !is_word(part.as_rule()));
             for part in parts {
                 match rule {
-                    Rule::with => mount.with.extend(self.definition(part.into_inner())),
-                    _ => mount.at = Some(self.expr(part)),
+                    Rule::with => mount.arguments.extend(self.definition(part.into_inner())),
+                    _ => mount.position = Some(self.expr(part)),
                 }
             }
         }
@@ -58,6 +59,6 @@ impl Reader<'_> {
     pub(super) fn path(&self, pair: Pair<'_, Rule>) -> Name {
         let span = self.span(&pair);
         let names: Vec<&str> = pair.into_inner().map(|part| part.as_str()).collect();
-        Name { word: names.join("."), span }
+        Name { text: names.join("."), span }
     }
 }

@@ -57,7 +57,7 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
     let mut broken = Vec::new();
     let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
     let tool = reader.tool(pair);
-    Ok(Tool { broken, ..tool })
+    Ok(Tool { unparsed: broken, ..tool })
 }
 
 pub(super) struct Reader<'a> {
@@ -77,22 +77,22 @@ impl Reader<'_> {
 
     fn tool(&mut self, pair: Pair<'_, Rule>) -> Tool {
         let domain = if pair.as_rule() == Rule::solid { Domain::Space } else { Domain::HalfPlane };
-        let mut name = Name { word: String::new(), span: self.span(&pair) };
+        let mut name = Name { text: String::new(), span: self.span(&pair) };
         let mut title = None;
         let mut items = Vec::new();
         for pair in pair.into_inner() {
             match pair.as_rule() {
                 Rule::name => {
                     name = self.name(&pair);
-                    if RESERVED_NAMES.contains(&name.word.as_str()) {
+                    if RESERVED_NAMES.contains(&name.text.as_str()) {
                         self.diagnostics.push(Diagnostic::new(
                             name.span,
-                            SyntaxKind::TakenName { word: name.word.clone() },
+                            SyntaxKind::ReservedToolName { name: name.text.clone() },
                         ));
-                    } else if !is_type_name(&name.word) {
+                    } else if !is_type_name(&name.text) {
                         self.diagnostics.push(Diagnostic::new(
                             name.span,
-                            SyntaxKind::NotTypeName { word: name.word.clone() },
+                            SyntaxKind::NotTypeName { name: name.text.clone() },
                         ));
                     }
                 }
@@ -106,7 +106,7 @@ impl Reader<'_> {
                 _ => items.extend(self.item(pair)),
             }
         }
-        Tool { domain, name, title, items, broken: Vec::new() }
+        Tool { domain, name, title, items, unparsed: Vec::new() }
     }
 
     /// Parses again an item that the grammar could not read, alone, to find its specific error.
@@ -167,14 +167,14 @@ impl Reader<'_> {
                 let value = self.expr(next);
                 let rising =
                     self.allows(inner.next(), RISING_KEYWORD, quantity == Quantity::Niceness);
-                Item::Law(Law { quantity, surfaces, value, rising, span })
+                Item::Law(Law { quantity, surfaces, value, allow_rising: rising, span })
             }
             _ => return None,
         })
     }
 
     pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
-        Name { word: pair.as_str().to_owned(), span: self.span(pair) }
+        Name { text: pair.as_str().to_owned(), span: self.span(pair) }
     }
 
     pub(super) fn definition<'i>(
@@ -209,7 +209,12 @@ impl Reader<'_> {
                     let value = self.expr(parts.next()?);
                     let rising =
                         self.allows(parts.next(), RISING_KEYWORD, quantity == Quantity::Niceness);
-                    region.scalars.push(Scalar { quantity, value, rising, span });
+                    region.scalars.push(ScalarProperty {
+                        quantity,
+                        value,
+                        allow_rising: rising,
+                        span,
+                    });
                 }
                 Rule::direction => {
                     let mut parts = pair.into_inner().filter(|p| !is_word(p.as_rule()));
@@ -217,10 +222,14 @@ impl Reader<'_> {
                     let direction = match part.as_rule() {
                         Rule::away => Direction::AwayFrom(self.inner_tuple(part)?),
                         Rule::toward => Direction::Toward(self.inner_tuple(part)?),
-                        _ => Direction::Along(self.tuple(part)),
+                        _ => Direction::Vector(self.tuple(part)),
                     };
                     let oblique = self.allows(parts.next(), OBLIQUE_KEYWORD, true);
-                    region.direction.push(DirectionProperty { direction, oblique, span });
+                    region.direction.push(DirectionProperty {
+                        direction,
+                        allow_oblique: oblique,
+                        span,
+                    });
                 }
                 _ => {}
             }
@@ -268,7 +277,7 @@ impl Reader<'_> {
                 _ => {}
             }
         }
-        Some(Profile { start: start?, pieces, span })
+        Some(Profile { start: start?, segments: pieces, span })
     }
 
     fn pieces(&mut self, pair: Pair<'_, Rule>, pieces: &mut Vec<PathSegment>) {
@@ -278,10 +287,10 @@ impl Reader<'_> {
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::tuple => points.push(self.tuple(part)),
-                Rule::center => round = self.inner_tuple(part).map(Round::Center),
+                Rule::center => round = self.inner_tuple(part).map(ArcCircle::Center),
                 Rule::radius => {
                     let value = part.into_inner().find(|p| p.as_rule() == Rule::expr);
-                    round = value.map(|value| Round::Radius(self.expr(value)));
+                    round = value.map(|value| ArcCircle::Radius(self.expr(value)));
                 }
                 Rule::concave => concave = Some(self.span(&part)),
                 Rule::surface => (surface, cutting) = self.surface(part),
@@ -292,8 +301,8 @@ impl Reader<'_> {
         let one = points.len() == 1;
         for to in points {
             let span = if one { pair_span } else { to.span };
-            let arc = round.clone().map(|round| Arc { round, concave });
-            pieces.push(PathSegment { to, arc, surface: surface.clone(), cutting, span });
+            let arc = round.clone().map(|round| Arc { circle: round, concave });
+            pieces.push(PathSegment { end: to, arc, surface: surface.clone(), cutting, span });
         }
     }
 
@@ -304,7 +313,7 @@ impl Reader<'_> {
 
     fn tuple(&mut self, pair: Pair<'_, Rule>) -> Tuple {
         let span = self.span(&pair);
-        Tuple { parts: pair.into_inner().map(|part| self.expr(part)).collect(), span }
+        Tuple { components: pair.into_inner().map(|part| self.expr(part)).collect(), span }
     }
 
     fn condition(&mut self, pair: Pair<'_, Rule>) -> Option<Condition> {
@@ -329,10 +338,10 @@ impl Reader<'_> {
 }
 
 /// Returns whether a word is usable as the name of a Rust type.
-pub fn is_type_name(word: &str) -> bool {
-    word.starts_with(|c: char| c.is_ascii_uppercase())
-        && !word.contains('_')
-        && !RESERVED_NAMES.contains(&word)
+pub fn is_type_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_uppercase())
+        && !name.contains('_')
+        && !RESERVED_NAMES.contains(&name)
 }
 
 fn quantity(pair: &Pair<'_, Rule>) -> Quantity {

@@ -7,8 +7,8 @@ use crate::source::Span;
 /// A name and its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// The word.
-    pub word: String,
+    /// The text.
+    pub text: String,
     /// Its span.
     pub span: Span,
 }
@@ -26,7 +26,7 @@ pub struct Tool {
     pub items: Vec<Item>,
     /// The first words of items that could not be read, and the names that they define. Their definitions are missing
     /// from `items`.
-    pub broken: Vec<String>,
+    pub unparsed: Vec<String>,
 }
 
 /// One item of a tool.
@@ -83,7 +83,7 @@ pub struct Profile {
     /// The start point.
     pub start: Tuple,
     /// The segments, in order.
-    pub pieces: Vec<PathSegment>,
+    pub segments: Vec<PathSegment>,
     /// The span of the item's keyword.
     pub span: Span,
 }
@@ -92,7 +92,7 @@ pub struct Profile {
 #[derive(Clone, Debug)]
 pub struct PathSegment {
     /// The end point.
-    pub to: Tuple,
+    pub end: Tuple,
     /// The arc, if the segment is not straight.
     pub arc: Option<Arc>,
     /// The surface to which it belongs.
@@ -107,14 +107,14 @@ pub struct PathSegment {
 #[derive(Clone, Debug)]
 pub struct Arc {
     /// The centre, or else the radius.
-    pub round: Round,
+    pub circle: ArcCircle,
     /// `concave`, if given.
     pub concave: Option<Span>,
 }
 
 /// The definition of an arc's circle.
 #[derive(Clone, Debug)]
-pub enum Round {
+pub enum ArcCircle {
     /// Its centre.
     Center(Tuple),
     /// Its radius.
@@ -131,9 +131,9 @@ pub struct Mount {
     /// `cutting`, if given.
     pub cutting: Option<Span>,
     /// The arguments of the mounted tool's parameters.
-    pub with: Vec<Definition>,
+    pub arguments: Vec<Definition>,
     /// The z of its tip, if not at the tool's tip.
-    pub at: Option<Expr>,
+    pub position: Option<Expr>,
     /// The span of the whole item.
     pub span: Span,
 }
@@ -150,7 +150,7 @@ pub struct Region {
     /// The conditions, all of which have to hold.
     pub conditions: Vec<Condition>,
     /// `depth:`, `magnitude:`, `niceness:`.
-    pub scalars: Vec<Scalar>,
+    pub scalars: Vec<ScalarProperty>,
     /// `direction:`.
     pub direction: Vec<DirectionProperty>,
 }
@@ -199,13 +199,13 @@ impl Quantity {
 
 /// `depth: 1 - d;`, `niceness: depth allow rising;`
 #[derive(Clone, Debug)]
-pub struct Scalar {
+pub struct ScalarProperty {
     /// The quantity.
     pub quantity: Quantity,
     /// Its value.
     pub value: Expr,
     /// `allow rising`, of a niceness.
-    pub rising: bool,
+    pub allow_rising: bool,
     /// The span of the whole property.
     pub span: Span,
 }
@@ -216,7 +216,7 @@ pub struct DirectionProperty {
     /// The direction.
     pub direction: Direction,
     /// `allow oblique`.
-    pub oblique: bool,
+    pub allow_oblique: bool,
     /// The span of the whole property.
     pub span: Span,
 }
@@ -225,7 +225,7 @@ pub struct DirectionProperty {
 #[derive(Clone, Debug)]
 pub enum Direction {
     /// The vector `(1, 0)`, to be normalised.
-    Along(Tuple),
+    Vector(Tuple),
     /// `away from P`
     AwayFrom(Tuple),
     /// `toward P`
@@ -236,7 +236,7 @@ pub enum Direction {
 #[derive(Clone, Debug)]
 pub struct Tuple {
     /// The components.
-    pub parts: Vec<Expr>,
+    pub components: Vec<Expr>,
     /// Its span, including the parentheses.
     pub span: Span,
 }
@@ -251,7 +251,7 @@ pub struct Law {
     /// Its value.
     pub value: Expr,
     /// `allow rising`, of a niceness.
-    pub rising: bool,
+    pub allow_rising: bool,
     /// The span of the whole law.
     pub span: Span,
 }

@@ -11,7 +11,7 @@ fn tool(text: &str) -> Option<Box<CheckedTool>> {
 /// Asserts that the depth of a tool is proved to be the distance to its surface.
 fn is_proved(text: &str) {
     let tool = tool(text).unwrap_or_else(|| panic!("refused: {text}"));
-    let proved = Certificate::of(&tool);
+    let proved = Certificate::prove(&tool);
     assert!(proved.is_exact(), "{text}\n{:?}", proved.undecided.first());
     assert!(proved.slack < 1e-9 * tool.extent.scale(), "{text}\n{:e}", proved.slack);
 }
@@ -113,7 +113,7 @@ fn solids_of_revolution_are_proved() {
 #[test]
 fn solids_of_revolution_are_judged_in_space() {
     let solid = tool(HALF_BALL).expect("a solid");
-    let proved = Certificate::of(&solid);
+    let proved = Certificate::prove(&solid);
     let share = |name: &str| {
         let named = solid.model.regions.iter().zip(&proved.regions);
         named.filter(|(region, _)| region.name == name).map(|(_, facts)| facts.share).sum::<f64>()
@@ -127,7 +127,7 @@ fn solids_of_revolution_are_judged_in_space() {
         "<= end { depth: side; direction: (0, 1, 0) allow oblique; }",
     );
     let solid = tool(&aslant).expect("a solid");
-    let proved = Certificate::of(&solid);
+    let proved = Certificate::prove(&solid);
     let stem = solid.model.regions.iter().position(|region| region.name == "stem").expect("it");
     let aside = proved.regions[stem].direction_error.expect("known");
     assert!(aside.high > 3.1, "{aside:?}");
@@ -135,7 +135,7 @@ fn solids_of_revolution_are_judged_in_space() {
     // only.
     for wrong in ["0.9*edge", "edge + 0.01*max(y, 0)"] {
         let text = HALF_BALL.replace("depth: edge", &format!("depth: {wrong}"));
-        let proved = tool(&text).map(|tool| Certificate::of(&tool));
+        let proved = tool(&text).map(|tool| Certificate::prove(&tool));
         assert!(proved.is_none_or(|proved| !proved.is_continuous()), "{wrong}");
     }
 }

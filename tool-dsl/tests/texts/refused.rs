@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, compile_with, emit, format};
+use tool_dsl::{Compiled, compile, compile_with_arguments, emit, format};
 
 const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
 
@@ -43,7 +43,7 @@ fn read(text: String) -> Result<(), String> {
         let compiled = compile(&source);
         match compiled.tool() {
             Some(tool) => {
-                assert!(!emit::rust(tool).is_empty() && !emit::dot(tool).is_empty());
+                assert!(!emit::source_code(tool).is_empty() && !emit::dot(tool).is_empty());
                 Ok(())
             }
             None => Err(error(&compiled)),
@@ -69,7 +69,7 @@ fn names_defined_by_themselves_are_named_with_every_link() {
         "`a` is defined in terms of itself: `a` needs `b`, `b` needs `c`, `c` needs `a`"
     );
     let given = [Source::new("--set", "a=3")];
-    let compiled = compile_with(&Source::new("t.tool", tool("param a = a;")), &given);
+    let compiled = compile_with_arguments(&Source::new("t.tool", tool("param a = a;")), &given);
     assert_eq!(error(&compiled), "`a` is defined in terms of itself");
 }
 
@@ -330,11 +330,13 @@ fn what_cannot_be_seen_is_refused_or_escaped() {
 #[test]
 fn values_that_break_a_profile_are_named() {
     let text = "tool T { units mm; param D = 6; profile { start (0, 0); line to (D/2, 0), (D/2, 9), (0, 9) as a cutting; } }";
-    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
+    let compiled =
+        compile_with_arguments(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
     assert!(refusal.errors().all(|report| { report.help().ends_with("given: `D=-1`") }));
     // An error in the argument itself shows the argument anyway.
-    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
+    let compiled =
+        compile_with_arguments(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
     assert!(refusal.errors().all(|r| !r.help().contains("given: ")));
 }
@@ -364,8 +366,8 @@ fn a_proof_that_ends_early_takes_nothing_back() {
     );
     let compiled = compile(&Source::new("t.tool", text));
     let tool = compiled.tool().expect("a tool");
-    let certificate = tool_dsl::prove::Certificate::of(tool);
-    assert!(certificate.boxes < 35_000, "{}", certificate.boxes);
+    let certificate = tool_dsl::prove::Certificate::prove(tool);
+    assert!(certificate.examined_boxes < 35_000, "{}", certificate.examined_boxes);
     assert_eq!((certificate.lipschitz(), tool.bounds().lipschitz), (None, Some(1.0)));
     let reports = certificate.diagnostics(tool);
     let help = reports.first().map(|report| report.help());

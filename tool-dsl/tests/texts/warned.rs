@@ -39,7 +39,7 @@ fn tool(text: &str) -> Box<CheckedTool> {
 #[track_caller]
 fn warned(text: &str) -> Vec<(String, String)> {
     let tool = tool(text);
-    let reports = Certificate::of(&tool).diagnostics(&tool);
+    let reports = Certificate::prove(&tool).diagnostics(&tool);
     let said = reports.into_iter().map(|report| {
         assert_eq!(report.severity, Severity::Warning);
         assert!(report.help().contains("allow "));
@@ -66,8 +66,8 @@ fn a_direction_that_is_not_the_steepest_way_out_is_warned_of() {
 fn the_largest_angle_is_given_with_its_place() {
     // The direction is exact where z is small, and increasingly oblique above.
     let tool = tool(&pin("direction: (40, z);"));
-    let facts = &Certificate::of(&tool).regions[2];
-    let (angle, [_, _, z]) = facts.oblique.expect("the direction is oblique");
+    let facts = &Certificate::prove(&tool).regions[2];
+    let (angle, [_, _, z]) = facts.oblique_witness.expect("the direction is oblique");
     assert!((angle.tan() - z / 40.0).abs() < 1e-12 && z > 38.0, "{angle} at {z}");
     assert!(facts.direction_error.is_some_and(|aside| aside.high >= angle));
 }
@@ -92,7 +92,7 @@ fn the_steepest_way_out_is_not_warned_of() {
 fn an_oblique_direction_that_is_meant_is_not_warned_of_and_certified_all_the_same() {
     let text = pin("direction: (1, 1) allow oblique;");
     assert_eq!(warned(&text), []);
-    let facts = Certificate::of(&tool(&text)).regions.remove(2);
+    let facts = Certificate::prove(&tool(&text)).regions.remove(2);
     let aside = facts.direction_error.expect("the direction is known").high.to_degrees();
     assert!((aside - 45.0).abs() < 1e-9, "{aside}");
 }
@@ -154,7 +154,7 @@ fn niceness_that_may_rise_comes_along_with_a_mounted_file() {
         let compiled =
             compile(&Source::new("whole.tool", text).with_path(folder.join("whole.tool")));
         let tool = compiled.into_tool().expect("a tool");
-        assert_eq!(Certificate::of(&tool).diagnostics(&tool).len(), warnings, "{name}");
+        assert_eq!(Certificate::prove(&tool).diagnostics(&tool).len(), warnings, "{name}");
     }
 }
 

@@ -80,7 +80,7 @@ fn an_inch_cutter_in_a_metric_nut() {
     );
     for k in 0..4000 {
         let p = [f64::from(k % 40) * 0.4, 0.01, f64::from(k / 40) * 0.61 - 1.0];
-        match (a.at(p, 1.0), b.at(p, 1.0)) {
+        match (a.evaluate(p, 1.0), b.evaluate(p, 1.0)) {
             (Some(a), Some(b)) => {
                 assert!((a.depth - b.depth).abs() < 1e-13 && a.region == b.region);
             }

@@ -5,7 +5,7 @@ use tool_dsl::interpret::Interpreter;
 
 fn evaluation(text: &str, p: [f64; 3]) -> (f64, f64) {
     let tool = tool(text);
-    let evaluation = Interpreter::new(&tool).at(p, 1.0).expect("inside");
+    let evaluation = Interpreter::new(&tool).evaluate(p, 1.0).expect("inside");
     (evaluation.magnitude, evaluation.niceness)
 }
 

@@ -58,7 +58,7 @@ fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
     for _ in 0..20_000 {
         let [x, y] = [0, 1].map(|_| rng.between(-1.1 * a.extent.radius, 1.1 * a.extent.radius));
         let p = [x, y, rng.between(-0.05 * a.extent.high, 1.05 * a.extent.high)];
-        match (first.at(p, 1.0), second.at(p, 1.0)) {
+        match (first.evaluate(p, 1.0), second.evaluate(p, 1.0)) {
             (None, None) => {}
             (Some(a), Some(b)) if part == 0.0 => {
                 evaluation += 1;

@@ -291,7 +291,7 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
         let [d, z] = outline.turned(p);
         let (_, least) = outline.nearest(p);
         let (evaluation, clearance) =
-            (reference.at([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
+            (reference.evaluate([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
         let depth = evaluation.map_or(0.0, |evaluation| evaluation.depth);
         assert!(
             ((depth + clearance) - least).abs() < near,

@@ -113,7 +113,7 @@ pub(crate) fn compare(
             evaluation
                 .map_or("outside", |evaluation| tool.model.regions[evaluation.region].name.as_str())
         };
-        let evaluation = [("reference", reference.at(point, 1.0)), ("tape", tape)];
+        let evaluation = [("reference", reference.evaluate(point, 1.0)), ("tape", tape)];
         for (who, got) in evaluation {
             let who = || format!("{who} says {}", describe_evaluation(got));
             let one =

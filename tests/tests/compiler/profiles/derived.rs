@@ -51,7 +51,7 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
         if oracle.border_distance(p) < 1e-9 * scale {
             continue;
         }
-        let (got, expected) = (interpreter.at(p, 1.0), oracle.evaluate(p));
+        let (got, expected) = (interpreter.evaluate(p, 1.0), oracle.evaluate(p));
         let (Some(got), Some(expected)) = (got, expected) else {
             assert_eq!(got.is_some(), expected.is_some(), "inside at {p:?}");
             continue;
@@ -125,7 +125,9 @@ fn the_half_sphere_is_derived() {
 fn a_law_that_is_the_depth_is_a_length() {
     let evaluation = |law: &str| {
         let tool = tool(&D2_BALL.replace("niceness cutting", &format!("{law} niceness cutting")));
-        Interpreter::new(&tool.expect("a good profile")).at([0.5, 0.0, 3.0], 0.25).expect("inside")
+        Interpreter::new(&tool.expect("a good profile"))
+            .evaluate([0.5, 0.0, 3.0], 0.25)
+            .expect("inside")
     };
     assert_eq!(evaluation("").magnitude, 0.125);
     assert_eq!(evaluation("magnitude: depth;").magnitude, 0.125);

@@ -111,7 +111,7 @@ fn check_point(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: 
         gradient: lists.gradient.each_ref().map(|list| list[0]),
         niceness: lists.niceness[0],
     });
-    let reference = Interpreter::new(tool).at(point, 1.0);
+    let reference = Interpreter::new(tool).evaluate(point, 1.0);
     assert_eq!(reference, tape, "at {p:?}");
     assert_eq!(reference.is_some(), outline.contains(p), "at {p:?}");
     let Some(evaluation) = reference else {
@@ -145,13 +145,13 @@ fn gradients_are_slopes() {
     let mut rng = Rng::new(32);
     for _ in 0..5_000 {
         let p = [rng.between(0.05, 6.0), 0.0, rng.between(0.0, 20.0)];
-        let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
+        let Some(evaluation) = interpreter.evaluate(p, 1.0) else { continue };
         let h = 1e-6;
         let slopes = [0, 1, 2].map(|k| {
             let ends = [h, -h].map(|h| {
                 let mut q = p;
                 q[k] += h;
-                interpreter.at(q, 1.0).filter(|other| other.region == evaluation.region)
+                interpreter.evaluate(q, 1.0).filter(|other| other.region == evaluation.region)
             });
             ends[0].zip(ends[1]).map(|(a, b)| (a.magnitude - b.magnitude) / (2.0 * h))
         });

@@ -35,7 +35,7 @@ fn tried(outline: &Outline) -> Result<ErrorStats, Flaw> {
 
 /// Returns whether depth is proved to be the distance to a profile's surface.
 fn is_proved(outline: &Outline) -> bool {
-    tool(&outline.text()).is_ok_and(|tool| Certificate::of(&tool).is_exact())
+    tool(&outline.text()).is_ok_and(|tool| Certificate::prove(&tool).is_exact())
 }
 
 /// Returns the kind of a refusal, by the codes of its diagnostics.

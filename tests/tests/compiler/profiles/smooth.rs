@@ -109,7 +109,7 @@ impl Pair {
             let p = [rng.between(0.0, self.extent[0]), rng.between(0.0, self.extent[1])];
             let [d, z] = self.turned(p);
             let at = [d, 0.0, z];
-            let (evaluation, plain) = (smooth.at(at, 1.0), nearest.at(at, 1.0));
+            let (evaluation, plain) = (smooth.evaluate(at, 1.0), nearest.evaluate(at, 1.0));
             let (Some(evaluation), Some(plain)) = (evaluation, plain) else {
                 assert_eq!(evaluation.is_some(), plain.is_some(), "inside at {p:?}");
                 continue;
@@ -148,7 +148,9 @@ impl Pair {
             for k in 0..=count {
                 let on = piece.at(f64::from(k) / f64::from(count));
                 let [d, z] = self.turned(add(on, piece.outward(on), -1e-9));
-                let Some(evaluation) = interpreter.at([d.abs(), 0.0, z], 1.0) else { continue };
+                let Some(evaluation) = interpreter.evaluate([d.abs(), 0.0, z], 1.0) else {
+                    continue;
+                };
                 assert!(evaluation.depth < 2e-9);
                 let direction = self.direction(&evaluation);
                 max_turn = max_turn.max(last.map_or(0.0, |last| angle(last, direction)));
@@ -164,7 +166,7 @@ impl Pair {
         let mut evaluation = |p: P2| {
             let [d, z] = self.turned(p);
             interpreter
-                .at([d, 0.0, z], 1.0)
+                .evaluate([d, 0.0, z], 1.0)
                 .map(|evaluation| (self.direction(&evaluation), evaluation.depth))
         };
         let mut rng = Rng::new(22);
@@ -350,7 +352,7 @@ fn a_smooth_tip_points_along_the_axis() {
     let pair = lines(&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5);
     let mut interpreter = Interpreter::new(&pair.smooth);
     for z in [1e-9, 0.1, 0.5] {
-        let evaluation = interpreter.at([0.0, 0.0, z], 1.0).expect("inside");
+        let evaluation = interpreter.evaluate([0.0, 0.0, z], 1.0).expect("inside");
         assert_eq!(evaluation.direction, [0.0, 0.0, -1.0]);
     }
 }

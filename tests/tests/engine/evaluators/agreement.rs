@@ -45,7 +45,7 @@ pub(crate) fn of<T: Evaluators>(
             assert_same_bits(name, &everything(&tool, name, level, &list, length));
         }
         for (p, code) in points.iter().zip(&code) {
-            let expected = answer_of(reference.at(*p, length));
+            let expected = answer_of(reference.evaluate(*p, length));
             if *code != expected {
                 let border = oracle.border_distance(*p) / (scale(oracle) * f64::EPSILON);
                 let (code, expected) = (numbers(*code), numbers(expected));

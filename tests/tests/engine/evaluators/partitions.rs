@@ -36,7 +36,7 @@ fn agree(source: &Source) {
         let owner = inside.then_some(evaluation.region[i] as usize);
         assert_eq!(
             owner,
-            reference.at(*p, 1.0).map(|evaluation| evaluation.region),
+            reference.evaluate(*p, 1.0).map(|evaluation| evaluation.region),
             "{p:?} of {}",
             source.text
         );

@@ -14,7 +14,7 @@ use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::Evaluator;
 use crate::expr::{Id, Node};
-use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY_SIGN, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
 use order::LowerByLinear;
@@ -190,7 +190,7 @@ impl<'m> BorderProver<'m> {
         let model = self.model;
         let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
         let is_in_region =
-            |owner: usize| model.regions[owner].inside.decided_by(&mut sign) == Some(true);
+            |owner: usize| model.regions[owner].inside.decide_with(&mut sign) == Some(true);
         if !claim.owner.is_none_or(is_in_region) {
             return false;
         }
@@ -198,7 +198,7 @@ impl<'m> BorderProver<'m> {
             || (0..model.regions.len()).all(|other| {
                 let mut open_signs = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
                 Some(other) == claim.owner
-                    || model.regions[other].inside.decided_by(&mut open_signs) == Some(false)
+                    || model.regions[other].inside.decide_with(&mut open_signs) == Some(false)
                     || self.excluded(claim, other)
             })
     }
@@ -213,18 +213,18 @@ impl<'m> BorderProver<'m> {
         let linear = &self.linear;
         // Tests one of the alternatives, with borders left out.
         let empty = |demands: &[&Formula]| {
-            let mut demanded_signs = vec![ANY; signs_on_path.len()];
-            demands.iter().for_each(|formula| formula.demand(&mut demanded_signs));
+            let mut demanded_signs = vec![ANY_SIGN; signs_on_path.len()];
+            demands.iter().for_each(|formula| formula.narrow_signs(&mut demanded_signs));
             let mut signs = signs_on_path.clone();
             for (sign, demanded) in signs.iter_mut().zip(demanded_signs) {
-                *sign &= if demanded == ANY { ANY } else { demanded & !ZERO };
+                *sign &= if demanded == ANY_SIGN { ANY_SIGN } else { demanded & !ZERO };
             }
             signs.contains(&0) || linear.contradictory(&signs)
         };
         let inside = &self.model.regions[region].inside;
         let is_excluded =
             |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
-        let excluded = empty(&[inside]) || inside.choices().iter().any(is_excluded);
+        let excluded = empty(&[inside]) || inside.disjunctions().iter().any(is_excluded);
         self.excluded.insert(key, excluded);
         excluded
     }
@@ -328,7 +328,7 @@ impl<'m> BorderProver<'m> {
         for owner in [Some(pair.0), pair.1].into_iter().flatten() {
             self.model.regions[owner]
                 .inside
-                .undecided_atoms(&vec![ANY; self.curves.len()], &mut atoms);
+                .undecided_atoms(&vec![ANY_SIGN; self.curves.len()], &mut atoms);
         }
         let condition_curves: BTreeSet<CurveIndex> =
             atoms.into_iter().map(|(curve, _)| curve).collect();
@@ -384,7 +384,7 @@ impl<'m> BorderProver<'m> {
 }
 
 fn path_signs(claim: &Claim) -> PathSigns {
-    claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect()
+    claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY_SIGN).collect()
 }
 
 /// Returns the signs in the closure of the set with these signs.

@@ -8,7 +8,7 @@ use super::super::root::RootForm;
 use super::Pair;
 use super::{BorderProver, PathSigns, closure, path_signs};
 use crate::expr::polynomial::Polynomial;
-use crate::expr::value::At;
+use crate::expr::value::EvaluationPoint;
 use crate::formula::{CurveIndex, Signs, one_side};
 use crate::number::Number;
 
@@ -210,7 +210,7 @@ impl BorderProver<'_> {
             return Vec::new();
         }
         let [x, y, z] = self.cell.middle();
-        self.values.set(At::point(x, y, z));
+        self.values.set(EvaluationPoint::new(x, y, z));
         let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
         let is_near = |third: &Owner| {
             let difference = |owner: Owner| (depth(*third) - depth(owner)).abs();
@@ -227,9 +227,9 @@ impl BorderProver<'_> {
         let [mut at_a, mut at_b] = [a, b].map(|path_signs| self.signs(path_signs));
         // If owners are checked against the list of regions, its conditions hold too.
         if self.check_listed_owners {
-            self.model.regions[pair.0].inside.demand(&mut at_a);
+            self.model.regions[pair.0].inside.narrow_signs(&mut at_a);
             if let Some(other) = pair.1 {
-                self.model.regions[other].inside.demand(&mut at_b);
+                self.model.regions[other].inside.narrow_signs(&mut at_b);
             }
         }
         [at_a, at_b]

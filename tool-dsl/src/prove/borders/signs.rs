@@ -4,7 +4,7 @@ use super::super::cover::{Claim, Cover};
 use super::super::tangency::Contact;
 use super::{BorderProver, MAX_CONTACT_BOXES, PathSigns, path_signs};
 use crate::expr::polynomial::Polynomial;
-use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 
 impl BorderProver<'_> {
     /// Returns the signs that a curve can have at a claim's points in the current box. They follow from the
@@ -41,7 +41,7 @@ impl BorderProver<'_> {
     /// Returns the signs that a curve can have next to a conic on a claim's path, if the two touch nearby.
     fn signs_by_contact(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
         let box_corner = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
-        let mut signs = ANY;
+        let mut signs = ANY_SIGN;
         for (other, known) in &claim.signs {
             let from = match known & !ZERO {
                 NEGATIVE => -1,
@@ -76,7 +76,7 @@ impl BorderProver<'_> {
     }
 
     pub(super) fn signs(&self, path_signs: &PathSigns) -> Vec<Signs> {
-        let mut signs = vec![ANY; self.curves.len()];
+        let mut signs = vec![ANY_SIGN; self.curves.len()];
         for (curve, known) in path_signs {
             signs[*curve] &= known;
         }
@@ -90,7 +90,7 @@ impl BorderProver<'_> {
             return *known;
         }
         let mut signs = self.signs(&key.1);
-        let mut possible = ANY;
+        let mut possible = ANY_SIGN;
         for side in [NEGATIVE, POSITIVE] {
             signs[curve] = side;
             if self.linear.contradictory_in(claim.owner, &signs) {
@@ -109,7 +109,7 @@ impl BorderProver<'_> {
             (Some((positive, is_below)), _) if is_below == below => side(positive),
             // The points are inside the conic, which lies on the other side of the line.
             (_, Some((positive, is_below))) if positive == below => side(is_below),
-            _ => ANY,
+            _ => ANY_SIGN,
         }
     }
 

@@ -41,13 +41,17 @@ impl Survey<'_> {
                 let distance = self.border_prover.is_distance(index);
                 RegionFacts {
                     share,
-                    distance,
-                    steepness: if distance { Interval::new(1.0, 1.0) } else { facts.steepness },
+                    is_distance: distance,
+                    gradient_length: if distance {
+                        Interval::new(1.0, 1.0)
+                    } else {
+                        facts.gradient_length
+                    },
                     direction_error: direction.angle_to_descent,
-                    oblique: certain.oblique,
-                    rises: certain.rises,
-                    singular: direction.singular,
-                    on_axis: direction.on_axis,
+                    oblique_witness: certain.oblique,
+                    rising_witness: certain.rises,
+                    singular_cells: direction.singular,
+                    turns_on_axis: direction.on_axis,
                     ..facts
                 }
             })
@@ -59,7 +63,7 @@ impl Survey<'_> {
             borders: self.borders.into_values().collect(),
             undecided: self.undecided,
             tolerance: TOLERANCE * self.size,
-            boxes: self.boxes,
+            examined_boxes: self.boxes,
         }
     }
 

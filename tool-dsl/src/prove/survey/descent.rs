@@ -71,7 +71,7 @@ impl Survey<'_> {
         if self.tool.model.domain != Domain::HalfPlane || cell.sides[0].low > 0.0 {
             return;
         }
-        let axis = cell.with(0, NOTHING);
+        let axis = cell.with_side(0, NOTHING);
         self.slopes.set(axis);
         for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
             let depth = self.slopes.get(self.tool.model.regions[owner].depth);

@@ -167,7 +167,7 @@ impl Survey<'_> {
             && jump.high > TOLERANCE * self.size
         {
             let [from, to] = [Some(own), other].map(|owner| self.region_name(owner));
-            let statement = Statement::Continues(from, to);
+            let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
@@ -185,18 +185,18 @@ impl Survey<'_> {
                 .abs()
         };
         let border = Border {
-            between: meeting.pair,
+            sides: meeting.pair,
             curve: meeting.separation.curve,
-            jump,
-            step,
-            turn: turn_angle,
-            turn_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
+            depth_jump: jump,
+            magnitude_jump: step,
+            direction_angle: turn_angle,
+            direction_angle_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
             jump_point: meeting.jump_point,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
         self.borders
             .entry((meeting.pair, meeting.separation.curve))
-            .and_modify(|known| known.join(&border))
+            .and_modify(|known| known.merge(&border))
             .or_insert(border);
     }
 }

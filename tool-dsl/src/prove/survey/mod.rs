@@ -254,7 +254,7 @@ impl<'t> Survey<'t> {
             !self.border_prover.is_listed_owner(claim, (&mut self.cover, cell), self.check_overlaps)
         });
         if let (Some(claim), BoxSize::Last) = (wrong, box_size) {
-            let statement = Statement::Alone(self.region_name(claim.owner));
+            let statement = Statement::SingleOwner(self.region_name(claim.owner));
             self.undecided.push(OpenProof { cell, statement });
             return true;
         }
@@ -275,7 +275,7 @@ impl<'t> Survey<'t> {
             if overshoot <= allowed {
                 self.overshoot = self.overshoot.max(unless_rounding(overshoot, self.size));
             } else if box_size.is_last() {
-                let statement = Statement::Nearest(self.region_name(claim.owner));
+                let statement = Statement::NearestFeatures(self.region_name(claim.owner));
                 self.undecided.push(OpenProof { cell, statement });
                 return true;
             } else {
@@ -303,7 +303,7 @@ impl<'t> Survey<'t> {
             return false;
         }
         if !is_positive {
-            let statement = Statement::NotNegative(self.region_name(Some(owner)));
+            let statement = Statement::NonNegativeDepth(self.region_name(Some(owner)));
             self.undecided.push(OpenProof { cell, statement });
         }
         self.record_evaluation(owner, cell);
@@ -326,7 +326,7 @@ impl<'t> Survey<'t> {
             return false;
         }
         if claims.len() > MAX_CLAIMS {
-            let statement = Statement::Crowd(owners.len());
+            let statement = Statement::MeetingRegions(owners.len());
             self.undecided.push(OpenProof { cell, statement });
         } else if !self.examine_borders(cell, claims, box_size) {
             return false;
@@ -353,27 +353,28 @@ impl<'t> Survey<'t> {
         let clamp_at_zero = |value: Interval| Interval { low: value.low.max(0.0), ..value };
         let facts_here = RegionFacts {
             depth: clamp_at_zero(depth.value),
-            steepness: depth.length,
+            gradient_length: depth.length,
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
-            falls: dot_product.high <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
-            rounding: self.errors.over(region.depth, &cell),
+            niceness_never_rises: dot_product.high
+                <= SLOPE_MARGIN * depth.length.high * niceness.length.high,
+            rounding_error: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
         let raw_direction = self.raw_direction(owner);
         let angle =
             self.directions[owner].record(raw_direction, depth, cell, self.tool.model.domain);
-        self.examine_centre(owner, cell, angle.unwrap_or(0.0), !facts_here.falls);
+        self.examine_centre(owner, cell, angle.unwrap_or(0.0), !facts_here.niceness_never_rises);
         let facts = &mut self.regions[owner];
         *facts = Some(match facts.take() {
             None => facts_here,
             Some(known) => RegionFacts {
                 depth: known.depth.hull(facts_here.depth),
-                steepness: known.steepness.hull(facts_here.steepness),
+                gradient_length: known.gradient_length.hull(facts_here.gradient_length),
                 magnitude: known.magnitude.hull(facts_here.magnitude),
                 niceness: known.niceness.hull(facts_here.niceness),
-                falls: known.falls && facts_here.falls,
-                rounding: known.rounding.max(facts_here.rounding),
+                niceness_never_rises: known.niceness_never_rises && facts_here.niceness_never_rises,
+                rounding_error: known.rounding_error.max(facts_here.rounding_error),
                 ..known
             },
         });

@@ -14,16 +14,16 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     let Brackets { unclosed, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
         let diagnostic =
-            Diagnostic::new(stop.span(at, at + 1), SyntaxKind::ClosesNothing { bracket });
+            Diagnostic::new(stop.span(at, at + 1), SyntaxKind::UnmatchedBracket { bracket });
         return Some(diagnostic);
     }
     let (at, bracket) = unclosed.filter(|(at, _)| *at < stop.at)?;
     let closing_bracket = if bracket == '{' { '}' } else { ')' };
-    let kind = SyntaxKind::NotClosed { bracket, close: closing_bracket };
+    let kind = SyntaxKind::UnclosedBracket { bracket, closing_bracket };
     let diagnostic = Diagnostic::new(stop.span(at, at + 1), kind);
     Some(match first_token(stop.rest()) {
         "" => diagnostic,
-        next => diagnostic.and(stop.next(next.len()), "still open here"),
+        next => diagnostic.with_label(stop.next(next.len()), "still open here"),
     })
 }
 

@@ -129,14 +129,14 @@ pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
     spelling::character(&stop)
         .or_else(|| bracket::unmatched(&stop))
         .or_else(|| spelling::habit(&stop))
-        .unwrap_or_else(|| does_not_fit(&stop, Expected::Setting))
+        .unwrap_or_else(|| does_not_fit(&stop, Expected::Argument))
 }
 
 fn does_not_fit(stop: &Stop<'_>, expected: Expected) -> Diagnostic {
     match first_token(stop.rest()) {
-        "" => Diagnostic::new(stop.next(0), SyntaxKind::TextEnds { expected }),
+        "" => Diagnostic::new(stop.next(0), SyntaxKind::UnexpectedEnd { expected }),
         token => {
-            let kind = SyntaxKind::DoesNotFit { token: token.to_owned(), expected };
+            let kind = SyntaxKind::UnexpectedToken { token: token.to_owned(), expected };
             Diagnostic::new(stop.next(token.len()), kind)
         }
     }
@@ -168,16 +168,16 @@ fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
     let span = stop.span(start, start + first.len());
     // A whole file includes its header; an item does not.
     if stop.offset == 0 && stop.at == start && !FILE_KEYWORDS.contains(&first) {
-        let kind = SyntaxKind::UnknownFile {
-            word: first.to_owned(),
-            meant: nearest(first, FILE_KEYWORDS),
+        let kind = SyntaxKind::UnknownFileKeyword {
+            keyword: first.to_owned(),
+            suggestion: nearest(first, FILE_KEYWORDS),
         };
         return Some(Diagnostic::new(span, kind));
     }
     if !FILE_KEYWORDS.contains(&first) && !ITEM_KEYWORDS.contains(&first) {
         let kind = SyntaxKind::UnknownItem {
-            word: first.to_owned(),
-            meant: nearest(first, ITEM_KEYWORDS.into_iter().chain(FILE_KEYWORDS)),
+            keyword: first.to_owned(),
+            suggestion: nearest(first, ITEM_KEYWORDS.into_iter().chain(FILE_KEYWORDS)),
             known: Names::new(ITEM_KEYWORDS),
         };
         return Some(Diagnostic::new(span, kind));
@@ -187,8 +187,8 @@ fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
         let after = stop.rest()[wrong.len()..].trim_start_matches(BLANK_CHARACTERS);
         if after.starts_with(':') && !PROPERTY_KEYWORDS.contains(&wrong) {
             let kind = SyntaxKind::UnknownProperty {
-                word: wrong.to_owned(),
-                meant: nearest(wrong, PROPERTY_KEYWORDS),
+                name: wrong.to_owned(),
+                suggestion: nearest(wrong, PROPERTY_KEYWORDS),
             };
             return Some(Diagnostic::new(stop.next(wrong.len()), kind));
         }

@@ -74,9 +74,11 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         '"' if stop.text.matches('"').count() % 2 == 1 => unended(stop),
         '"' => diagnostic(SpellingKind::MisplacedText),
         '_' if glued && !number.is_empty() => diagnostic(SpellingKind::UnderscoreInNumber),
-        '_' => diagnostic(SpellingKind::NameBegin { start: NameStart::Underscore }),
+        '_' => diagnostic(SpellingKind::InvalidNameStart { start: NameStart::Underscore }),
         _ => match REPLACEMENTS.iter().find(|(wrong, _)| *wrong == next) {
-            Some((_, meant)) => diagnostic(SpellingKind::Lookalike { written: next, meant }),
+            Some((_, suggestion)) => {
+                diagnostic(SpellingKind::Lookalike { written: next, suggestion })
+            }
             None => foreign(next).and_then(diagnostic),
         },
     }
@@ -114,7 +116,7 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     }
     if ["and", "or"].contains(&next) || rest.starts_with("&&") || rest.starts_with("||") {
         let length = next.len().max(2);
-        return Some(Diagnostic::new(stop.next(length), SpellingKind::JoinedByWord));
+        return Some(Diagnostic::new(stop.next(length), SpellingKind::LogicalOperator));
     }
     if let Some(diagnostic) = name(stop).or_else(|| operator(stop)) {
         return Some(diagnostic);
@@ -133,7 +135,7 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     if FILE_KEYWORDS.contains(&next) {
         return Some(Diagnostic::new(
             stop.next(next.len()),
-            SpellingKind::SecondFile { word: next.to_owned() },
+            SpellingKind::SecondTool { keyword: next.to_owned() },
         ));
     }
     None
@@ -141,7 +143,7 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
 
 /// Returns an error for a text or a comment that does not end, or for an empty file.
 pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
-    let comment = |at: usize| Diagnostic::new(stop.span(at, at + 2), SyntaxKind::CommentNotClosed);
+    let comment = |at: usize| Diagnostic::new(stop.span(at, at + 2), SyntaxKind::UnclosedComment);
     if stop.rest().starts_with("/*") {
         return Some(comment(stop.at));
     }
@@ -154,7 +156,7 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
         let code = line.split("//").next().unwrap_or_default();
         if let (1, Some(at)) = (code.matches('"').count() % 2, code.rfind('"')) {
             let span = stop.span(start + at, start + at + 1);
-            return Some(Diagnostic::new(span, SpellingKind::TextNotClosed));
+            return Some(Diagnostic::new(span, SpellingKind::UnclosedText));
         }
         start += line.len();
     }
@@ -179,7 +181,7 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
             true => NameStart::DigitOfTool,
             false => NameStart::Digit,
         };
-        return Some(Diagnostic::new(stop.next(length), SpellingKind::NameBegin { start }));
+        return Some(Diagnostic::new(stop.next(length), SpellingKind::InvalidNameStart { start }));
     }
     let begun = stop.last_word();
     let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK_CHARACTERS);
@@ -191,14 +193,14 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
         let whole_name = format!("{begun}-{tail}");
         let end = stop.at + rest.find(tail).unwrap_or(0) + tail.len();
         let span = stop.span(before.len() - begun.len(), end);
-        let meant = if of_tool(naming) {
+        let suggestion = if of_tool(naming) {
             whole_name.replace('-', "")
         } else {
             whole_name.replace('-', "_")
         };
         return Some(Diagnostic::new(
             span,
-            SpellingKind::DashInName { written: whole_name, meant },
+            SpellingKind::DashInName { written: whole_name, suggestion },
         ));
     }
     None
@@ -222,7 +224,7 @@ fn operator(stop: &Stop<'_>) -> Option<Diagnostic> {
         }
         if ends_a_value(before) {
             return Some(if stop.text.trim_start().starts_with("region") {
-                Diagnostic::new(stop.next(1), SpellingKind::LongChain)
+                Diagnostic::new(stop.next(1), SpellingKind::TooManyComparisons)
             } else {
                 Diagnostic::new(stop.next(1), SpellingKind::ComparisonOutside)
             });
