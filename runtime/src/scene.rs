@@ -54,7 +54,7 @@ pub struct ToolId(usize);
 
 /// A part whose unit differs from the scene's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the part is in {part} and the scene in {scene}: convert it by `Part::to`")]
+#[error("the part is in {part} and the scene in {scene}: convert it by `Part::converted_to`")]
 #[non_exhaustive]
 pub struct SceneError {
     /// The part's unit.

@@ -72,7 +72,7 @@ impl ScenePath {
 ///
 /// # Panics
 /// Panics if `gap` is NaN or infinite.
-pub fn apart(gap: f64, k: usize, n: usize) -> Pose {
+pub fn pose_at_gap(gap: f64, k: usize, n: usize) -> Pose {
     let u = fraction(k, n);
     let phi = 10.0 * PI * u;
     let a = -0.4f64.cos() * radial(phi) + 0.4f64.sin() * tangential(phi);
@@ -200,7 +200,7 @@ mod tests {
                 [0.023634385123, 0.0, 0.999720668907],
             ),
             (
-                apart(0.5, 3400, POSES),
+                pose_at_gap(0.5, 3400, POSES),
                 [-1.353628111417, -5.426223181361, 4.9],
                 [-0.65498235202, -0.755644174557, 0.0],
             ),
@@ -237,9 +237,9 @@ mod tests {
     }
 
     #[test]
-    fn apart_keeps_its_gap() {
+    fn pose_at_gap_keeps_the_gap() {
         for k in 0..POSES {
-            assert!(is_close(ball(&apart(0.5, k, POSES)).1, 6.5));
+            assert!(is_close(ball(&pose_at_gap(0.5, k, POSES)).1, 6.5));
         }
     }
 

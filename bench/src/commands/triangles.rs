@@ -8,7 +8,7 @@ use std::fmt::Write;
 use tools_library::{Fig73Exact, Flat};
 use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, apart};
+use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, pose_at_gap};
 use touchoff::{Interval, Mesh, Motion, Pose, Tool, Unit};
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
@@ -132,7 +132,7 @@ impl Scene {
         };
         match self {
             Scene::Along(path) => path.pose(k, n),
-            Scene::Apart(gap) => apart(gap, k, n),
+            Scene::Apart(gap) => pose_at_gap(gap, k, n),
             Scene::Flat => pose_at(Point3::new(x, y, -TIED_DEPTH), Vector3::z()),
             Scene::Line => {
                 let angle = 2.0 * PI * u;

@@ -36,7 +36,7 @@ use cutter::Cutter;
 use patch::Patch;
 use path_scenes::PathScene;
 use touchoff::certify::NotCertifiable;
-use touchoff::scenes::{ScenePath, apart, tube};
+use touchoff::scenes::{ScenePath, pose_at_gap, tube};
 use touchoff::{CloudError, Mesh, Pose, Tool, Unit};
 
 /// Receives each row when it is measured.
@@ -169,7 +169,7 @@ fn scenes_along_tube(scene_names: &[&str], plan: &Plan) -> Vec<PathScene<'static
         .collect();
     if scene_names.contains(&"apart") {
         let description = "the ball 0.5 mm off the outer wall";
-        scenes.push(scene("apart", description, false, &|k| apart(GAP, k, count)));
+        scenes.push(scene("apart", description, false, &|k| pose_at_gap(GAP, k, count)));
     }
     scenes
 }
