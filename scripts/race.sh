@@ -13,7 +13,7 @@ race=$folder/race
 mkdir -p "$race/src" "$folder/other"
 git archive "$other" | tar -x -C "$folder/other"
 # Packages with the same name must differ in version.
-sed -i 's/"0\.1\.0"/"0.0.9"/g' "$folder/other/Cargo.toml"
+sed -i 's/^version = .*/version = "0.0.9"/; s/\(path = "[^"]*", version = \)"[^"]*"/\1"0.0.9"/' "$folder/other/Cargo.toml"
 cp scripts/race/main.rs "$race/src/main.rs"
 cat > "$race/Cargo.toml" <<END
 [package]
