@@ -1,6 +1,5 @@
 //! Times two versions of the library in one process; run by `scripts/race.sh`.
 
-use touchoff::Sampling;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -9,7 +8,7 @@ const BLOCK: usize = 25;
 const PASSES: usize = 7;
 /// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-6;
-const QUESTIONS: [&str; 4] = ["wrench", "detect", "certified depth", "sweep"];
+const QUERIES: [&str; 4] = ["wrench", "detect", "certified depth", "motion"];
 const SCENES: [&str; 4] = ["outside", "inside", "hold", "apart"];
 
 /// Defines the module of one version: its part, and the time per block of poses.
@@ -18,8 +17,8 @@ macro_rules! version {
         mod $name {
             use super::*;
             use $touchoff::certify::{Certifier, TriangleBvh};
-            use $touchoff::scenes::{ScenePath, apart, tube};
-            use $touchoff::{Cloud, Motion, Part, Pose, Probe};
+            use $touchoff::scenes::{ScenePath, pose_at_gap, tube};
+            use $touchoff::{Cloud, Motion, Part, Pose, Probe, Sampling};
 
             pub fn part(count: usize) -> &'static Part {
                 let cloud = Cloud::sample(&tube(), Sampling::monte_carlo(count)).expect("points of a tube");
@@ -29,7 +28,7 @@ macro_rules! version {
             pub fn poses(scene: usize) -> Vec<Pose> {
                 let pose = |k| match ScenePath::ALL.get(scene) {
                     Some(path) => path.pose(k, POSES),
-                    None => apart(0.5, k, POSES),
+                    None => pose_at_gap(0.5, k, POSES),
                 };
                 (0..POSES).map(pose).collect()
             }
@@ -61,13 +60,13 @@ macro_rules! version {
                 }
 
                 /// Returns the mean time per pose, ns.
-                pub fn time(&mut self, question: usize, block: usize) -> f64 {
+                pub fn time(&mut self, query: usize, block: usize) -> f64 {
                     let Racer { probe, certifier, poses, motions } = self;
                     let poses = &poses[block * BLOCK..(block + 1) * BLOCK];
                     let start = Instant::now();
                     for (k, pose) in poses.iter().enumerate() {
                         let pose = black_box(pose);
-                        match question {
+                        match query {
                             0 => _ = black_box(probe.wrench(pose)),
                             1 => _ = black_box(probe.detect(pose)),
                             2 => _ = black_box(certifier.deepest(pose, TOLERANCE)),
@@ -88,22 +87,22 @@ version!(now, this, this_tools);
 version!(then, other, other_tools);
 
 fn main() {
-    println!("| points | scene | question | other, ns | this, ns | this by other |\n|--:|---|---|--:|--:|--:|");
+    println!("| points | scene | query | other, ns | this, ns | this by other |\n|--:|---|---|--:|--:|--:|");
     for count in [20_000, 1_000_000] {
         let parts = (then::part(count), now::part(count));
         for (scene, name) in SCENES.into_iter().enumerate() {
             let mut racers = (then::Racer::new(parts.0, scene), now::Racer::new(parts.1, scene));
             // Certified queries use the triangles, so they do not depend on the number of points.
-            let asked = if count == 20_000 { &QUESTIONS[..] } else { &QUESTIONS[..2] };
-            for (question, word) in asked.iter().enumerate() {
+            let queries = if count == 20_000 { &QUERIES[..] } else { &QUERIES[..2] };
+            for (query, query_name) in queries.iter().enumerate() {
                 let mut best = vec![[f64::MAX; 2]; POSES / BLOCK];
                 for pass in 0..PASSES {
                     for (block, best) in best.iter_mut().enumerate() {
                         for turn in 0..2 {
                             let who = (block + pass + turn) % 2;
                             let time = match who {
-                                0 => racers.0.time(question, block),
-                                _ => racers.1.time(question, block),
+                                0 => racers.0.time(query, block),
+                                _ => racers.1.time(query, block),
                             };
                             best[who] = best[who].min(time);
                         }
@@ -111,7 +110,7 @@ fn main() {
                 }
                 let mean = |who: usize| best.iter().map(|b| b[who]).sum::<f64>() / best.len() as f64;
                 let (other, this) = (mean(0), mean(1));
-                println!("| {count} | {name} | {word} | {other:.0} | {this:.0} | {:.3} |", this / other);
+                println!("| {count} | {name} | {query_name} | {other:.0} | {this:.0} | {:.3} |", this / other);
             }
         }
     }
