@@ -155,8 +155,7 @@ fn sample_cloud(
     let most =
         if dense == DenseSampling::Certify { MAX_POINTS_OF_RUN } else { MAX_BLUE_NOISE_POINTS };
     let reason = format!(
-        "for a sampling error of {} no point of the surface may be farther than {} from all samples, as depth \
-         grows by at most {steepest:.4} per length",
+        "a sampling error of {} needs a sample within {} of every point of the surface (L = {steepest:.4})",
         format_length(error, unit),
         format_length(radius, unit),
     );

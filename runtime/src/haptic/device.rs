@@ -94,7 +94,7 @@ pub trait Device {
     ///
     /// # Errors
     /// Fails if the device cannot apply the wrench. The loop continues.
-    fn apply(&mut self, push: &DeviceWrench) -> Result<(), DeviceError>;
+    fn apply(&mut self, wrench: &DeviceWrench) -> Result<(), DeviceError>;
 
     /// Returns the limits of the device.
     fn limits(&self) -> DeviceLimits;
