@@ -25,8 +25,10 @@ Exit status:
   0  success; `verify` without findings, `check` without warnings
   1  failure, or something is wrong: findings of `verify`, errors of `check`, files that `fmt --check` would
      rewrite
-  2  wrong options, an output that is also an input, or a program that `verify` could not check
+  2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, or a
+     program that could not be checked
   3  `check` only warns
+  130  a signal ended `haptic`
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
 disk, is a failure. A file is replaced once it is whole: one that cannot be written is left as it was.";
 
@@ -37,7 +39,8 @@ disk, is a failure. A file is replaced once it is whole: one that cannot be writ
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    /// Print JSON, one object per row: per pose, per tool or per line of a table.
+    /// Print JSON, one object per row: per pose, per tool or per line of a table. `sample`, `expand` and `draw`
+    /// print no rows.
     #[arg(long, global = true)]
     pub(crate) json: bool,
 }

@@ -9,7 +9,7 @@ use nalgebra::Point3;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{tool} cannot be certified: it has no profile, and how fast its depth changes is not \
-     proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
+     proved; write it as a `profile {{ … }}`, or see `touchoff check`"
 )]
 #[non_exhaustive]
 pub struct NotCertifiable {
@@ -56,7 +56,9 @@ pub enum AllowanceError {
         surface: String,
     },
     /// The allowance is not a length.
-    #[error("an allowance of {allowed} for `{surface}` is no length")]
+    #[error(
+        "an allowance of {allowed} for `{surface}` is not a length: give a finite number, or no allowance"
+    )]
     NoLength {
         /// The name of the surface.
         surface: String,

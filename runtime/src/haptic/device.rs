@@ -70,7 +70,7 @@ impl Default for DeviceLimits {
 #[non_exhaustive]
 pub enum DeviceError {
     /// The reported data is not a valid pose.
-    #[error("the device says that it is nowhere: {0}")]
+    #[error("the device reports an invalid pose: {0}")]
     Pose(#[from] PoseError),
     /// The device does not answer at the moment.
     #[error("the device does not answer: {0}")]

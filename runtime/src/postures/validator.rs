@@ -32,7 +32,7 @@ pub struct Rules {
 pub enum RulesError {
     /// The tolerance is not a finite length above 0.
     #[error(
-        "a tolerance of {0} is no length above 0, and triangles that meet at an angle are in each other's way: give \
+        "a tolerance of {0} is not a length above 0, and triangles that meet at an angle are in each other's way: give \
          one in the part's unit, such as 0.01 mm"
     )]
     Tolerance(f64),
@@ -40,7 +40,9 @@ pub enum RulesError {
     #[error("a niceness of {0} is no number: give one as the tools' files have them")]
     Niceness(f64),
     /// The allowance is NaN or negative infinity.
-    #[error("an allowance of {allowed} for `{surface}` is no length")]
+    #[error(
+        "an allowance of {allowed} for `{surface}` is not a length: give a finite number, or no allowance"
+    )]
     Allowance {
         /// The surface.
         surface: String,

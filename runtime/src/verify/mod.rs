@@ -2,8 +2,8 @@
 //! part than allowed.
 //!
 //! ```text
-//! program ──two stops──▶ motion ──check_motion──▶ clear
-//!                                      └──────▶ each surface ──deepest_along──▶ finding
+//! program ──two locations──▶ motion ──check_motion──▶ clear
+//!                                          └──────▶ each surface ──motion_depth──▶ finding
 //! ```
 //!
 //! Every two consecutive cutter locations form a [`Motion`], which is checked over its whole length, so that a

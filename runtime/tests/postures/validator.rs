@@ -111,13 +111,13 @@ fn rejects_invalid_rules() {
         _ => panic!("{rules:?}"),
     };
     for tolerance in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
-        assert!(error_of(&rules(tolerance)).contains("is no length above 0"));
+        assert!(error_of(&rules(tolerance)).contains("is not a length above 0"));
     }
     let invalid = Rules { niceness: f64::NAN, ..rules(0.01) };
     assert_eq!(error_of(&invalid), RulesError::Niceness(f64::NAN).to_string());
     let mut named = rules(0.01);
     named.allowed = vec![("neck".into(), f64::NAN)];
-    assert!(error_of(&named).contains("an allowance of NaN for `neck` is no length"));
+    assert!(error_of(&named).contains("an allowance of NaN for `neck` is not a length"));
     named.allowed = vec![("nack".into(), 0.1)];
     let message = named.check(&[&Mill, &Ball]).expect_err("no such surface").to_string();
     let surfaces = "`ball`, `flute`, `holder`, `neck`";

@@ -469,9 +469,9 @@ fn rejects_unknown_surfaces_and_allowances_without_length() {
     let text = "Flat has no surface `flank`; it has `face`, `flute`, `shank`";
     assert_eq!(expected.to_string(), text);
     let text = error_of("flute", f64::NAN).to_string();
-    assert_eq!(text, "an allowance of NaN for `flute` is no length");
+    assert!(text.starts_with("an allowance of NaN for `flute` is not a length"), "{text}");
     let text = error_of("flute", f64::NEG_INFINITY).to_string();
-    assert_eq!(text, "an allowance of -inf for `flute` is no length");
+    assert!(text.starts_with("an allowance of -inf for `flute` is not a length"), "{text}");
 }
 
 /// The corner that the neck shares with the surface below owns points at the flute's heights, but not points of the

@@ -191,7 +191,7 @@ pub enum PlyError {
     },
     /// The points have no normals, so the outward direction is unknown.
     #[error(
-        "{file} holds points without normals, and which way is out cannot be known: export them \
+        "{file} holds points without normals, so its outer side is unknown: export them \
          with `nx`, `ny` and `nz`, or export the mesh, with its faces"
     )]
     NoNormals {

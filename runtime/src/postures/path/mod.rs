@@ -47,7 +47,7 @@ pub struct Pattern {
 #[non_exhaustive]
 pub enum PathError {
     /// A length of the pattern is not finite or not above 0.
-    #[error("{what} of {value} is no length above 0: give one in the part's unit, such as 1")]
+    #[error("{what} of {value} is not a length above 0: give one in the part's unit, such as 1")]
     Pattern {
         /// The name of the length.
         what: &'static str,
