@@ -58,7 +58,8 @@ pub(crate) struct PartFile {
     /// `run` would need more than a million points, it proves depth to this tolerance instead.
     #[arg(long, value_name = "LENGTH", value_parser = positive_length, conflicts_with = "points")]
     pub(crate) sampling_error: Option<f64>,
-    /// Distribution of the points: `blue`, evenly spread; `random`, uniformly; or `monte-carlo`, `random` with equal weights and no covering radius.
+    /// Distribution of the points: `blue`, evenly spread; `random`, uniformly; or `monte-carlo`, as `random` with equal
+    /// weights and no covering radius.
     #[arg(long, value_name = "METHOD", default_value_t = SamplingMethod::BlueNoise)]
     pub(crate) sampling: SamplingMethod,
     /// Seed of the sampling; the same seed gives the same points.
