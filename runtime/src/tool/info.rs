@@ -33,7 +33,8 @@ pub struct ToolInfo {
     pub digest: u64,
 }
 
-/// Proved bounds of a tool's depth against the distance to its surface, for all points inside.
+/// Bounds of a tool's depth against the distance to its surface, for all points inside: by construction for a profile,
+/// which `touchoff check` proves, and proved for regions by hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthBounds {
     /// `c`: depth is at least `c` times the distance to the surface. `None` if no such bound is proved.

@@ -8,9 +8,9 @@
 //! which a triangle crosses anywhere.
 //!
 //! Between parallel lines, or arcs about one centre, the critical points form a line of the half plane along
-//! which depth is constant. A triangle crosses its surface of revolution in curves. Closed curves are symmetrical
-//! to the meridian. The others end on an edge, or at the height of an end of that line. At such an end a foot is
-//! an end of a feature, or a third feature is as near.
+//! which depth is constant. A triangle crosses its surface of revolution in curves. Closed curves meet the
+//! meridian (`docs/certified.md`). The others end on an edge, or at the height of an end of that line. At such an
+//! end a foot is an end of a feature, or a third feature is as near.
 
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, dot, minus, norm};
 use crate::certify::tool_model::owners::Owners;
