@@ -30,7 +30,8 @@ fn ran(clock: &mut impl Clock) -> LoopReport {
 fn a_second_of_cycles_takes_a_second() {
     let mut clock = MonotonicClock::new(Duration::from_micros(100));
     let report = ran(&mut clock);
-    assert_eq!(report.cycles + report.skipped, 1000);
+    // A late last cycle skips some that come after the end.
+    assert!(report.cycles <= 1000 && report.cycles + report.skipped >= 1000, "{report:?}");
     assert!(clock.now() >= Duration::from_millis(999));
     assert_eq!(report.stalls, 0);
     assert_eq!(report.durations.len(), report.cycles);
