@@ -110,7 +110,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let unit = arguments.mesh.unit;
     let mesh = part::mesh(&arguments.mesh.part, unit, "sweep")?;
     let bvh = TriangleBvh::new(&mesh);
-    part::has_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
+    part::require_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
     let rules = Rules {
         tolerance: arguments.tolerance.unwrap_or_else(|| default_tolerance(unit)),
         niceness: arguments.min_niceness,
