@@ -141,7 +141,7 @@ impl<'t> TreeWalk<'t> {
 
     /// Returns whether a point is inside, and the number of tests on its path.
     fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
-        self.curves.set(EvaluationPoint::on_meridian(d, z));
+        self.curves.evaluate(EvaluationPoint::on_meridian(d, z));
         let (mut tree, mut tests) = (&self.tool.plan.owner, 0);
         loop {
             match tree {

@@ -154,7 +154,7 @@ fn evaluation(
     evaluator: &mut Evaluator<'_>,
     [x, y, z]: [f64; 3],
 ) -> Option<Value> {
-    evaluator.set(EvaluationPoint::new(x, y, z));
+    evaluator.evaluate(EvaluationPoint::new(x, y, z));
     let owner =
         *tool.plan.owner.leaf_at(&|curve: usize| evaluator.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];

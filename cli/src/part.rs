@@ -1,4 +1,4 @@
-//! The part: from its file to its points.
+//! Loads a part from its file: a mesh to sample, points, or a saved part; and the command `touchoff sample`.
 
 use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
@@ -16,15 +16,15 @@ use touchoff::{Cloud, CloudError, CoveringRadius, Mesh, Part, Probe, Sampling, T
 /// The file extension of saved parts.
 const SAVED: &str = "touchoff";
 
-/// Number of points above which depth is rather certified: sampling that many takes seconds, and querying them no
-/// less time than a proof (docs/measured/certified.md).
+/// Number of points above which `run` certifies depth instead: sampling more takes seconds, and a query on them takes no
+/// less time than a certified one (docs/accuracy.md).
 const MAX_POINTS_OF_RUN: usize = 1_000_000;
 
 /// A part, and its mesh if it has one.
 pub(crate) struct Loaded {
     pub(crate) part: Part,
     pub(crate) mesh: Option<Mesh>,
-    /// The tolerance to which depth has to be certified, if the points do not meet the sampling error.
+    /// Tolerance of certified depth, in the part's unit, if the sampling error needs too many points.
     pub(crate) certify: Option<f64>,
 }
 
@@ -42,23 +42,29 @@ pub(crate) enum DenseSampling {
 /// # Errors
 /// [`Failure::NoTriangles`] if the file has none.
 pub(crate) fn mesh(part: &Path, unit: Unit, what: &'static str) -> Result<Mesh, Failure> {
-    let file = part.display();
-    let no_mesh = || Failure::NoTriangles { file: file.to_string(), what };
+    let no_mesh = || Failure::NoTriangles { file: part.display().to_string(), what };
     if is_saved(part) {
         return Err(no_mesh());
     }
-    match Geometry::read(part, unit)? {
-        Geometry::Mesh(mesh) => {
-            for finding in mesh.diagnostics().findings() {
-                message!("{file}: {finding}");
-            }
-            Ok(mesh)
-        }
+    match read_geometry(part, unit)? {
+        Geometry::Mesh(mesh) => Ok(mesh),
         Geometry::Points(_) => Err(no_mesh()),
     }
 }
 
-/// Reads a part and samples its points, for that tool.
+/// Reads a file of triangles or points, and prints the findings about a mesh.
+fn read_geometry(part: &Path, unit: Unit) -> Result<Geometry, Failure> {
+    let geometry = Geometry::read(part, unit)?;
+    if let Geometry::Mesh(mesh) = &geometry {
+        for finding in mesh.diagnostics().findings() {
+            message!("{}: {finding}", part.display());
+        }
+    }
+    Ok(geometry)
+}
+
+/// Reads a part and samples its points. A sampling error is one of depth for the tool `info`, or for any tool whose depth
+/// is the distance to its surface.
 pub(crate) fn load(
     arguments: &PartFile,
     info: Option<&ToolInfo>,
@@ -74,14 +80,10 @@ pub(crate) fn load(
         let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
         return Ok(Loaded { part, mesh: None, certify: None });
     }
-    match Geometry::read(&arguments.part, arguments.unit)? {
+    match read_geometry(&arguments.part, arguments.unit)? {
         Geometry::Mesh(mesh) => {
-            let survey = mesh.diagnostics();
-            for finding in survey.findings() {
-                message!("{file}: {finding}");
-            }
             let (cloud, certify) = sample_cloud(&mesh, arguments, info, (dense, json))?;
-            Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh), certify })
+            Ok(Loaded { part: Part::new(&cloud, mesh.diagnostics()), mesh: Some(mesh), certify })
         }
         Geometry::Points(_) if arguments.sampling_error.is_some() => {
             Err(no_mesh("--sampling-error"))
@@ -103,14 +105,14 @@ pub(crate) fn load(
 }
 
 /// The message for a mesh that does not determine its inside.
-pub(crate) const NO_INSIDE: &str = "whether the tool is inside the material is unknown: the part's mesh leaks, is \
-                                    not consistently oriented, or is inside out as a whole or in a piece";
+pub(crate) const NO_INSIDE: &str = "the part's inside is undefined: its mesh leaks, is not consistently oriented, or \
+                                    is inside out, as a whole or in one connected component";
 
-/// Refuses a part whose inside is unknown, unless only its surface is requested.
+/// Fails for a part whose inside is undefined; with `surface_only` prints a warning instead.
 ///
 /// # Errors
 /// [`Failure::NoInside`].
-pub(crate) fn has_inside(
+pub(crate) fn require_inside(
     bvh: &TriangleBvh,
     part: &Path,
     surface_only: bool,
@@ -130,8 +132,8 @@ fn is_saved(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED))
 }
 
-/// Samples as many points as requested, or as the sampling error needs. Returns the tolerance to which depth is to
-/// be certified if these would be too many.
+/// Samples as many points as requested, or as the sampling error needs. If these are too many to sample, samples the
+/// default number and returns the tolerance of certified depth.
 fn sample_cloud(
     mesh: &Mesh,
     arguments: &PartFile,
@@ -145,22 +147,24 @@ fn sample_cloud(
         Cloud::sample(mesh, Sampling { count: points, method, seed })
     };
     let Some(error) = arguments.sampling_error else { return Ok((sample()?, None)) };
-    let steepest = match info.map(|info| (info, info.depth.lipschitz)) {
+    let lipschitz = match info.map(|info| (info, info.depth.lipschitz)) {
         None => 1.0,
-        Some((_, Some(steepest))) if steepest > 0.0 => steepest,
+        Some((_, Some(lipschitz))) if lipschitz > 0.0 => lipschitz,
         Some((info, _)) => return Err(Failure::NoLipschitz(info.name.to_string())),
     };
-    // The margin is larger than the effect of rounding.
-    let radius = error / steepest * (1.0 - 1e-6);
-    let most =
+    // Leaves room for the rounding error bound, which `Probe::sampling_error_bound` adds. With very uneven points that
+    // bound may be larger.
+    let radius = error / lipschitz * (1.0 - 1e-6);
+    let max_points =
         if dense == DenseSampling::Certify { MAX_POINTS_OF_RUN } else { MAX_BLUE_NOISE_POINTS };
     let reason = format!(
-        "a sampling error of {} needs a sample within {} of every point of the surface (L = {steepest:.4})",
+        "a sampling error of {} needs a sample within {} of every point of the surface (L = {lipschitz:.4})",
         format_length(error, unit),
         format_length(radius, unit),
     );
     let progress = Progress::spinner("sampling", json);
-    let cloud = Cloud::with_covering_radius(mesh, radius, Sampling { count: most, method, seed });
+    let sampling = Sampling { count: max_points, method, seed };
+    let cloud = Cloud::with_covering_radius(mesh, radius, sampling);
     drop(progress);
     match cloud {
         Ok(cloud) => {
@@ -170,8 +174,8 @@ fn sample_cloud(
         Err(CloudError::TooFine { needed, .. }) if dense == DenseSampling::Certify => {
             let cloud = sample()?;
             message!(
-                "{reason}, which takes some {needed:.0e} points: depth is proved for the triangles instead, \
-                 force is that of {} points",
+                "{reason}, and so about {needed:.0e} points: depth is certified on the triangles instead, and \
+                 force is computed at {} points",
                 cloud.len(),
             );
             Ok((cloud, Some(error)))
@@ -180,8 +184,8 @@ fn sample_cloud(
     }
 }
 
-/// Prints the covering radius of the points and the sampling error for a tool.
-pub(crate) fn about(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
+/// Prints the covering radius, and the sampling error bound for a tool. Prints nothing if the radius is unknown.
+pub(crate) fn print_covering_radius(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
     let Some(CoveringRadius { radius, proved, .. }) = part.tree().covering_radius() else { return };
     let status = if proved { "proved" } else { "estimated" };
     let bound = match tool.map(|tool| Probe::new(part, tool).sampling_error_bound()) {
@@ -217,7 +221,7 @@ pub(crate) fn sample(arguments: &Sample, json: bool) -> Result<(), Failure> {
     }
     let Loaded { part, .. } =
         load(&arguments.part, tool.map(Tool::info), DenseSampling::Sample, json)?;
-    about(&part, tool, arguments.part.unit);
+    print_covering_radius(&part, tool, arguments.part.unit);
     part.save(output)?;
     message!("{}: {} points", output.display(), part.tree().len());
     Ok(())

@@ -100,7 +100,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
         None => None,
     };
     about(arguments, &part, &program, tool.info());
-    part::about(&part, Some(tool), unit);
+    part::print_covering_radius(&part, Some(tool), unit);
 
     let mut out = Output::rows();
     if !json {

@@ -1,28 +1,30 @@
-//! `touchoff tools`: the built-in tools, and the tools of files.
+//! `touchoff tools`: lists the built-in tools or those in `.tool` files, and prints the source of a built-in tool.
 
 use crate::arguments::{ParamArguments, Tools, ToolsCommand};
 use crate::failure::Failure;
 use crate::loaded_tool::{built_in, load_file};
 use crate::output::{Output, extension, unwritable, write_file};
 use serde::Serialize;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tools_library::{SOURCES, TOOLS};
 use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
 use touchoff::{Escaped, Tool};
 
+/// One line of `tools list --json`.
 #[derive(Serialize)]
 struct Row<'a> {
     name: &'a str,
     title: &'a str,
     unit: &'static str,
+    /// Range along the axis, in `unit`.
     z_range: [f64; 2],
-    /// Upper bound on the radius about z.
+    /// Upper bound on the distance from the axis, in `unit`.
     radius: f64,
-    /// The extent of a solid along x.
+    /// Range along x, in `unit`; only for a solid without an axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     x_range: Option<[f64; 2]>,
-    /// The extent of a solid along y.
+    /// Range along y, in `unit`; only for a solid without an axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     y_range: Option<[f64; 2]>,
     surfaces: Vec<SurfaceRow<'a>>,
@@ -59,7 +61,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Lists tools.
+/// Runs `touchoff tools`, `tools list` and `tools show`.
 pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
     match &arguments.command {
         None => list(&[], &ParamArguments::default(), json),
@@ -68,7 +70,7 @@ pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Lists the tools of files; without files, the built-in tools.
+/// Lists the tools in files; without files, the built-in tools.
 fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Failure> {
     let files: Vec<Interpreted> =
         files.iter().map(|file| load_file(file, params)).collect::<Result<_, _>>()?;
@@ -89,9 +91,9 @@ fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Fa
     Ok(out.flush()?)
 }
 
-/// The text of a built-in tool.
+/// The source files of a built-in tool.
 #[derive(Serialize)]
-struct TextRow<'a> {
+struct SourceRow<'a> {
     name: &'a str,
     /// The tool's own file first, then those that it mounts.
     files: Vec<FileRow>,
@@ -99,24 +101,28 @@ struct TextRow<'a> {
 
 #[derive(Serialize)]
 struct FileRow {
+    /// Path relative to the library's folder.
     file: &'static str,
     text: &'static str,
 }
 
-/// Prints the text of a built-in tool, or writes it to a file with the files that it mounts below the same folder.
+/// Prints the source of a built-in tool. With `output`, writes it there, and the files that it mounts below the same
+/// folder.
 fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
+    // Fails with a hint if there is no such tool.
     built_in(name)?;
-    let mut texts = TOOLS.iter().zip(SOURCES);
-    let files =
-        texts.find(|(tool, _)| tool.info().name == name).map_or(&[][..], |(_, files)| files);
-    let [(_, text), mounted @ ..] = files else { return Ok(()) };
+    let mut sources = TOOLS.iter().zip(SOURCES);
+    let files = sources.find(|(tool, _)| tool.info().name == name).map(|(_, files)| *files);
+    let Some(files @ [(_, text), mounted @ ..]) = files else {
+        unreachable!("every built-in tool has a source")
+    };
     if let Some(output) = output {
         return write_tool(name, output, (text, mounted));
     }
     let mut out = Output::bytes();
     if json {
         let files = files.iter().map(|(file, text)| FileRow { file, text }).collect();
-        serde_json::to_writer(&mut out, &TextRow { name, files })?;
+        serde_json::to_writer(&mut out, &SourceRow { name, files })?;
         writeln!(out)?;
     } else {
         write!(out, "{text}")?;
@@ -125,17 +131,19 @@ fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     if !mounted.is_empty() && !json {
         let files: Vec<String> = mounted.iter().map(|(file, _)| format!("`{file}`")).collect();
         message!(
-            "`{name}` mounts {}: `touchoff tools show {name} -o FILE.tool` writes them too, beside FILE.tool",
+            "`{name}` mounts {}. To write these files too: `touchoff tools show {name} -o FILE.tool`. They are written \
+             below FILE.tool's folder",
             files.join(", ")
         );
     }
     Ok(())
 }
 
-/// Writes a tool to a file, and the files that it mounts below the same folder.
+/// Writes a tool's source to `output`, and the files that it mounts below `output`'s folder.
 ///
 /// # Errors
-/// If a file cannot be written, or would replace another than the one that is mounted.
+/// If `output` does not end in `.tool`, if a mounted file exists with other content or has the name of `output`, or if
+/// a file cannot be written.
 fn write_tool(
     name: &str,
     output: &Path,
@@ -149,7 +157,11 @@ fn write_tool(
     let mounted: Vec<(PathBuf, &str)> =
         mounted.iter().map(|(file, text)| (folder.join(file), *text)).collect();
     for (file, text) in &mounted {
-        let differs = std::fs::read_to_string(file).is_ok_and(|present| present != *text);
+        let differs = match std::fs::read(file) {
+            Ok(present) => present != text.as_bytes(),
+            Err(error) => error.kind() != ErrorKind::NotFound,
+        };
+        // A mounted file must not overwrite the tool itself.
         if differs || file == output {
             let (file, name) = (file.display().to_string(), name.to_owned());
             return Err(Failure::MountedFileExists { file, name });
@@ -159,9 +171,9 @@ fn write_tool(
         let parent = file.parent().unwrap_or(folder);
         std::fs::create_dir_all(parent).map_err(|source| unwritable(parent, source))?;
         write_file(file, text)?;
-        message!("{}", file.display());
+        message!("{}: written", file.display());
     }
     write_file(output, text)?;
-    message!("{}", output.display());
+    message!("{}: written", output.display());
     Ok(())
 }

@@ -3,13 +3,20 @@
 //!
 //! A tool is written in a small language and compiled into straight-line code by [`include_tool!`], [`tool!`] or
 //! [`tool_library!`]. A workpiece is a triangle mesh: sampled as a weighted point cloud for fast queries, or searched
-//! as triangles for proved ones. Every answer states its error.
+//! as triangles for proved ones. Depths have an error bound wherever one is proved of the tool, forces a bound on their
+//! rounding error.
 //!
 //! # A tour
 //!
-//! **Load.** [`Mesh::read_stl`] and [`mesh::Geometry`] read files, whose unit the caller states. [`Part::from_mesh`]
-//! samples a mesh; [`Part::save`] and [`Part::open`] keep the result. **Write a tool**, or take one from the package
-//! `tools-library`. **Query**: a [`Probe`] evaluates a tool at the points of a part.
+//! A *wrench* is a force and a torque; *niceness* rates how good a contact is for machining; a *posture* is a tool's pose
+//! at a triangle of the part. The glossary is `docs/glossary.md`.
+//!
+//! **Load.** [`Mesh::read_stl`] and [`mesh::Geometry`] read files; the caller states the unit. [`Part::from_mesh`]
+//! samples a mesh; [`Part::save`] and [`Part::open`] keep the result.
+//!
+//! **Write a tool**, or take one from the package `tools-library`.
+//!
+//! **Query.** A [`Probe`] evaluates a tool at the points of a part.
 //!
 //! ```
 //! use touchoff::{Part, Pose, Probe, Sampling, Unit, mesh::shapes};
@@ -30,7 +37,7 @@
 //! let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.5), Vector3::z())?;
 //! let wrench = probe.wrench(&pose);
 //! assert!(wrench.colliding > 0 && wrench.force.z > 0.0);
-//! // The surface between the points is no deeper than this.
+//! // `depth_bound` also covers the surface between the points.
 //! assert!(probe.depth_bound(&pose).is_some_and(|bound| bound >= 0.5));
 //! # Ok(()) }
 //! ```
@@ -55,8 +62,10 @@
 //! # let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.5), Vector3::z())?;
 //! let bvh = TriangleBvh::new(&block);
 //! let depth = Certifier::new(&bvh, &Ball)?.deepest(&pose, 1e-9).depth;
+//! // The tip is 0.5 mm below the top face. The interval is as wide as the tolerance and the rounding error bound.
 //! assert!(depth.contains(0.5) && depth.width() < 2e-9);
 //!
+//! // One location per line: tip x, y, z and axis i, j, k. The name is for messages.
 //! let program = Program::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
 //! let report = Verifier::new(&bvh, &Ball)?.with_tolerance(0.01)?.check(&program)?;
 //! assert!(!report.is_clear());
@@ -65,10 +74,14 @@
 //!
 //! **Sweep.** With the feature `postures`, `postures::sweep::PostureSweep` tries tools at every triangle from every
 //! direction, `postures::PostureMap` keeps the result, and `postures::path::PathRequest` plans a path over it
-//! (`examples/sweep.rs`). **Run the loop.** With the feature `haptic`, `haptic::Session` lets a hand feel the part
-//! at 1 kHz (`examples/haptic_loop.rs`).
+//! (`examples/sweep.rs`).
 //!
-//! # The ten types to know
+//! **Run the loop.** With the feature `haptic`, `haptic::Session` drives a haptic device at 1 kHz
+//! (`examples/haptic_loop.rs`).
+//!
+//! Shorter programs: `examples/first_contact.rs`, `examples/check_program.rs` and `examples/posture_map.rs`.
+//!
+//! # Main types
 //!
 //! | type | purpose |
 //! |---|---|
@@ -78,21 +91,23 @@
 //! | [`Probe`] | contact, depth and force at the points of a part |
 //! | [`TriangleBvh`](certify::TriangleBvh), [`Certifier`](certify::Certifier) | triangles prepared for queries, and proved depth, clearance and motions |
 //! | [`Verifier`](verify::Verifier) | the check of a whole [`Program`] |
+//! | [`Law`], [`Weights`], [`Level`] | options of a probe: force law, weights of points, SIMD level |
 //!
 //! Lengths are in the unit of the part or of the tool's file, as each function states; frames are right-handed, and a
-//! tool's axis points from the tip to the spindle.
+//! tool's axis points from the tip to the spindle. Vectors and points are those of `nalgebra`, which a program needs as a
+//! dependency too.
 //!
 //! # Features
 //!
-//! None is on by default; without any, 29 packages are built besides macros.
+//! No feature is on by default.
 //!
-//! | feature | adds | packages |
-//! |---|---|--:|
-//! | `parallel` | many poses on all cores: `Probe::par_map` | 6 |
-//! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` | 23 |
-//! | `haptic` | the haptic loop | 9 |
-//! | `spacenav` | a SpaceMouse in the loop; implies `haptic` | 9 |
-//! | `postures` | posture maps, sweeps and paths; implies `parallel` | 16 |
+//! | feature | adds |
+//! |---|---|
+//! | `parallel` | many poses on all cores: `Probe::par_map` |
+//! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
+//! | `haptic` | the haptic loop |
+//! | `spacenav` | a SpaceMouse in the loop; implies `haptic` |
+//! | `postures` | posture maps, sweeps and paths; implies `parallel` |
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 

@@ -1,4 +1,5 @@
-//! The macros that compile tools. They pass text to `tool-dsl` and return its output to rustc.
+//! Procedural macros that compile tools into Rust types: [`tool!`] for a tool in the source file, [`include_tool!`] for
+//! one file, [`tool_library!`] for a folder. Use them through the crate `touchoff`, which the generated code refers to.
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
@@ -16,8 +17,12 @@ use tool_dsl::{Compiled, compile, compile_with_arguments, emit, syntax};
 /// `include_tool!("tools/ball.tool")` expands to the type that the file's tool describes. The path is
 /// relative to the package's folder. A change of the file, or of one that it mounts, triggers a rebuild.
 ///
-/// `include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18)` gives the type another
-/// name, and arguments to the file's `param`s. Arguments are constant expressions of the language; values
+/// ```ignore
+/// include_tool!("tools/ball.tool");
+/// include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18);
+/// ```
+///
+/// `as` renames the type. The assignments set the file's `param`s to constant expressions of the language; numbers
 /// without a unit are in the file's unit.
 ///
 /// rustc shows a tool's warnings as uses of a deprecated constant: `#![deny(warnings)]` makes them errors,
@@ -35,7 +40,7 @@ pub fn include_tool(input: TokenStream) -> TokenStream {
 struct Call {
     path: LitStr,
     name: Option<Ident>,
-    given: Option<Source>,
+    arguments: Option<Source>,
 }
 
 impl Parse for Call {
@@ -49,8 +54,8 @@ impl Parse for Call {
             input.parse::<Token![,]>()?;
         }
         let tokens: proc_macro2::TokenStream = input.parse()?;
-        let given = (!tokens.is_empty()).then(|| Source::from_tokens(tokens));
-        Ok(Call { path, name, given })
+        let arguments = (!tokens.is_empty()).then(|| Source::from_tokens(tokens));
+        Ok(Call { path, name, arguments })
     }
 }
 
@@ -63,17 +68,18 @@ impl Call {
             return Err(syn::Error::new(name.span(), diagnostics::with_help(&kind)));
         }
         let shown = self.path.value();
-        let source = read(&at_root(&self.path)?.join(&shown), &shown, &self.path)?;
-        let mut compiled = compile_with_arguments(&source, self.given.as_slice());
+        let source = read(&package_root(&self.path)?.join(&shown), &shown, &self.path)?;
+        let mut compiled = compile_with_arguments(&source, self.arguments.as_slice());
         if let Some(name) = &self.name {
             compiled = compiled.renamed(&name.to_string());
         }
-        Ok(meaning(&compiled, self.path.span()))
+        Ok(expand(&compiled, self.path.span()))
     }
 }
 
 /// `tool! { tool Ball { … } }`: a tool written in the source file. Errors are shown at its tokens. Mounted
-/// files are read relative to the source file's folder.
+/// files are read relative to the source file's folder; without a source file, as in an editor's preview, mounts are
+/// refused.
 #[proc_macro]
 pub fn tool(input: TokenStream) -> TokenStream {
     let mut source = Source::from_tokens(input.into());
@@ -81,15 +87,15 @@ pub fn tool(input: TokenStream) -> TokenStream {
     if let Some(file) = here.and_then(|file| std::path::absolute(file).ok()) {
         source = source.with_path(file);
     }
-    meaning(&compile(&source), proc_macro2::Span::call_site()).into()
+    expand(&compile(&source), proc_macro2::Span::call_site()).into()
 }
 
-/// `tool_library!("tools")` expands to the types of all `.tool` files of a folder, in the order of their
-/// names, `TOOLS`, a list of them all, and `SOURCES`, which has the texts of each tool's files. To pick up added
-/// files, the package needs a build script that prints `cargo::rerun-if-changed=tools`.
+/// `tool_library!("tools")` expands to one type per `.tool` file of a folder, in the order of file names; to `TOOLS`, a
+/// list of all tools; and to `SOURCES`, the paths and contents of each tool's files. To pick up added files, the package
+/// needs a build script that prints `cargo::rerun-if-changed=tools`.
 ///
-/// If that script also prints `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled. A
-/// package's features can thus select among its tools.
+/// If that script also prints `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled; an
+/// empty list compiles none. A package's features can thus select among its tools.
 #[proc_macro]
 pub fn tool_library(input: TokenStream) -> TokenStream {
     let folder = syn::parse_macro_input!(input as LitStr);
@@ -100,7 +106,7 @@ pub fn tool_library(input: TokenStream) -> TokenStream {
 }
 
 fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
-    let place = at_root(folder)?.join(folder.value());
+    let root = package_root(folder)?.join(folder.value());
     let unreadable = |error: std::io::Error| {
         syn::Error::new(
             folder.span(),
@@ -108,7 +114,7 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
         )
     };
     let mut files: Vec<PathBuf> = Vec::new();
-    for entry in std::fs::read_dir(&place).map_err(unreadable)? {
+    for entry in std::fs::read_dir(&root).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
         if path.extension().is_some_and(|extension| extension == "tool") {
             files.push(path);
@@ -116,21 +122,21 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
     }
     files.sort();
     if let Ok(wanted) = std::env::var("TOUCHOFF_TOOLS") {
-        files = chosen(&wanted, &files, folder)?;
+        files = select_files(&wanted, &files, folder)?;
     } else if files.is_empty() {
         let message = format!("the folder `{}` has no .tool file", folder.value());
         return Err(syn::Error::new(folder.span(), message));
     }
     let mut tokens = proc_macro2::TokenStream::new();
-    let (mut names, mut texts) = (Vec::new(), Vec::new());
+    let (mut names, mut file_lists) = (Vec::new(), Vec::new());
     for path in &files {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let source = read(path, &format!("{}/{name}", folder.value()), folder)?;
         let compiled = compile(&source);
-        tokens.extend(meaning(&compiled, folder.span()));
+        tokens.extend(expand(&compiled, folder.span()));
         if let Some(tool) = &compiled.name {
             names.push(syn::Ident::new(tool, folder.span()));
-            texts.push(sources(&compiled, &place));
+            file_lists.push(sources(&compiled, &root));
         }
     }
     Ok(quote! {
@@ -138,12 +144,13 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
         /// Every tool of the library, in the order of their files' names.
         pub static TOOLS: &[&dyn ::touchoff::Tool] = &[#(&#names),*];
         /// The files of every tool in [`TOOLS`], in the same order: the tool's own file first, then those that it
-        /// mounts. Each has its path below the folder of the library, and its text.
-        pub static SOURCES: &[&[(&str, &str)]] = &[#(#texts),*];
+        /// mounts. Each has its path relative to the folder of the library, and its content.
+        pub static SOURCES: &[&[(&str, &str)]] = &[#(#file_lists),*];
     })
 }
 
-/// Returns a list of the files of a tool, by their paths below a folder, and their texts.
+/// Returns a tool's files, as pairs of the path relative to `folder` and the content. A file outside `folder` keeps its
+/// absolute path.
 fn sources(compiled: &Compiled, folder: &Path) -> proc_macro2::TokenStream {
     let files = compiled.sources.files().map(|file| {
         let name = file.strip_prefix(folder).unwrap_or(file).display().to_string();
@@ -154,14 +161,14 @@ fn sources(compiled: &Compiled, folder: &Path) -> proc_macro2::TokenStream {
 }
 
 /// Returns the selected files, given by comma-separated names without the extension.
-fn chosen(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<PathBuf>> {
+fn select_files(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<PathBuf>> {
     let wanted = wanted.split(',').filter(|name| !name.is_empty());
     wanted
         .map(|name| {
             let file = files.iter().find(|path| path.file_stem().is_some_and(|stem| stem == name));
             file.cloned().ok_or_else(|| {
                 let message = format!(
-                    "`TOUCHOFF_TOOLS` asks for `{name}`, and the folder `{}` has no {name}.tool",
+                    "`TOUCHOFF_TOOLS` names `{name}`, but the folder `{}` has no `{name}.tool`",
                     folder.value()
                 );
                 syn::Error::new(folder.span(), message)
@@ -170,39 +177,40 @@ fn chosen(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<P
         .collect()
 }
 
-/// Returns the folder of the package that contains the macro call.
-fn at_root(path: &LitStr) -> syn::Result<PathBuf> {
+/// Returns the folder of the package that is compiled. Errors are shown at `literal`.
+fn package_root(literal: &LitStr) -> syn::Result<PathBuf> {
     match std::env::var_os("CARGO_MANIFEST_DIR") {
         Some(root) => Ok(PathBuf::from(root)),
         None => Err(syn::Error::new(
-            path.span(),
-            "paths are relative to the package that cargo builds, and cargo builds none",
+            literal.span(),
+            "`CARGO_MANIFEST_DIR` is not set, and paths are relative to it: build with cargo, or set it",
         )),
     }
 }
 
-/// Reads the text of a file; `shown` is its name in messages.
-fn read(path: &Path, shown: &str, place: &LitStr) -> syn::Result<Source> {
+/// Reads a file; `shown` is its name in messages. Errors are shown at `literal`.
+fn read(path: &Path, shown: &str, literal: &LitStr) -> syn::Result<Source> {
     Source::read_as(shown, path)
-        .map_err(|error| syn::Error::new(place.span(), format!("cannot read `{shown}`: {error}")))
+        .map_err(|error| syn::Error::new(literal.span(), format!("cannot read `{shown}`: {error}")))
 }
 
-/// Returns whether the running compiler is rustdoc, the only one that shows drawings.
-fn documents() -> bool {
+/// Returns whether rustdoc is running. Only then are drawings made, as rustc discards them.
+fn is_rustdoc() -> bool {
     std::env::current_exe().is_ok_and(|program| program.file_stem().is_some_and(|n| n == "rustdoc"))
 }
 
-/// Returns a tool's code and its warnings; for a tool with errors, these and a placeholder type.
-fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
+/// Expands a compiled tool: its code and warnings, or its errors and a placeholder type, and a dependency on each file.
+/// `call_site` is the position of messages about other files.
+fn expand(compiled: &Compiled, call_site: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.outcome, &compiled.name) {
-        (Ok(accepted), _) if documents() => emit::with_drawing(&accepted.tool),
+        (Ok(accepted), _) if is_rustdoc() => emit::with_drawing(&accepted.tool),
         (Ok(accepted), _) => emit::emit(&accepted.tool),
         (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::placeholder(name),
         _ => quote! {},
     };
     tokens.extend(match &compiled.outcome {
-        Ok(accepted) => diagnostics::warnings(&accepted.warnings, &compiled.sources, place),
-        Err(refusal) => diagnostics::errors(refusal, &compiled.sources, place),
+        Ok(accepted) => diagnostics::warnings(&accepted.warnings, &compiled.sources, call_site),
+        Err(refusal) => diagnostics::errors(refusal, &compiled.sources, call_site),
     });
     // Cargo rebuilds when an included file changes.
     for file in compiled.sources.files() {

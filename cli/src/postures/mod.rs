@@ -1,4 +1,5 @@
-//! The posture commands: sweeps, maps and paths.
+//! The commands `sweep`, `map` and `path`: try tool postures at every triangle, print or draw the result, and plan a
+//! path over it. `picture` and `render` draw a map on its part.
 
 pub(crate) mod map;
 pub(crate) mod path;
@@ -8,35 +9,50 @@ pub(crate) mod sweep;
 
 use touchoff::{Mesh, TriangleId, Unit};
 
-/// Formats a share of a whole in percent.
-fn percent(part: f64, whole: f64) -> String {
-    format!("{:.1} %", 100.0 * part / if whole > 0.0 { whole } else { 1.0 })
+/// Formats a fraction in percent; 0 % of an empty whole.
+fn percent(amount: f64, whole: f64) -> String {
+    format!("{:.1} %", if whole > 0.0 { 100.0 * amount / whole } else { 0.0 })
 }
 
 /// The number of triangles in a set, and their total area.
 #[derive(Clone, Copy, Default)]
-struct Share {
+struct TriangleTotals {
     triangles: usize,
+    /// In the square of the mesh's unit.
     area: f64,
 }
 
-impl Share {
-    /// Counts the triangles of a mesh for which `predicate` holds.
-    fn of_all(mesh: &Mesh, predicate: impl Fn(TriangleId) -> bool) -> Share {
+impl TriangleTotals {
+    /// Counts the triangles for which `predicate` holds, and adds up their areas.
+    fn count(mesh: &Mesh, predicate: impl Fn(TriangleId) -> bool) -> TriangleTotals {
+        // Meshes have fewer than 2^32 triangles.
         let ids = (0..mesh.triangles().len() as u32).map(TriangleId).filter(|id| predicate(*id));
-        ids.fold(Share::default(), |share, id| Share {
-            triangles: share.triangles + 1,
-            area: share.area + mesh.area(id),
+        ids.fold(TriangleTotals::default(), |totals, id| TriangleTotals {
+            triangles: totals.triangles + 1,
+            area: totals.area + mesh.area(id),
         })
     }
 
-    fn of(self, all: Share) -> String {
+    /// Formats these totals as percentages of `all`.
+    fn percent_of(self, all: TriangleTotals) -> String {
         let triangles = percent(self.triangles as f64, all.triangles as f64);
         format!("{triangles} of the triangles, {} of the area", percent(self.area, all.area))
     }
 }
 
-/// Returns the default tolerance, a hundredth of a millimetre, in a unit.
+/// Returns the default depth tolerance of postures, 0.01 mm, in `unit`. Recordings of the haptic loop use it too.
 pub(crate) fn default_tolerance(unit: Unit) -> f64 {
     0.01 * Unit::Millimetre.factor_to(unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn nothing_is_no_percentage_of_nothing() {
+        assert_eq!(percent(0.0, 0.0), "0.0 %");
+        assert_eq!(percent(3.0, 0.0), "0.0 %");
+        assert_eq!(percent(1.0, 8.0), "12.5 %");
+    }
 }

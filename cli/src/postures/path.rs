@@ -72,7 +72,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         step: arguments.forward_step.unwrap_or(0.5 * arguments.stepover),
     };
     let bvh = TriangleBvh::new(&mesh);
-    part::has_inside(&bvh, &arguments.part, arguments.surface_only)?;
+    part::require_inside(&bvh, &arguments.part, arguments.surface_only)?;
     let directions = Directions::from(identity.directions.clone());
     let progress = Progress::spinner("planning", json);
     let request = PathRequest {

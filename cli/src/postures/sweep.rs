@@ -1,6 +1,6 @@
 //! `touchoff sweep`: a part and tools, every triangle in every direction.
 
-use super::{Share, default_tolerance, percent};
+use super::{TriangleTotals, default_tolerance, percent};
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
 use crate::lengths::format_length;
@@ -110,7 +110,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let unit = arguments.mesh.unit;
     let mesh = part::mesh(&arguments.mesh.part, unit, "sweep")?;
     let bvh = TriangleBvh::new(&mesh);
-    part::has_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
+    part::require_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
     let rules = Rules {
         tolerance: arguments.tolerance.unwrap_or_else(|| default_tolerance(unit)),
         niceness: arguments.min_niceness,
@@ -157,8 +157,8 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
             count.add(triangle, &row);
         }
     }
-    let all = Share::of_all(&mesh, |_| true);
-    let reached = Share::of_all(&mesh, |triangle| count.reached[triangle.index()]);
+    let all = TriangleTotals::count(&mesh, |_| true);
+    let reached = TriangleTotals::count(&mesh, |triangle| count.reached[triangle.index()]);
     let summary = Summary {
         triangles: mesh.triangles().len(),
         unit: unit.symbol(),
@@ -185,7 +185,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
     } else {
-        summary.print(&mut out, unit, &reached.of(all))?;
+        summary.print(&mut out, unit, &reached.percent_of(all))?;
     }
     out.flush()?;
     Ok(())
@@ -225,8 +225,8 @@ impl Summary {
             (postures.acceptable, "proved acceptable"),
         ];
         for (count, words) in rules.into_iter().filter(|(count, _)| *count > 0) {
-            let part = percent(count as f64, postures.total as f64);
-            writeln!(out, "{count:>12} {part:>7}  {words}")?;
+            let fraction = percent(count as f64, postures.total as f64);
+            writeln!(out, "{count:>12} {fraction:>7}  {words}")?;
         }
         let known = if self.inside_known {
             ""

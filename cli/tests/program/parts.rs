@@ -41,7 +41,7 @@ fn a_small_sampling_error_is_certified() {
     let bench = Bench::new();
     let output = run(&bench, "block.stl", &["--sampling-error", "1e-6"]);
     let said = stderr(&output);
-    assert!(said.contains("depth is proved for the triangles instead"), "{said}");
+    assert!(said.contains("depth is certified on the triangles instead"), "{said}");
     let found = rows(&output);
     let bound = number(&found[1]["depth_bound"]);
     assert!((0.5..=0.5 + 2e-6).contains(&bound), "{bound}");

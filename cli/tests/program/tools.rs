@@ -41,13 +41,16 @@ fn the_text_of_a_tool_is_printed() {
 fn mounted_files_replace_no_others() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name).display().to_string();
-    fs::write(place("ball.tool"), "another").expect("a writable folder");
-    for output in ["own.tool", "ball.tool"] {
-        let output = touchoff(&["tools", "show", "BallEr16", "-o", &place(output)]);
-        assert_eq!(output.status.code(), Some(1));
-        assert!(stderr(&output).contains("would replace `"), "{}", stderr(&output));
+    // The second is not UTF-8.
+    for present in [&b"another"[..], b"\xff\xfe"] {
+        fs::write(place("ball.tool"), present).expect("a writable folder");
+        for output in ["own.tool", "ball.tool"] {
+            let output = touchoff(&["tools", "show", "BallEr16", "-o", &place(output)]);
+            assert_eq!(output.status.code(), Some(1));
+            assert!(stderr(&output).contains("would replace `"), "{}", stderr(&output));
+        }
+        assert_eq!(fs::read(place("ball.tool")).expect("a file"), present);
     }
-    assert_eq!(fs::read_to_string(place("ball.tool")).expect("a file"), "another");
     assert_eq!(folder.path().read_dir().expect("a folder").count(), 1);
     let output = touchoff(&["tools", "show", "D2Ball", "-o", &place("own.txt")]);
     assert!(stderr(&output).contains("own.tool` instead of"), "{}", stderr(&output));

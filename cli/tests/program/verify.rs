@@ -257,7 +257,7 @@ fn a_part_without_an_inside_is_not_verified() {
         };
         let (code, said) = status(&["--tolerance", "0.5"]);
         assert_eq!(code, Some(2), "{name}: {said}");
-        assert!(said.contains("is inside the material is unknown"), "{name}: {said}");
+        assert!(said.contains("inside is undefined"), "{name}: {said}");
         assert_eq!(status(&["--tolerance", "0.5", "--surface-only"]).0, Some(0), "{name}");
         let output = touchoff(&[
             "sweep",

@@ -9,7 +9,7 @@ mod lanes;
 mod view;
 
 pub(crate) use build::{Bounds, BuildItem, around, levels, order, outward};
-pub(crate) use lanes::{LANE_INDICES, Triple, extent, load, transform};
+pub(crate) use lanes::{LANE_INDICES, LaneVector, extent, load, transform};
 pub(crate) use view::{PoseTransform, QuerySetup, ReachBounds, SLABS};
 
 use bytemuck::{Pod, Zeroable};

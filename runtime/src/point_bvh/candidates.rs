@@ -1,7 +1,7 @@
 //! Candidates: points that may be inside, transformed to the tool's frame.
 
 use super::LeafAttributes;
-use crate::bvh::{LANE_INDICES, PoseTransform, Triple, WIDTH};
+use crate::bvh::{LANE_INDICES, LaneVector, PoseTransform, WIDTH};
 use crate::tool::{LANES, PointBatch, reserve};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
@@ -65,7 +65,7 @@ impl Candidates {
         simd: S,
         view: &PoseTransform,
         (leaf, base): (u32, [f64; 3]),
-        offset: &Triple<S>,
+        offset: &LaneVector<f32x16<S>>,
         hits: u32,
     ) {
         let lanes = u32x16::from_slice(simd, &LANE_INDICES) + leaf * WIDTH as u32;

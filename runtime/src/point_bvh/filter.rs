@@ -2,7 +2,7 @@
 
 use super::traverse::{Nodes, TraversalInput, within};
 use super::{Candidates, Leaf, LeafAttributes};
-use crate::bvh::{Triple, load, transform};
+use crate::bvh::{LaneVector, load, transform};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// Replaces the candidates by the points of some leaves that the tool's envelope reaches; with `attributes`, their
@@ -30,7 +30,7 @@ fn filter_on<S: Simd>(
         (&tree.leaves, &tree.attributes);
     let mut hit_leaves = std::mem::take(&mut candidates.leaves);
     hit_leaves.resize(leaves.len() + 1, (0, 0));
-    let point: Triple<S> = [f32x16::splat(simd, 0.0); 3];
+    let point: LaneVector<f32x16<S>> = [f32x16::splat(simd, 0.0); 3];
     // The first pass finds the leaves with such points. A branch at each leaf would be mispredicted at every other one.
     let mut count = 0;
     for position in 0..leaves.len() {

@@ -2,7 +2,7 @@
 
 use super::PointBvh;
 use crate::bvh::{
-    Boxes, LANE_INDICES, PoseTransform, QuerySetup, ReachBounds, SLABS, Triple, WIDTH, extent,
+    Boxes, LANE_INDICES, LaneVector, PoseTransform, QuerySetup, ReachBounds, SLABS, WIDTH, extent,
     load, transform,
 };
 use crate::tool::reserve;
@@ -176,8 +176,8 @@ pub(super) fn within<S: Simd>(
     simd: S,
     reach: &ReachBounds,
     slabs: u32,
-    [x, y, z]: &Triple<S>,
-    half: &Triple<S>,
+    [x, y, z]: &LaneVector<f32x16<S>>,
+    half: &LaneVector<f32x16<S>>,
 ) -> (u32, u32x16<S>) {
     let (low, high) = (*z - half[2], *z + half[2]);
     let zero = f32x16::splat(simd, 0.0);
@@ -267,8 +267,8 @@ fn below_on<S: Simd>(
     for position in some {
         let node = nodes.index[position];
         let children = &boxes[node as usize];
-        let centre: Triple<S> = load(simd, &children.centre);
-        let half: Triple<S> = load(simd, &children.half);
+        let centre: LaneVector<f32x16<S>> = load(simd, &children.centre);
+        let half: LaneVector<f32x16<S>> = load(simd, &children.half);
         let middle = transform(&centre, &view.rows, view.origin);
         let wide =
             [extent(&half, view.rows[0]), extent(&half, view.rows[1]), extent(&half, view.rows[2])];

@@ -2,6 +2,7 @@
 
 use super::state::QueryState;
 use super::{DeepestPoint, Law, Weights, posture};
+use crate::bvh::LaneVector;
 use crate::pose::Pose;
 use crate::tool::LANES;
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
@@ -196,8 +197,6 @@ fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> Wr
 // Vector code is kept in functions that are always inlined: a closure would be compiled without the vector instructions
 // of its surroundings.
 
-type Triple<S> = [f64x8<S>; 3];
-
 #[inline(always)]
 fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
@@ -262,7 +261,7 @@ fn load_vector<S: Simd>(
     lists: &[Vec<f64>; 3],
     block: usize,
     mask: mask64x8<S>,
-) -> Triple<S> {
+) -> LaneVector<f64x8<S>> {
     let zero = f64x8::splat(simd, 0.0);
     [
         mask.select(load(simd, &lists[0], block), zero),
@@ -333,8 +332,8 @@ fn add<S: Simd>(
 fn accumulate<S: Simd>(
     sums: &mut Sums<S>,
     weighted_magnitude: f64x8<S>,
-    p: Triple<S>,
-    direction_sum: Triple<S>,
+    p: LaneVector<f64x8<S>>,
+    direction_sum: LaneVector<f64x8<S>>,
 ) {
     let f = [
         weighted_magnitude * direction_sum[0],

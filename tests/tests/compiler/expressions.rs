@@ -183,7 +183,7 @@ proptest! {
         let root = tree.build(&mut graph);
         let slopes = [Coord::D, Coord::Z].map(|by| derivative(&mut graph, root, by));
         let mut evaluator = Evaluator::new(&graph, [root, slopes[0], slopes[1]]);
-        evaluator.set(EvaluationPoint::on_meridian(d, z));
+        evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
         prop_assert!(near(evaluator.get(root), expected.value, 100.0), "{} {:?}", evaluator.get(root), expected);
         if expected.smooth > 1e-6 {
             for (id, slope) in slopes.into_iter().zip(expected.slope) {
@@ -205,7 +205,7 @@ proptest! {
         let mut encloser = Encloser::new(&graph, [root, slope]);
         encloser.set(Cell::half_plane(Interval::new(d, d + width), Interval::new(z, z + height)));
         let mut evaluator = Evaluator::new(&graph, [root, slope]);
-        evaluator.set(EvaluationPoint::on_meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
+        evaluator.evaluate(EvaluationPoint::on_meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
         for id in [root, slope] {
             let (value, within) = (evaluator.get(id), encloser.get(id));
             prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
@@ -229,7 +229,7 @@ proptest! {
         let (mut evaluator, mut encloser) = (Evaluator::new(&graph, all), Encloser::new(&graph, all));
         let sane = expected.value.abs() < 1e6 && expected.slope.iter().all(|s| s.abs() < 1e6);
         if sane && expected.smooth > 1e-6 && d > 1e-3 {
-            evaluator.set(EvaluationPoint::new(x, y, p[2]));
+            evaluator.evaluate(EvaluationPoint::new(x, y, p[2]));
             let [radial, axial] = expected.slope;
             for (id, slope) in slopes.into_iter().zip([radial * x / d, radial * y / d, axial]) {
                 prop_assert!(near(evaluator.get(id), slope, 1000.0), "{} {slope}", evaluator.get(id));
@@ -237,7 +237,7 @@ proptest! {
         }
         encloser.set(Cell { sides: [0, 1, 2].map(|k| Interval::new(p[k], p[k] + width[k])) });
         let [x, y, z] = [0, 1, 2].map(|k| (p[k] + part[k] * width[k]).min(p[k] + width[k]));
-        evaluator.set(EvaluationPoint::new(x, y, z));
+        evaluator.evaluate(EvaluationPoint::new(x, y, z));
         for id in all {
             let (value, within) = (evaluator.get(id), encloser.get(id));
             prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");

@@ -1,4 +1,4 @@
-//! Spelling mistakes: characters and habits from other languages.
+//! Spelling mistakes: characters and constructs of other languages.
 
 use super::data::NameStart;
 use super::table::kinds;
@@ -70,7 +70,7 @@ kinds! {
         "typographic character"
         message "`{written}` is not part of the language"
         help "write `{suggestion}`"
-        explain "Operators are ASCII characters. Text copied from a document often has typographic ones instead.";
+        explain "Operators and names are ASCII characters. Text copied from a document often has typographic ones instead.";
     error T0142 ByteOrderMark
         "byte order mark"
         message "the text begins with a byte order mark (U+FEFF)"
@@ -141,4 +141,9 @@ kinds! {
         message "a comparison is allowed only after `where`"
         help "move it to a region: `region NAME where a <= b {{ … }}`"
         explain "A comparison is a condition of a region, not a value.";
+    error T0156 SquareBracket { written: char, suggestion: char }
+        "square bracket"
+        message "`{written}` is not part of the language"
+        help "write `{suggestion}`"
+        explain "Parentheses group terms, and enclose the arguments of functions and the coordinates of points.";
 }

@@ -52,7 +52,7 @@ impl<'m> Curves<'m> {
         let value = match self.evaluator(curve) {
             CurveEvaluator::Line([a, b, c]) => *a * d + *b * z + *c,
             CurveEvaluator::Bent(bent) => {
-                bent.0.set(EvaluationPoint::on_meridian(d, z));
+                bent.0.evaluate(EvaluationPoint::on_meridian(d, z));
                 bent.0.get(id)
             }
         };

@@ -23,7 +23,7 @@ impl<'m> Directions<'m> {
 
     /// Returns the direction to the surface at a point of a region; `None` if it is undefined there.
     pub(super) fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
-        self.evaluator.set(EvaluationPoint::on_meridian(d, z));
+        self.evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
         let [across, _, along] = self.model.regions[region].direction;
         let direction = [across, along].map(|id| self.evaluator.get(id));
         ((norm(direction) - 1.0).abs() < 1e-3).then_some(direction)

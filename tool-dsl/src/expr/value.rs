@@ -1,5 +1,5 @@
-//! Values of expressions at a point, in `f64`, one operation at a time in the graph's order. This is the
-//! reference for emitted code, which performs the same operations.
+//! Evaluates expressions at a point, in `f64`: one IEEE operation per node, in the order of ids. Emitted code and the
+//! interpreter compute the same values. Their tests of a curve that is a difference compare its terms, with the same result.
 
 use super::{Coord, Graph, Id, Node};
 
@@ -7,11 +7,13 @@ use super::{Coord, Graph, Id, Node};
 #[derive(Clone, Debug)]
 pub struct Evaluator<'g> {
     graph: &'g Graph,
+    /// The nodes to evaluate, operands first, without constants.
     order: Vec<Id>,
+    /// By node id. Constants are set once; nodes that no root needs stay 0.
     values: Vec<f64>,
 }
 
-/// A point of evaluation: its coordinates in the tool's frame, and the unit.
+/// A point of evaluation, in the tool's frame and the file's unit, with the quantities that all nodes share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvaluationPoint {
     /// x
@@ -20,29 +22,30 @@ pub struct EvaluationPoint {
     pub y: f64,
     /// z
     pub z: f64,
-    /// `sqrt(x² + y²)`
+    /// Distance from the axis, `sqrt(x² + y²)`
     pub d: f64,
-    /// `x² + y²`
+    /// Its square
     pub q: f64,
-    /// The length of the file's unit in units of the part
+    /// The file's unit of length, in the part's unit
     pub length: f64,
 }
 
 impl EvaluationPoint {
-    /// Returns a point of space.
+    /// Returns a point of space. The part has the file's unit.
     pub fn new(x: f64, y: f64, z: f64) -> EvaluationPoint {
         let q = x * x + y * y;
         EvaluationPoint { x, y, z, d: q.sqrt(), q, length: 1.0 }
     }
 
-    /// Returns a point of the half plane that contains the profile.
+    /// Returns a point of the half plane that contains the profile, `d ≥ 0`. The part has the file's unit. `d` is kept as
+    /// given, where emitted code computes `sqrt(d²)`: values may differ from that code's by rounding.
     pub fn on_meridian(d: f64, z: f64) -> EvaluationPoint {
         EvaluationPoint { x: d, y: 0.0, z, d, q: d * d, length: 1.0 }
     }
 }
 
 impl<'g> Evaluator<'g> {
-    /// Makes an evaluator for some nodes.
+    /// Creates an evaluator of `roots` and of all nodes that they need.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Evaluator<'g> {
         let mut order = graph.dependencies(roots);
         let mut values = vec![0.0; graph.nodes().len()];
@@ -57,11 +60,12 @@ impl<'g> Evaluator<'g> {
         Evaluator { graph, order, values }
     }
 
-    /// Evaluates the nodes at a point.
-    pub fn set(&mut self, at: EvaluationPoint) {
+    /// Evaluates all nodes that the roots need, at a point.
+    pub fn evaluate(&mut self, at: EvaluationPoint) {
         for &id in &self.order {
             let v = |id: Id| self.values[id.index()];
             self.values[id.index()] = match self.graph.node(id) {
+                // Constants are not in `order`.
                 Node::Const(_) => v(id),
                 Node::Coord(Coord::X) => at.x,
                 Node::Coord(Coord::Y) => at.y,
@@ -81,17 +85,15 @@ impl<'g> Evaluator<'g> {
                 Node::Abs(a) => v(*a).abs(),
                 Node::Sqrt(a) => v(*a).sqrt(),
                 Node::Select { low, high, then, other } => {
-                    if v(*low) <= v(*high) {
-                        v(*then)
-                    } else {
-                        v(*other)
-                    }
+                    // A comparison with NaN is false, so `other` is taken.
+                    if v(*low) <= v(*high) { v(*then) } else { v(*other) }
                 }
             };
         }
     }
 
-    /// Returns the value of a node at the current point.
+    /// Returns the value of a node at the point of the last evaluation. The node must be a root or an operand of one:
+    /// others have the value 0, as have all but constants before the first evaluation.
     pub fn get(&self, id: Id) -> f64 {
         self.values[id.index()]
     }
@@ -102,12 +104,12 @@ pub fn quotient(a: f64, b: f64) -> f64 {
     if b == 0.0 { 0.0 } else { a / b }
 }
 
-/// Returns the smaller; `b` if they are equal or one is NaN, as SSE and AVX do.
+/// Returns the smaller of two numbers; `b` if they are equal or one is NaN, as the vector instructions of x86 do.
 pub fn min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Returns the larger; `b` if they are equal or one is NaN.
+/// Returns the larger of two numbers; `b` if they are equal or one is NaN, as the vector instructions of x86 do.
 pub fn max(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }

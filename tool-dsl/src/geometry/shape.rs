@@ -72,7 +72,7 @@ impl<'g> CurveFunction<'g> {
             CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
                 let mut value = |d: f64, z: f64| {
-                    evaluator.set(EvaluationPoint::on_meridian(d, z));
+                    evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
                     evaluator.get(*id)
                 };
                 let value_here = value(p[0], p[1]);
@@ -108,7 +108,7 @@ impl<'g> CurveFunction<'g> {
             }
             CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
-                evaluator.set(EvaluationPoint::on_meridian(p[0], p[1]));
+                evaluator.evaluate(EvaluationPoint::on_meridian(p[0], p[1]));
                 evaluator.get(*id)
             }
         }

@@ -59,7 +59,7 @@ impl<'t> Interpreter<'t> {
     /// Evaluates the tool at a point of its frame, in the file's unit; `None` outside. `length` is the length
     /// of the file's unit in units of the part.
     pub fn evaluate(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
-        self.evaluator.set(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
+        self.evaluator.evaluate(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
         let value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
         let region = model.regions.iter().position(|region| region.inside.holds(&value))?;

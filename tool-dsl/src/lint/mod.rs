@@ -157,7 +157,7 @@ impl<'m> Linter<'m> {
 
     /// Selects a point.
     fn set_point(&mut self, [x, y, z]: [f64; 3]) {
-        self.evaluator.set(EvaluationPoint::new(x, y, z));
+        self.evaluator.evaluate(EvaluationPoint::new(x, y, z));
     }
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {

@@ -37,7 +37,7 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     let mut evaluator = Evaluator::new(&model.graph, values);
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
-            evaluator.set(EvaluationPoint::new(x, y, z));
+            evaluator.evaluate(EvaluationPoint::new(x, y, z));
             let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
             let owner = model.regions.iter().position(|region| region.inside.holds(&value));
             let signs = (0..model.curves.len())

@@ -102,7 +102,7 @@ impl<'t> Witness<'t> {
     }
 
     pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
-        self.values.set(EvaluationPoint::new(x, y, z));
+        self.values.evaluate(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
         *self.tool.plan.owner.leaf_at(&|curve: CurveIndex| self.values.get(curves[curve].value))
     }

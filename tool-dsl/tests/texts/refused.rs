@@ -51,6 +51,40 @@ fn read(text: String) -> Result<(), String> {
     })
 }
 
+/// Compiles a text and returns the codes of its errors.
+#[track_caller]
+fn codes(text: &str) -> Vec<&'static str> {
+    let compiled = compile(&Source::new("t.tool", text));
+    let Err(refusal) = &compiled.outcome else { panic!("{text}: accepted") };
+    refusal.errors().map(tool_dsl::diagnostic::Diagnostic::code).collect()
+}
+
+/// A diagnostic of a spelling mistake is for that mistake only, not for similar text elsewhere.
+#[test]
+fn spelling_mistakes_are_told_apart() {
+    let region = |body: &str| format!("tool T {{ units mm; region ball {body} }}");
+    assert_eq!(codes(&region("where 0 <= z <= 2 <= d { depth: d; }"))[0], "T0154");
+    // In a property, and in an item whose name only begins with `region`.
+    assert_eq!(codes(&region("where d <= 3 { depth: d < 3; }"))[0], "T0155");
+    assert_eq!(codes(&tool("regions smooth 3 < 4;"))[0], "T0155");
+
+    assert_eq!(codes(&tool("let a = 2,5;"))[0], "T0147");
+    // `2.5,1` and `x1,2` are no decimal commas: with a point they would be no numbers either.
+    assert_ne!(codes(&tool("let a = 2.5,1;"))[0], "T0147");
+    assert_ne!(codes(&tool("let x1 = 2; let a = x1,2;"))[0], "T0147");
+
+    assert_eq!(codes(&format!("\u{feff}{}", tool("")))[0], "T0142");
+    assert_eq!(codes(&tool("let a = \u{feff}2;"))[0], "T0144");
+    assert_eq!(codes(&format!(" \u{feff}{}", tool("")))[0], "T0144");
+
+    assert_eq!(codes(&tool("let a = 2^3^2;"))[0], "T0136");
+    assert_ne!(codes(&tool("let a = ^2;"))[0], "T0136");
+    assert_ne!(codes(&tool("let a ^ 2;"))[0], "T0136");
+
+    assert_eq!(codes(&tool("let a = [2];"))[0], "T0156");
+    assert_eq!(codes(&tool("let a = 2 − 1;"))[0], "T0141");
+}
+
 #[test]
 fn names_defined_by_themselves_are_named_with_every_link() {
     for word in ["let", "param", "curve"] {

@@ -1,7 +1,6 @@
 //! The depth-first traversal of the triangle tree, deepest children first.
 
-use crate::bvh::{Boxes, PoseTransform, WIDTH, extent, load, transform};
-use crate::certify::bounds::nearest::LaneVector;
+use crate::bvh::{Boxes, LaneVector, PoseTransform, WIDTH, extent, load, transform};
 use crate::certify::part::NodeRing;
 use crate::certify::part::{Corners, TriangleBvh};
 use crate::tool::{LANES, on_vectors};

@@ -1,10 +1,10 @@
 //! Upper bounds of the depth of a tool in boxes and triangles, in SIMD lanes.
 
-use crate::bvh::{Boxes, PoseTransform};
+use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{
-    Clip, LaneVector, NearestToAxis, Real, across, beyond, choose, direction_from_axis, distances,
-    from_ring, max3, min3, under_both,
+    Clip, NearestPoint, Real, choose, direction_from_axis, distances, extents_from, from_ring,
+    max3, min3, radial_extents, under_both,
 };
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
@@ -137,9 +137,9 @@ impl<R: Real> Hull<R> {
     ) -> (V, LaneVector<V>) {
         let [a, b, c] = corners;
         let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
-        let near = NearestToAxis::to_axis(simd, corners);
+        let near = NearestPoint::to_axis(simd, corners);
         // In that direction no corner reaches farther out than its distance from the axis.
-        let out = across(corners, &near.direction);
+        let out = radial_extents(corners, &near.direction);
         let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         let mut point = near.point;
@@ -197,7 +197,7 @@ impl<R: Real> HullSlab<R> {
         &self,
         simd: S,
         corners: &[LaneVector<V>; 3],
-        near: &NearestToAxis<V>,
+        near: &NearestPoint<V>,
         open: V::Mask,
         refine_at: Option<&LaneVector<V>>,
     ) -> (V, LaneVector<V>) {
@@ -218,14 +218,14 @@ impl<R: Real> HullSlab<R> {
             let other = direction_from_axis(simd, &[point[0], point[1], zero], zero);
             direction = choose(within, &other, &direction);
         }
-        let out = across(corners, &direction);
+        let out = radial_extents(corners, &direction);
         let mut depth = self.under_planes(simd, corners, &out, &part);
-        // Bounds at the corners. Between the corners each is at most linear.
+        // Bounds at the corners. Each is convex on a triangle: between the corners at most their interpolation.
         let mut bounds = [[zero; 3]; MAX_BOUNDS];
         let mut count = 0;
         if let Some([z, radius]) = self.ball {
             let (centre, radius) = (V::splat(simd, z), V::splat(simd, radius));
-            let ball = NearestToAxis::to_point(simd, corners, z);
+            let ball = NearestPoint::to_axis_point(simd, corners, z);
             let (mut foot, mut direction) = (ball.point, ball.direction);
             let beyond_it = open & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
             if beyond_it.any_true() {
@@ -242,7 +242,7 @@ impl<R: Real> HullSlab<R> {
                 let within = point[2].simd_ge(from) & point[2].simd_le(to);
                 direction = choose(within, &direction_from_axis(simd, point, centre), &direction);
             }
-            let beyond = beyond(simd, corners, &direction, z);
+            let beyond = extents_from(simd, corners, &direction, z);
             let in_slab = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
             let beneath = max_over(simd, &part, in_slab);
             let under = beneath.simd_lt(depth);
@@ -417,7 +417,7 @@ fn max_over<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     [a, b, c]: [V; 3],
 ) -> V {
     match part {
-        Some(clip) => clip.max3(simd, [a, b, c]),
+        Some(clip) => clip.max_linear(simd, [a, b, c]),
         None => max3(a, b, c),
     }
 }

@@ -1,4 +1,15 @@
-//! Upper bounds of depth in boxes and triangles, several at a time in SIMD lanes, at rest and in motion.
+//! Bounds that hold for whole boxes and triangles, several at a time in SIMD lanes, and the tree traversal that uses
+//! them.
+//!
+//! - `hull`: upper bounds of a tool's depth in boxes and triangles.
+//! - `shell`: lower bounds of a tool's distance from boxes and triangles, in `f32`.
+//! - `swept`: upper bounds of depth in moving triangles.
+//! - `batch`, `swept_batch`: eight triangles in `f64`, at rest and in motion.
+//! - `descent`: depth-first traversal of the tree, children with the largest bounds first.
+//! - `nearest`: geometry of triangles relative to the tool's axis, shared by all bounds.
+//!
+//! Lengths are in the tool's unit. Absent boxes and triangles have NaN coordinates. A bound at or below the caller's
+//! threshold need not be tight.
 
 pub(crate) mod batch;
 pub(crate) mod descent;

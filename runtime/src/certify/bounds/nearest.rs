@@ -1,21 +1,23 @@
-//! The points of triangles nearest to the axis and to points on it, in SIMD lanes of either precision.
+//! Geometry of triangles relative to the tool's axis, in SIMD lanes of `f32` or `f64`: nearest points, cuts between two
+//! heights, and bounds that are linear on a triangle.
 //!
-//! Distances are bounded by directions. Along a direction no longer than 1, the least extent of a triangle's
-//! corners is at most the distance of any of its points from the axis, whatever the rounding errors of the
-//! direction.
+//! Lower bounds on distance need no exact nearest point. For any direction `n` with |n| ≤ 1, every point `p` of a
+//! triangle is at a distance of at least the least `n · corner`. A rounded `n` makes the bound less tight, not wrong.
+//!
+//! Computed directions are that short where the squared distance is 0 or a normal number: from a distance of 1.1e-19 in
+//! `f32` and 1.5e-154 in `f64`. Where it is subnormal, a direction may be longer than 1, and a bound too tight: all
+//! bounds assume that no computed nearest point lies so close to the axis without lying on it.
 
+use crate::bvh::LaneVector;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
-
-/// Points in SIMD lanes, coordinate by coordinate.
-pub(crate) type LaneVector<V> = [V; 3];
 
 /// A scalar type that SIMD vectors have as elements.
 pub(crate) trait Real: Copy + PartialOrd {
-    /// The length to which unit vectors are scaled, so that rounding makes none longer than 1. With unit roundoff u,
-    /// the computed length errs by 3u below the root and u by the root. The quotient by it and the product with that
-    /// add u each, 5u in total; this is 1 - 8u.
+    /// The length to which directions are scaled, so that rounding makes none longer than 1. With unit roundoff u, the
+    /// sum of squares errs by at most 3u, so its root by 1.5u and u for rounding it. The division and the
+    /// multiplication add u each: less than 5u in total. This is 1 - 8u.
     const SHRINK: Self;
-    /// The smallest number to divide by.
+    /// The smallest positive normal number, which replaces a divisor of 0.
     const MIN_POSITIVE_VALUE: Self;
 
     fn of(value: f64) -> Self;
@@ -50,10 +52,11 @@ impl Real for f64 {
     }
 }
 
-/// The point of each triangle nearest to the axis or to a point on it.
-pub(crate) struct NearestToAxis<V> {
+/// The point of each triangle that is nearest to the axis or to a point on the axis.
+pub(crate) struct NearestPoint<V> {
     pub(crate) point: LaneVector<V>,
-    /// A direction away from the axis or the point, no longer than 1; 0 where that is on the triangle.
+    /// A direction away from the axis or the point, no longer than 1 unless the squared distance is subnormal. It is 0
+    /// where the square of the distance is 0.
     pub(crate) direction: LaneVector<V>,
 }
 
@@ -89,78 +92,85 @@ fn dot<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
 
 /// Returns the z component of the cross product.
 #[inline(always)]
-fn cross<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
+fn cross_z<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Returns the points of segments nearest to the origin, or to the axis if `level`, and their squared distances.
+/// Returns the points of segments nearest to the origin, and their squared distances. `from_axis`: distances from the
+/// axis instead of from the origin.
 #[inline(always)]
 fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     a: &LaneVector<V>,
     b: &LaneVector<V>,
-    level: bool,
+    from_axis: bool,
 ) -> (LaneVector<V>, V) {
     let direction = minus(b, a);
-    let length = product(&direction, &direction, level).max(V::splat(simd, R::MIN_POSITIVE_VALUE));
-    let at = (-product(a, &direction, level) / length).max(V::splat(simd, R::of(0.0)));
+    let length =
+        dot_from_axis(&direction, &direction, from_axis).max(V::splat(simd, R::MIN_POSITIVE_VALUE));
+    let at = (-dot_from_axis(a, &direction, from_axis) / length).max(V::splat(simd, R::of(0.0)));
     let at = at.min(V::splat(simd, R::of(1.0)));
     let p = [a[0] + at * direction[0], a[1] + at * direction[1], a[2] + at * direction[2]];
-    (p, product(&p, &p, level))
+    (p, dot_from_axis(&p, &p, from_axis))
 }
 
 #[inline(always)]
-fn product<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>, level: bool) -> V {
-    let across = a[0] * b[0] + a[1] * b[1];
-    if level { across } else { across + a[2] * b[2] }
+fn dot_from_axis<S: Simd, V: SimdBase<S>>(
+    a: &LaneVector<V>,
+    b: &LaneVector<V>,
+    from_axis: bool,
+) -> V {
+    let radial = a[0] * b[0] + a[1] * b[1];
+    if from_axis { radial } else { radial + a[2] * b[2] }
 }
 
-/// Returns the nearest of these points on the three edges of each triangle.
+/// Returns the nearest of the points of [`on_edge`] on the three edges of each triangle.
 #[inline(always)]
 fn on_edges<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: [&LaneVector<V>; 3],
-    level: bool,
+    from_axis: bool,
 ) -> (LaneVector<V>, V) {
-    let (p, square) = on_edge(simd, a, b, level);
-    let (q, other) = on_edge(simd, b, c, level);
+    let (p, square) = on_edge(simd, a, b, from_axis);
+    let (q, other) = on_edge(simd, b, c, from_axis);
     let nearer = other.simd_lt(square);
     let (p, square) = (choose(nearer, &q, &p), nearer.select(other, square));
-    let (q, other) = on_edge(simd, c, a, level);
+    let (q, other) = on_edge(simd, c, a, from_axis);
     let nearer = other.simd_lt(square);
     (choose(nearer, &q, &p), nearer.select(other, square))
 }
 
-impl<V: Copy> NearestToAxis<V> {
+impl<V: Copy> NearestPoint<V> {
     /// Computes the points of triangles nearest to the axis.
     #[inline(always)]
     pub(crate) fn to_axis<S: Simd, R: Real>(
         simd: S,
         [a, b, c]: &[LaneVector<V>; 3],
-    ) -> NearestToAxis<V>
+    ) -> NearestPoint<V>
     where
         V: SimdFloat<S, Element = R>,
     {
         let zero = V::splat(simd, R::of(0.0));
         let (point, square) = on_edges(simd, [a, b, c], true);
         // The axis passes through triangles that have it on the same side of all edges.
-        let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
+        let (u, v, w) = (cross_z(b, c), cross_z(c, a), cross_z(a, b));
         let through = (u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero))
             | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
         let z = (u * a[2] + v * b[2] + w * c[2]) / (u + v + w);
-        let far = square.sqrt();
-        let scale = (through | far.simd_le(zero)).select(zero, V::splat(simd, R::SHRINK) / far);
+        let distance = square.sqrt();
+        let scale =
+            (through | distance.simd_le(zero)).select(zero, V::splat(simd, R::SHRINK) / distance);
         let direction = [point[0] * scale, point[1] * scale, zero];
-        NearestToAxis { point: choose(through, &[zero, zero, z], &point), direction }
+        NearestPoint { point: choose(through, &[zero, zero, z], &point), direction }
     }
 
     /// Computes the points of triangles nearest to a point on the axis.
     #[inline(always)]
-    pub(crate) fn to_point<S: Simd, R: Real>(
+    pub(crate) fn to_axis_point<S: Simd, R: Real>(
         simd: S,
         [a, b, c]: &[LaneVector<V>; 3],
         z: R,
-    ) -> NearestToAxis<V>
+    ) -> NearestPoint<V>
     where
         V: SimdFloat<S, Element = R>,
     {
@@ -184,17 +194,18 @@ impl<V: Copy> NearestToAxis<V> {
             a[2] + v * ab[2] + w * ac[2],
         ];
         let point = choose(within, &foot, &edge);
-        let far = dot(&point, &point).sqrt();
-        let scale = far.simd_gt(zero).select(V::splat(simd, R::SHRINK) / far, zero);
-        NearestToAxis {
+        let distance = dot(&point, &point).sqrt();
+        let scale = distance.simd_gt(zero).select(V::splat(simd, R::SHRINK) / distance, zero);
+        NearestPoint {
             point: [point[0], point[1], point[2] + centre],
             direction: [point[0] * scale, point[1] * scale, point[2] * scale],
         }
     }
 }
 
-/// The polygons that two heights cut out of triangles, as the corners kept and the cuts of the sides. The
-/// polygons below and above a height share the points of its cut.
+/// The part of each triangle between two heights, as a polygon: the corners within the heights, which are included,
+/// and the points where sides cross a height. Polygons below and above the same height have the same crossing points, so
+/// no gap is left.
 pub(crate) struct Clip<V, M> {
     kept: [M; 3],
     /// Per side: the parameters of the cuts at the lower and at the upper height, and masks of the lanes that have
@@ -221,33 +232,35 @@ impl<V: Copy, M: Copy> Clip<V, M> {
             c[2].simd_ge(low) & c[2].simd_le(high),
         ];
         let cuts = [
-            [cut(zero, a[2], b[2], low), cut(zero, a[2], b[2], high)],
-            [cut(zero, b[2], c[2], low), cut(zero, b[2], c[2], high)],
-            [cut(zero, c[2], a[2], low), cut(zero, c[2], a[2], high)],
+            [crossing(zero, a[2], b[2], low), crossing(zero, a[2], b[2], high)],
+            [crossing(zero, b[2], c[2], low), crossing(zero, b[2], c[2], high)],
+            [crossing(zero, c[2], a[2], low), crossing(zero, c[2], a[2], high)],
         ];
         Clip { kept, cuts }
     }
 
     /// Returns the maximum of a function that is linear on each triangle.
     #[inline(always)]
-    pub(crate) fn max3<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
+    pub(crate) fn max_linear<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
     where
         V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
         let none = V::splat(simd, R::of(f64::NEG_INFINITY));
-        let mut max3 = none;
+        let mut max = none;
         for k in 0..3 {
             let (from, to) = (values[k], values[(k + 1) % 3]);
-            max3 = max3.max(self.kept[k].select(from, none));
+            max = max.max(self.kept[k].select(from, none));
             for (at, cut) in self.cuts[k] {
-                max3 = max3.max(cut.select(from + at * (to - from), none));
+                max = max.max(cut.select(from + at * (to - from), none));
             }
         }
-        max3
+        max
     }
 
-    /// Returns the point nearest to the axis at the lower height, or at the upper height where the mask is set.
+    /// Returns the point nearest to the axis on the cut at the lower height, or at the upper height where the mask is
+    /// set. If the height passes through a corner, it is some point of the triangle: the bounds taken in its direction
+    /// are valid but less tight.
     #[inline(always)]
     pub(crate) fn at_end<S: Simd, R: Real>(
         &self,
@@ -263,7 +276,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         let (first, is_first) = cut_at(a, b, &self.cuts[0], upper);
         let (second, _) = cut_at(b, c, &self.cuts[1], upper);
         let (third, is_third) = cut_at(c, a, &self.cuts[2], upper);
-        // Two of the three sides are cut.
+        // Two of the three sides are cut, unless a corner lies at the height itself.
         let from = choose(is_first, &first, &second);
         let to = choose(is_third, &third, &second);
         on_edge(simd, &from, &to, true).0
@@ -285,15 +298,17 @@ fn cut_at<S: Simd, V: SimdBase<S>>(
     (point, (upper & *at_high) | (!upper & *at_low))
 }
 
-/// Returns the parameter at which the side from one height to another is cut at a third, and a mask of its
-/// existence.
+/// Returns where a linear function, `from` at parameter 0 and `to` at 1, takes the value `level` strictly between, and a
+/// mask of the lanes where it does.
 #[inline(always)]
-fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask) {
-    let is = (from.simd_lt(at) & to.simd_gt(at)) | (from.simd_gt(at) & to.simd_lt(at));
-    (is.select((at - from) / (to - from), zero), is)
+fn crossing<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, level: V) -> (V, V::Mask) {
+    let crosses =
+        (from.simd_lt(level) & to.simd_gt(level)) | (from.simd_gt(level) & to.simd_lt(level));
+    (crosses.select((level - from) / (to - from), zero), crosses)
 }
 
-/// Returns the direction of a point from the point of the axis at height `z`, no longer than 1.
+/// Returns the direction of a point from the point of the axis at height `z`, no longer than 1 unless the squared
+/// distance is subnormal.
 #[inline(always)]
 pub(crate) fn direction_from_axis<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
@@ -302,14 +317,14 @@ pub(crate) fn direction_from_axis<S: Simd, R: Real, V: SimdFloat<S, Element = R>
 ) -> LaneVector<V> {
     let zero = V::splat(simd, R::of(0.0));
     let direction = [point[0], point[1], point[2] - z];
-    let far = dot(&direction, &direction).sqrt();
-    let scale = far.simd_gt(zero).select(V::splat(simd, R::SHRINK) / far, zero);
+    let distance = dot(&direction, &direction).sqrt();
+    let scale = distance.simd_gt(zero).select(V::splat(simd, R::SHRINK) / distance, zero);
     [direction[0] * scale, direction[1] * scale, direction[2] * scale]
 }
 
-/// Returns how far out corners are in a direction across the axis.
+/// Returns the extents of three corners along a direction perpendicular to the axis.
 #[inline(always)]
-pub(crate) fn across<S: Simd, V: SimdBase<S>>(
+pub(crate) fn radial_extents<S: Simd, V: SimdBase<S>>(
     [a, b, c]: &[LaneVector<V>; 3],
     direction: &LaneVector<V>,
 ) -> [V; 3] {
@@ -320,16 +335,16 @@ pub(crate) fn across<S: Simd, V: SimdBase<S>>(
     ]
 }
 
-/// Returns how far out corners are in a direction from a point of the axis.
+/// Returns the extents of three corners along a direction, relative to the axis point at height `z`.
 #[inline(always)]
-pub(crate) fn beyond<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+pub(crate) fn extents_from<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     corners: &[LaneVector<V>; 3],
     direction: &LaneVector<V>,
     z: R,
 ) -> [V; 3] {
     let [a, b, c] = corners;
-    let out = across(corners, direction);
+    let out = radial_extents(corners, direction);
     let centre = V::splat(simd, z);
     [
         out[0] + (a[2] - centre) * direction[2],
@@ -348,21 +363,22 @@ pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[LaneVector<V>; 3]
     ]
 }
 
-/// Returns upper bounds of the distances of corners from a circle about the axis, or from the level ring beyond
-/// it. Between corners the bound is at most linear. `out` is a lower and `far` an upper bound of the distances
+/// Returns upper bounds, up to rounding, on the distances of corners from the circle of radius `d` about the axis at
+/// height `z`; with `annulus`, from the part of that plane at radius `d` or more. The bound is convex over a triangle, so
+/// its linear interpolation between corners bounds it. `out` are lower and `far` upper bounds of the corners' distances
 /// from the axis.
 #[inline(always)]
 pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[LaneVector<V>; 3],
     (out, far): (&[V; 3], &[V; 3]),
-    ([d, z], level): ([R; 2], bool),
+    ([d, z], annulus): ([R; 2], bool),
 ) -> [V; 3] {
     let ring = [V::splat(simd, d), V::splat(simd, z)];
     [
-        to_ring(simd, [out[0], far[0], a[2]], ring, level),
-        to_ring(simd, [out[1], far[1], b[2]], ring, level),
-        to_ring(simd, [out[2], far[2], c[2]], ring, level),
+        to_ring(simd, [out[0], far[0], a[2]], ring, annulus),
+        to_ring(simd, [out[1], far[1], b[2]], ring, annulus),
+        to_ring(simd, [out[2], far[2], c[2]], ring, annulus),
     ]
 }
 
@@ -375,21 +391,21 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     first: &[V; 3],
     second: &[V; 3],
 ) -> (V, LaneVector<V>) {
-    let mut max3 = first[0].min(second[0]);
+    let mut max = first[0].min(second[0]);
     let mut point = corners[0];
     for k in 1..3 {
         let here = first[k].min(second[k]);
-        let more = here.simd_gt(max3);
-        max3 = more.select(here, max3);
+        let more = here.simd_gt(max);
+        max = more.select(here, max);
         point = choose(more, &corners[k], &point);
     }
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (from, to) = (first[k] - second[k], first[next] - second[next]);
-        let (at, is) = cut(zero, from, to, zero);
-        let here = is.select(first[k] + at * (first[next] - first[k]), max3);
-        let more = here.simd_gt(max3);
-        max3 = more.select(here, max3);
+        let (at, crosses) = crossing(zero, from, to, zero);
+        let here = crosses.select(first[k] + at * (first[next] - first[k]), max);
+        let more = here.simd_gt(max);
+        max = more.select(here, max);
         let direction = minus(&corners[next], &corners[k]);
         let on_edge_point = [
             corners[k][0] + at * direction[0],
@@ -398,18 +414,19 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
         ];
         point = choose(more, &on_edge_point, &point);
     }
-    (max3, point)
+    (max, point)
 }
 
+/// Returns the bound of [`from_ring`] for one point at height `z`.
 #[inline(always)]
 pub(crate) fn to_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [out, far, z]: [V; 3],
     [d, height]: [V; 2],
-    level: bool,
+    annulus: bool,
 ) -> V {
     let inward = (d - out).max(V::splat(simd, R::of(0.0)));
-    let across = if level { inward } else { inward.max(far - d) };
+    let radial = if annulus { inward } else { inward.max(far - d) };
     let along = z - height;
-    (across * across + along * along).sqrt()
+    (radial * radial + along * along).sqrt()
 }

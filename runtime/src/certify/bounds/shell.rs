@@ -1,8 +1,8 @@
 //! Lower bounds of the distance of a tool from boxes and triangles, 16 at a time, in `f32`.
 
-use crate::bvh::{Boxes, PoseTransform};
+use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
-use crate::certify::bounds::nearest::{LaneVector, NearestToAxis, across, max3, min3};
+use crate::certify::bounds::nearest::{NearestPoint, max3, min3, radial_extents};
 use crate::certify::tool_model::feature::Feature;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::Section;
@@ -96,8 +96,8 @@ impl Bounds for Shell {
         _threshold: f32,
     ) -> f32x16<S> {
         let [a, b, c] = corners;
-        let near = NearestToAxis::to_axis(simd, corners);
-        let [out_a, out_b, out_c] = across(corners, &near.direction);
+        let near = NearestPoint::to_axis(simd, corners);
+        let [out_a, out_b, out_c] = radial_extents(corners, &near.direction);
         let near = min3(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
         let (low, high) = (min3(a[2], b[2], c[2]), max3(a[2], b[2], c[2]));
         self.bound(simd, &BoxRings { near, far: near, low, high })

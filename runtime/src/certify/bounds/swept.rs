@@ -3,9 +3,10 @@
 //! In the tool's frame a triangle moves nearly straight from one position to another. Between them it stays in
 //! the convex hull of both positions, grown by the deviation of its paths from straight.
 
+use crate::bvh::LaneVector;
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
-    Clip, LaneVector, NearestToAxis, Real, across, choose, direction_from_axis, max3, to_ring,
+    Clip, NearestPoint, Real, choose, direction_from_axis, max3, radial_extents, to_ring,
 };
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
@@ -29,7 +30,7 @@ impl<R: Real> Hull<R> {
         let zero = V::splat(simd, R::of(0.0));
         let half_displacement = half_displacement_of(simd, ends);
         let near =
-            slide(simd, &NearestToAxis::to_axis(simd, middle).point, &half_displacement, None);
+            slide(simd, &NearestPoint::to_axis(simd, middle).point, &half_displacement, None);
         let out = outward(ends, &direction_from_axis(simd, &[near[0], near[1], zero], zero));
         let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
@@ -113,7 +114,7 @@ impl<R: Real> HullSlab<R> {
             let centre = V::splat(simd, z);
             let near = slide(
                 simd,
-                &NearestToAxis::to_point(simd, middle, z).point,
+                &NearestPoint::to_axis_point(simd, middle, z).point,
                 half_displacement,
                 Some(centre),
             );
@@ -218,7 +219,8 @@ fn heights<S: Simd, V: SimdBase<S>>([a, b, c, d, e, f]: &Ends<V>) -> [V; 6] {
 #[inline(always)]
 fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, direction: &LaneVector<V>) -> [V; 6] {
     let [a, b, c, d, e, f] = *ends;
-    let [first, last] = [across(&[a, b, c], direction), across(&[d, e, f], direction)];
+    let [first, last] =
+        [radial_extents(&[a, b, c], direction), radial_extents(&[d, e, f], direction)];
     [first[0], first[1], first[2], last[0], last[1], last[2]]
 }
 

@@ -1,9 +1,8 @@
 //! Bounds of moving boxes and triangles against a hull, 16 at a time in `f32`.
 
-use crate::bvh::{Boxes, PoseTransform};
+use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{BoxBounds, DescentInput, Displacement, Node, above, rings};
 use crate::certify::bounds::hull::Hull;
-use crate::certify::bounds::nearest::LaneVector;
 use crate::tool::on_vectors;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
 

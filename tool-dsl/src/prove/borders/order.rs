@@ -210,7 +210,7 @@ impl BorderProver<'_> {
             return Vec::new();
         }
         let [x, y, z] = self.cell.middle();
-        self.values.set(EvaluationPoint::new(x, y, z));
+        self.values.evaluate(EvaluationPoint::new(x, y, z));
         let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
         let is_near = |third: &Owner| {
             let difference = |owner: Owner| (depth(*third) - depth(owner)).abs();

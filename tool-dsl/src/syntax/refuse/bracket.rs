@@ -1,7 +1,7 @@
 //! Unmatched brackets.
 
 use super::super::lexeme::{Kind, Lexeme, lexemes};
-use super::{ITEM_KEYWORDS, Stop, first_token};
+use super::{ITEM_KEYWORDS, StopPosition, first_token};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
 
 /// Returns whether a word begins an item and nothing else.
@@ -10,7 +10,7 @@ fn begins_an_item(word: &str) -> bool {
 }
 
 /// Returns an error for an unmatched bracket, if parsing stopped because of it.
-pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
+pub(super) fn unmatched(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let Brackets { unclosed, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
         let diagnostic =

@@ -43,14 +43,14 @@ pub(super) fn allowance(span: Span, written: &str) -> Diagnostic {
 }
 
 /// The position in a text at which parsing stopped.
-struct Stop<'t> {
+struct StopPosition<'t> {
     text: &'t str,
     /// The offset of the text among all sources.
     offset: usize,
     at: usize,
 }
 
-impl<'t> Stop<'t> {
+impl<'t> StopPosition<'t> {
     fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
@@ -83,17 +83,17 @@ const BLANK_CHARACTERS: [char; 4] = [' ', '\t', '\r', '\n'];
 
 /// Converts a syntax error of pest, in a text that begins at `offset` of the source.
 pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Diagnostic {
-    let stop = Stop { text, offset, at: error_offset(text, error) };
+    let stop = StopPosition { text, offset, at: error_offset(text, error) };
     let wants_end = error.parse_attempts().is_some_and(|attempts| {
         let ends = attempts.expected_tokens().iter().any(|token| token.to_string() == ";");
         ends && attempts.max_position >= rule_at(error)
     });
     let (rest, before) = (stop.rest(), stop.before());
-    if let Some(diagnostic) = spelling::character(&stop)
+    if let Some(diagnostic) = spelling::character_error(&stop)
         .or_else(|| item(&stop))
         .or_else(|| bracket::unmatched(&stop))
-        .or_else(|| spelling::habit(&stop))
-        .or_else(|| spelling::unended(&stop))
+        .or_else(|| spelling::notation_error(&stop))
+        .or_else(|| spelling::unclosed_error(&stop))
     {
         return diagnostic;
     }
@@ -119,20 +119,20 @@ pub(super) fn hidden(text: &str, place: Span) -> Option<Diagnostic> {
 
 /// Returns the error for a text without a tool.
 pub(super) fn nothing(text: &str) -> Diagnostic {
-    let stop = Stop { text, offset: 0, at: text.len() };
+    let stop = StopPosition { text, offset: 0, at: text.len() };
     spelling::no_tool(&stop)
 }
 
 /// Converts a syntax error in the arguments of a tool's parameters.
 pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
-    let stop = Stop { text, offset: 0, at: error_offset(text, error) };
-    spelling::character(&stop)
+    let stop = StopPosition { text, offset: 0, at: error_offset(text, error) };
+    spelling::character_error(&stop)
         .or_else(|| bracket::unmatched(&stop))
-        .or_else(|| spelling::habit(&stop))
+        .or_else(|| spelling::notation_error(&stop))
         .unwrap_or_else(|| does_not_fit(&stop, Expected::Argument))
 }
 
-fn does_not_fit(stop: &Stop<'_>, expected: Expected) -> Diagnostic {
+fn does_not_fit(stop: &StopPosition<'_>, expected: Expected) -> Diagnostic {
     match first_token(stop.rest()) {
         "" => Diagnostic::new(stop.next(0), SyntaxKind::UnexpectedEnd { expected }),
         token => {
@@ -158,7 +158,7 @@ fn error_offset(text: &str, error: &Error<Rule>) -> usize {
 }
 
 /// Returns an error for an item or property that begins with an unknown word.
-fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
+fn item(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let rest = stop.text.trim_start_matches(BLANK_CHARACTERS);
     let first = word(rest);
     if first.is_empty() {

@@ -1,10 +1,10 @@
-//! Spelling mistakes: foreign characters, and habits from other languages.
+//! Spelling mistakes: foreign characters, and constructs of other languages.
 
-use super::{BLANK_CHARACTERS, FILE_KEYWORDS, Stop, ends_a_value, in_name, word};
+use super::{BLANK_CHARACTERS, FILE_KEYWORDS, StopPosition, ends_a_value, in_name, word};
 use crate::diagnostic::{Diagnostic, NameStart, SpellingKind, SyntaxKind};
 
-/// Characters that resemble the intended ones.
-const REPLACEMENTS: [(char, &str); 15] = [
+/// Typographic characters, each with the ASCII that replaces it.
+const REPLACEMENTS: [(char, &str); 13] = [
     ('×', "*"),
     ('·', "*"),
     ('÷', "/"),
@@ -18,15 +18,13 @@ const REPLACEMENTS: [(char, &str); 15] = [
     ('“', "\""),
     ('”', "\""),
     ('„', "\""),
-    ('[', "("),
-    (']', ")"),
 ];
 
 /// Words after which a name follows.
 const NAMING_KEYWORDS: [&str; 7] = ["tool", "solid", "let", "param", "curve", "region", "as"];
 
-/// Returns an error for a mistake that its first character identifies.
-pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
+/// Returns the error that the next character identifies, or a number before it that ends in a decimal point.
+pub(super) fn character_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = rest.chars().next()?;
     let next_character = stop.next(0);
@@ -40,8 +38,8 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         return Some(diagnostic);
     }
     let glued = before.len() == stop.at;
-    // The span of `begun` with this character after it.
-    let is_whole = |begun: &str| {
+    // The span of `begun` and this character, or of this character alone if blanks separate them.
+    let joined_span = |begun: &str| {
         let end = stop.at + next.len_utf8();
         stop.span(if glued { stop.at - begun.len() } else { stop.at }, end)
     };
@@ -51,7 +49,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         }
         '°' if !number.is_empty() => {
             let diagnostic = Diagnostic::new(
-                is_whole(number),
+                joined_span(number),
                 SpellingKind::DegreeSign { number: number.to_owned() },
             );
             Some(diagnostic)
@@ -60,18 +58,24 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
             let power = if next == '²' { 2 } else { 3 };
             let base = stop.last_word();
             let diagnostic = Diagnostic::new(
-                is_whole(base),
+                joined_span(base),
                 SpellingKind::Superscript { base: base.to_owned(), sign: next, power },
             );
             Some(diagnostic)
         }
         '⌀' | 'ø' | 'Ø' => diagnostic(SpellingKind::DiameterSign { sign: next }),
         '\'' => diagnostic(SpellingKind::SingleQuote),
-        '^' => diagnostic(SpellingKind::ChainedPower),
+        '[' => diagnostic(SpellingKind::SquareBracket { written: '[', suggestion: '(' }),
+        ']' => diagnostic(SpellingKind::SquareBracket { written: ']', suggestion: ')' }),
+        // Elsewhere `^` is an unexpected token like any other.
+        '^' if ends_a_value(before) && before.contains('^') => {
+            diagnostic(SpellingKind::ChainedPower)
+        }
+        '\u{feff}' if stop.offset + stop.at == 0 => diagnostic(SpellingKind::ByteOrderMark),
         '"' if glued && !number.is_empty() => {
             diagnostic(SpellingKind::InchSign { number: number.to_owned() })
         }
-        '"' if stop.text.matches('"').count() % 2 == 1 => unended(stop),
+        '"' if stop.text.matches('"').count() % 2 == 1 => unclosed_error(stop),
         '"' => diagnostic(SpellingKind::MisplacedText),
         '_' if glued && !number.is_empty() => diagnostic(SpellingKind::UnderscoreInNumber),
         '_' => diagnostic(SpellingKind::InvalidNameStart { start: NameStart::Underscore }),
@@ -79,27 +83,27 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
             Some((_, suggestion)) => {
                 diagnostic(SpellingKind::Lookalike { written: next, suggestion })
             }
-            None => foreign(next).and_then(diagnostic),
+            None => foreign_character_error(next).and_then(diagnostic),
         },
     }
 }
 
 /// Returns the error for a character that the language does not use. An invisible one is shown by its code point.
-fn foreign(next: char) -> Option<SpellingKind> {
+fn foreign_character_error(next: char) -> Option<SpellingKind> {
     let visible = !(next.is_control()
         || next.is_whitespace()
         || matches!(next, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
         || matches!(next, '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffd}'));
     match next {
-        '\u{feff}' => Some(SpellingKind::ByteOrderMark),
         _ if next.is_ascii() && !next.is_control() => None,
         _ if visible => Some(SpellingKind::ForeignCharacter { written: next }),
         _ => Some(SpellingKind::InvisibleCharacter { code: u32::from(next) }),
     }
 }
 
-/// Returns an error for a habit from elsewhere: a unit apart from its number, `and`, a name with a dash.
-pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
+/// Returns the error for a construct of another language or notation: a space before a unit, `and` or `||`, a malformed
+/// name, a foreign operator, a decimal comma, an extra `;`, or a second tool.
+pub(super) fn notation_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = word(rest);
     let number = number_before(before);
@@ -115,15 +119,18 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
         ));
     }
     if ["and", "or"].contains(&next) || rest.starts_with("&&") || rest.starts_with("||") {
+        // `&&` and `||` are no words and have two bytes.
         let length = next.len().max(2);
         return Some(Diagnostic::new(stop.next(length), SpellingKind::LogicalOperator));
     }
-    if let Some(diagnostic) = name(stop).or_else(|| operator(stop)) {
+    if let Some(diagnostic) = name_error(stop).or_else(|| operator_error(stop)) {
         return Some(diagnostic);
     }
-    let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
-    if rest.starts_with(',') && digit(before.chars().last()) && digit(rest.chars().nth(1)) {
-        let fraction: String = rest[1..].chars().take_while(char::is_ascii_digit).collect();
+    // A digit before the comma may end a name, as in `x1,2`, or a decimal number.
+    let is_integer = !number.is_empty() && !number.contains('.');
+    let after_comma = rest.strip_prefix(',').unwrap_or_default();
+    if is_integer && after_comma.starts_with(|c: char| c.is_ascii_digit()) {
+        let fraction: String = after_comma.chars().take_while(char::is_ascii_digit).collect();
         return Some(Diagnostic::new(
             stop.next(1),
             SpellingKind::DecimalComma { number: number.to_owned(), fraction },
@@ -141,8 +148,8 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// Returns an error for a text or a comment that does not end, or for an empty file.
-pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
+/// Returns the error for an empty file, or for text or a comment that is not closed.
+pub(super) fn unclosed_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let comment = |at: usize| Diagnostic::new(stop.span(at, at + 2), SyntaxKind::UnclosedComment);
     if stop.rest().starts_with("/*") {
         return Some(comment(stop.at));
@@ -151,6 +158,7 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
     if stop.offset == 0 && stop.rest().is_empty() && word(read).is_empty() {
         return Some(no_tool(stop));
     }
+    // Quoted text cannot continue on the next line: one of an odd number of quotation marks on a line is unmatched.
     let mut start = 0;
     for line in stop.text.split_inclusive('\n') {
         let code = line.split("//").next().unwrap_or_default();
@@ -161,23 +169,24 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
         start += line.len();
     }
     let before = stop.before();
+    // A heuristic: comment marks inside quoted text are counted too.
     let is_in_comment = before.matches("/*").count() > before.matches("*/").count();
     is_in_comment.then(|| comment(before.rfind("/*").unwrap_or_default()))
 }
 
 /// Returns the error for a text that ends without a tool.
-pub(super) fn no_tool(stop: &Stop<'_>) -> Diagnostic {
+pub(super) fn no_tool(stop: &StopPosition<'_>) -> Diagnostic {
     Diagnostic::new(stop.next(0), SyntaxKind::NoTool)
 }
 
-/// Returns an error for a name with a dash, or one that begins with a digit.
-fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
+/// Returns the error for a name with a dash, or one that begins with a digit.
+fn name_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
-    let of_tool = |naming: &str| FILE_KEYWORDS.contains(&naming);
+    let names_a_file = |naming: &str| FILE_KEYWORDS.contains(&naming);
     if rest.starts_with(|c: char| c.is_ascii_digit()) && NAMING_KEYWORDS.contains(&stop.last_word())
     {
         let length = rest.find(|c| !in_name(c)).unwrap_or(rest.len());
-        let start = match of_tool(stop.last_word()) {
+        let start = match names_a_file(stop.last_word()) {
             true => NameStart::DigitOfTool,
             false => NameStart::Digit,
         };
@@ -193,7 +202,7 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
         let whole_name = format!("{begun}-{tail}");
         let end = stop.at + rest.find(tail).unwrap_or(0) + tail.len();
         let span = stop.span(before.len() - begun.len(), end);
-        let suggestion = if of_tool(naming) {
+        let suggestion = if names_a_file(naming) {
             whole_name.replace('-', "")
         } else {
             whole_name.replace('-', "_")
@@ -206,37 +215,41 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// Returns an error for an operator of another language.
-fn operator(stop: &Stop<'_>) -> Option<Diagnostic> {
+/// Returns the error for an operator of another language, or for a comparison where none is allowed.
+fn operator_error(stop: &StopPosition<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
-    let both = || stop.span(stop.at - 1, stop.at + 1);
+    let with_previous = || stop.span(stop.at - 1, stop.at + 1);
     let glued = before.len() == stop.at;
     if rest.starts_with('*') && glued && before.ends_with('*') {
-        return Some(Diagnostic::new(both(), SpellingKind::DoubleStar));
+        return Some(Diagnostic::new(with_previous(), SpellingKind::DoubleStar));
     }
     if rest.starts_with(['<', '>']) {
         let sign = &rest[..1];
         if glued && before.ends_with('=') {
             return Some(Diagnostic::new(
-                both(),
+                with_previous(),
                 SpellingKind::ReversedComparison { sign: sign.to_owned() },
             ));
         }
         if ends_a_value(before) {
-            return Some(if stop.text.trim_start().starts_with("region") {
-                Diagnostic::new(stop.next(1), SpellingKind::TooManyComparisons)
+            let item = word(stop.text.trim_start_matches(BLANK_CHARACTERS));
+            let is_in_condition = item == "region" && !before.contains('{');
+            let kind = if is_in_condition {
+                SpellingKind::TooManyComparisons
             } else {
-                Diagnostic::new(stop.next(1), SpellingKind::ComparisonOutside)
-            });
+                SpellingKind::ComparisonOutside
+            };
+            return Some(Diagnostic::new(stop.next(1), kind));
         }
     }
     None
 }
 
-/// Returns the number at the end of a text.
+/// Returns the decimal number, without exponent, that a text ends with; empty if there is none, or if it is part of a
+/// name.
 fn number_before(before: &str) -> &str {
-    let digits = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
-    let number = &before[digits.len()..];
+    let head = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let number = &before[head.len()..];
     let begins = number.starts_with(|c: char| c.is_ascii_digit());
-    if begins && !digits.ends_with(in_name) { number } else { "" }
+    if begins && !head.ends_with(in_name) { number } else { "" }
 }
