@@ -102,7 +102,7 @@ fn a_part_in_another_unit_is_converted() {
     let inches = part.converted_to(Unit::Inch);
     let error = Scene::new(Unit::Millimetre).add_part(&inches, Pose::default());
     let error = error.expect_err("inches");
-    assert!(error.to_string().contains("inch") && error.to_string().contains("Part::to"));
+    assert!(error.to_string().contains("inch") && error.to_string().contains("Part::converted_to"));
     let area = inches.diagnostics().expect("of a mesh").area;
     let millimetres = inches.converted_to(Unit::Millimetre);
     let again = millimetres.diagnostics().expect("of a mesh").area;
