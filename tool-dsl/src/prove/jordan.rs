@@ -15,11 +15,12 @@
 //! not contain them, along facing normals, and across circles. The rounding errors of doubles are far smaller
 //! than the additional factor of 2 that is required.
 //!
-//! Starting from a point of the profile that is nearest to an inside point, there is an outside point farther
-//! than `ρ` from the profile at a distance of at most `ρ / sin(β/2)`, where `β` is the outside angle of a
-//! corner next to it. Twice that covers the curvature of arcs, since facing normals, far ends of neighbours
-//! and diameters are all longer than four times that. The surface of the solid is therefore at most
-//! `4 s / sin(β/2)` from that point.
+//! Starting from a point of the profile that is nearest to an inside point, there is an outside point that is
+//! `ρ` or more from the profile, at the distance `x = 2 ρ / sin(β/2)` on the bisector of the outside angle `β`.
+//! It is `x sin(β/2) = 2 ρ` from a straight side or from an arc that bends away. From an arc of radius `R` that
+//! bends toward the bisector it is `R - √(R² - 2 R x sin(β/2) + x²)`, which is at least `ρ` if
+//! `R ≥ 2 ρ / sin²(β/2)`. From all other segments it is at least as far as the narrowest passage less `x`,
+//! which is more than `x`. The surface of the solid is therefore at most `x = 4 s / sin(β/2)` from that point.
 
 use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
 
@@ -27,6 +28,8 @@ use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
 pub(super) struct Profile {
     /// The least distance between points of the profile, or of its mirror image, that face each other.
     narrowest: f64,
+    /// The least radius of an arc.
+    min_radius: f64,
     /// The sine of half the smallest angle outside the material at a corner.
     sharpest: f64,
 }
@@ -34,8 +37,9 @@ pub(super) struct Profile {
 impl Profile {
     pub(super) fn new(outline: &[Segment]) -> Profile {
         let mirrored: Vec<Segment> = outline.iter().map(Segment::mirrored).collect();
-        let diameters = outline.iter().filter_map(|piece| Some(2.0 * piece.round()?.1));
-        let mut narrowest = diameters.fold(f64::INFINITY, f64::min);
+        let radii = outline.iter().filter_map(|piece| Some(piece.round()?.1));
+        let min_radius = radii.fold(f64::INFINITY, f64::min);
+        let mut narrowest = 2.0 * min_radius;
         let last = outline.len().saturating_sub(1);
         for (index, piece) in outline.iter().enumerate() {
             for (other, other_segment) in outline.iter().enumerate().skip(index + 1) {
@@ -58,7 +62,7 @@ impl Profile {
             let turn = cross(before, after).atan2(dot(before, after));
             (0.5 * turn.min(0.0)).cos()
         });
-        Profile { narrowest, sharpest: sharpest.fold(1.0, f64::min) }
+        Profile { narrowest, min_radius, sharpest: sharpest.fold(1.0, f64::min) }
     }
 
     /// Returns an upper bound of the distance from the solid's surface to the profile. `slack` bounds depth
@@ -66,7 +70,10 @@ impl Profile {
     /// from the profile. Returns `None` if this does not prove that the profile encloses the solid.
     pub(super) fn max_distance(&self, slack: f64, test_offset: f64) -> Option<f64> {
         let max_distance = 4.0 * slack / self.sharpest;
-        (2.0 * max_distance < self.narrowest && 4.0 * slack < test_offset).then_some(max_distance)
+        let proved = 2.0 * max_distance < self.narrowest
+            && max_distance / self.sharpest < self.min_radius
+            && 4.0 * slack < test_offset;
+        proved.then_some(max_distance)
     }
 }
 

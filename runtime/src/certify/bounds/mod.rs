@@ -18,3 +18,5 @@ pub(crate) mod nearest;
 pub(crate) mod shell;
 pub(crate) mod swept;
 pub(crate) mod swept_batch;
+#[cfg(test)]
+mod tests;

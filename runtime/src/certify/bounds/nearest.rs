@@ -4,9 +4,8 @@
 //! Lower bounds on distance need no exact nearest point. For any direction `n` with |n| ≤ 1, every point `p` of a
 //! triangle is at a distance of at least the least `n · corner`. A rounded `n` makes the bound less tight, not wrong.
 //!
-//! Computed directions are that short where the squared distance is 0 or a normal number: from a distance of 1.1e-19 in
-//! `f32` and 1.5e-154 in `f64`. Where it is subnormal, a direction may be longer than 1, and a bound too tight: all
-//! bounds assume that no computed nearest point lies so close to the axis without lying on it.
+//! Where the squared distance is subnormal, its root is too inaccurate to divide by. A point that near counts as on the
+//! axis and has the direction 0.
 
 use crate::bvh::LaneVector;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
@@ -19,6 +18,9 @@ pub(crate) trait Real: Copy + PartialOrd {
     const SHRINK: Self;
     /// The smallest positive normal number, which replaces a divisor of 0.
     const MIN_POSITIVE_VALUE: Self;
+    /// The largest distance that counts as 0. Squares of larger ones are 64 times the smallest normal number, so the
+    /// absolute error of subnormal terms, half a unit of the last place each, is less than u/20 of their sum.
+    const NEGLIGIBLE_DISTANCE: Self;
 
     fn of(value: f64) -> Self;
 
@@ -29,6 +31,8 @@ pub(crate) trait Real: Copy + PartialOrd {
 impl Real for f32 {
     const SHRINK: f32 = 1.0 - 4.0 * f32::EPSILON;
     const MIN_POSITIVE_VALUE: f32 = f32::MIN_POSITIVE;
+    /// 2⁻⁶⁰
+    const NEGLIGIBLE_DISTANCE: f32 = f32::from_bits((127 - 60) << 23);
 
     fn of(value: f64) -> f32 {
         value as f32
@@ -42,6 +46,8 @@ impl Real for f32 {
 impl Real for f64 {
     const SHRINK: f64 = 1.0 - 4.0 * f64::EPSILON;
     const MIN_POSITIVE_VALUE: f64 = f64::MIN_POSITIVE;
+    /// 2⁻⁵⁰⁸
+    const NEGLIGIBLE_DISTANCE: f64 = f64::from_bits((1023 - 508) << 52);
 
     fn of(value: f64) -> f64 {
         value
@@ -55,8 +61,7 @@ impl Real for f64 {
 /// The point of each triangle that is nearest to the axis or to a point on the axis.
 pub(crate) struct NearestPoint<V> {
     pub(crate) point: LaneVector<V>,
-    /// A direction away from the axis or the point, no longer than 1 unless the squared distance is subnormal. It is 0
-    /// where the square of the distance is 0.
+    /// A direction away from the axis or the point, no longer than 1. It is 0 where the distance is negligible.
     pub(crate) direction: LaneVector<V>,
 }
 
@@ -150,7 +155,8 @@ impl<V: Copy> NearestPoint<V> {
     where
         V: SimdFloat<S, Element = R>,
     {
-        let zero = V::splat(simd, R::of(0.0));
+        let (zero, negligible) =
+            (V::splat(simd, R::of(0.0)), V::splat(simd, R::NEGLIGIBLE_DISTANCE));
         let (point, square) = on_edges(simd, [a, b, c], true);
         // The axis passes through triangles that have it on the same side of all edges.
         let (u, v, w) = (cross_z(b, c), cross_z(c, a), cross_z(a, b));
@@ -158,8 +164,8 @@ impl<V: Copy> NearestPoint<V> {
             | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
         let z = (u * a[2] + v * b[2] + w * c[2]) / (u + v + w);
         let distance = square.sqrt();
-        let scale =
-            (through | distance.simd_le(zero)).select(zero, V::splat(simd, R::SHRINK) / distance);
+        let scale = (through | distance.simd_le(negligible))
+            .select(zero, V::splat(simd, R::SHRINK) / distance);
         let direction = [point[0] * scale, point[1] * scale, zero];
         NearestPoint { point: choose(through, &[zero, zero, z], &point), direction }
     }
@@ -174,7 +180,8 @@ impl<V: Copy> NearestPoint<V> {
     where
         V: SimdFloat<S, Element = R>,
     {
-        let zero = V::splat(simd, R::of(0.0));
+        let (zero, negligible) =
+            (V::splat(simd, R::of(0.0)), V::splat(simd, R::NEGLIGIBLE_DISTANCE));
         let centre = V::splat(simd, z);
         let a = [a[0], a[1], a[2] - centre];
         let b = [b[0], b[1], b[2] - centre];
@@ -195,7 +202,7 @@ impl<V: Copy> NearestPoint<V> {
         ];
         let point = choose(within, &foot, &edge);
         let distance = dot(&point, &point).sqrt();
-        let scale = distance.simd_gt(zero).select(V::splat(simd, R::SHRINK) / distance, zero);
+        let scale = distance.simd_gt(negligible).select(V::splat(simd, R::SHRINK) / distance, zero);
         NearestPoint {
             point: [point[0], point[1], point[2] + centre],
             direction: [point[0] * scale, point[1] * scale, point[2] * scale],
@@ -307,18 +314,18 @@ fn crossing<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, level: V) -> (V, 
     (crosses.select((level - from) / (to - from), zero), crosses)
 }
 
-/// Returns the direction of a point from the point of the axis at height `z`, no longer than 1 unless the squared
-/// distance is subnormal.
+/// Returns the direction of a point from the point of the axis at height `z`, no longer than 1, and 0 where the distance
+/// is negligible.
 #[inline(always)]
 pub(crate) fn direction_from_axis<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     point: &LaneVector<V>,
     z: V,
 ) -> LaneVector<V> {
-    let zero = V::splat(simd, R::of(0.0));
+    let (zero, negligible) = (V::splat(simd, R::of(0.0)), V::splat(simd, R::NEGLIGIBLE_DISTANCE));
     let direction = [point[0], point[1], point[2] - z];
     let distance = dot(&direction, &direction).sqrt();
-    let scale = distance.simd_gt(zero).select(V::splat(simd, R::SHRINK) / distance, zero);
+    let scale = distance.simd_gt(negligible).select(V::splat(simd, R::SHRINK) / distance, zero);
     [direction[0] * scale, direction[1] * scale, direction[2] * scale]
 }
 

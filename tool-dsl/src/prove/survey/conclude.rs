@@ -2,6 +2,7 @@
 
 use super::{OpenProof, RegionFacts, Survey, TOLERANCE, sum_rounded_up, unless_rounding};
 use crate::diagnostic::Statement;
+use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval};
 use crate::prove::Certificate;
 use crate::prove::jordan::Profile;
@@ -75,9 +76,19 @@ impl Survey<'_> {
     /// the path returns to a region, it has therefore not gained since it left. Only the jumps that remain
     /// after such loops are removed count: one per pair of regions. Other depths may be steep outside their
     /// regions, so every jump counts. A straight path crosses a conic twice.
+    ///
+    /// A straight path in space around the axis is a branch of a hyperbola in the half plane, on which `z` is linear
+    /// and `d` convex. It passes a box at most twice, since `d` is below an upper end on one interval and above a
+    /// lower end on two. It crosses a conic at most four times.
     fn jump_bound(&self) -> f64 {
         let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
-        let Some(feet) = &self.feet else { return sum_rounded_up(self.jumps, 2.0 * steps) };
+        let Some(feet) = &self.feet else {
+            let passes = match self.tool.model.domain {
+                Domain::HalfPlane => 2.0,
+                Domain::Space => 1.0,
+            };
+            return passes * sum_rounded_up(self.jumps, 2.0 * steps);
+        };
         let deviation = unless_rounding(feet.max_difference, self.size);
         let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
         self.largest_jumps.values().copied().fold(
