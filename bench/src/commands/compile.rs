@@ -44,7 +44,7 @@ impl Compile {
         Ok(Some(Page {
             name: "compile",
             title: "What compiling a tool costs, and what loading it costs",
-            covers: &["tool-dsl/src", "tools-library/tools", "runtime/src"],
+            covers: &["tool-dsl/src", "tool-macros/src", "tools-library/tools", "runtime/src/tool"],
             sections: vec![
                 Section { title: "Compiled", body: body(&rows), missed_limits: Vec::new() },
                 interpreter::section()?,

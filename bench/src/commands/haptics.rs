@@ -47,7 +47,16 @@ impl Haptics {
         Ok(Some(Page {
             name: "haptics",
             title: "The haptic loop",
-            covers: &["runtime/src"],
+            covers: &[
+                "runtime/src/bvh",
+                "runtime/src/cloud",
+                "runtime/src/haptic",
+                "runtime/src/part.rs",
+                "runtime/src/point_bvh",
+                "runtime/src/pose.rs",
+                "runtime/src/probe",
+                "runtime/src/tool",
+            ],
             sections: vec![Section {
                 title: "",
                 body: page(&measured)?,

@@ -47,7 +47,20 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
         Ok(Some(Page {
             name: "stress",
             title: "Under stress",
-            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            covers: &[
+                "runtime/src/bvh",
+                "runtime/src/certify",
+                "runtime/src/cloud",
+                "runtime/src/mesh",
+                "runtime/src/motion.rs",
+                "runtime/src/part.rs",
+                "runtime/src/point_bvh",
+                "runtime/src/pose.rs",
+                "runtime/src/probe",
+                "runtime/src/tool",
+                "tool-dsl/src",
+                "tools-library/tools",
+            ],
             sections: vec![Section {
                 title: "",
                 body: introduction.to_owned() + &page::page(&rows)?,

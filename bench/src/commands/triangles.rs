@@ -47,7 +47,13 @@ impl Triangles {
         Ok(Some(Page {
             name: "triangles",
             title: "How long proofs of depth take",
-            covers: &["runtime/src"],
+            covers: &[
+                "runtime/src/bvh",
+                "runtime/src/certify",
+                "runtime/src/motion.rs",
+                "runtime/src/pose.rs",
+                "runtime/src/tool",
+            ],
             sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
             figures: Vec::new(),
         }))

@@ -35,7 +35,18 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
     Ok(Page {
         name: NAME,
         title: "Run time against error",
-        covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+        covers: &[
+            "runtime/src/bvh",
+            "runtime/src/certify",
+            "runtime/src/cloud",
+            "runtime/src/part.rs",
+            "runtime/src/point_bvh",
+            "runtime/src/pose.rs",
+            "runtime/src/probe",
+            "runtime/src/tool",
+            "tool-dsl/src",
+            "tools-library/tools",
+        ],
         sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
         figures: figures(measured),
     })

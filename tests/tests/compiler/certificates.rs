@@ -335,6 +335,29 @@ fn a_pit_in_the_middle_bounds_nothing() {
     );
 }
 
+/// On the lower side of a step the slopes of both sides may lead on, so that depth is least there. The step is as
+/// small as rounding, so depth counts as continuous.
+#[test]
+fn a_step_along_a_border_leaves_no_lower_bound() {
+    let rod = |step: &str| {
+        Certificate::prove(&text(&format!(
+            "tool Rod {{ units mm; curve low = z - 3; curve top = 9 - z; curve r = 3 - hypot(d, z - 3);
+               curve side = 3 - d;
+               region ball where low <= 0, r >= 0 {{ depth: r; direction: away from (0, 3); }}
+               region rod where low >= 0, 0 <= side <= top {{ depth: side + {step}; }}
+               region end where low >= 0, 0 <= top <= side {{ depth: top + {step}; }} }}"
+        )))
+    };
+    assert!(rod("0").is_exact());
+    let proved = rod("1e-11");
+    assert!(
+        proved.lipschitz().is_some() && proved.slack >= 1e-11,
+        "{:?}",
+        proved.undecided.first()
+    );
+    assert_eq!(proved.lower_slope(), None);
+}
+
 /// A depth that is 0 at a point inside leads to no surface. Around the point it is a length, as depths beside
 /// corners are.
 #[test]

@@ -201,8 +201,8 @@ impl Polynomial {
 
     /// Compares a conic with a straight line that it does not cross but may touch. Returns the sign that the
     /// conic has on one whole side of the line (true if positive), and whether that is the side where the
-    /// line is negative. A conic is convex where it has the other sign, and so lies on one side of each of
-    /// its tangents.
+    /// line is negative. An ellipse or a parabola is convex where it has the other sign, and so lies on one
+    /// side of each of its tangents. Returns `None` for a hyperbola.
     pub(crate) fn clear_of(&self, line: &Polynomial) -> Option<(bool, bool)> {
         let planar = |m: &Monomial| m[1] == 0 && m[2] == 0 && m[0] + m[3] <= 2;
         if !self.0.keys().chain(line.0.keys()).all(planar) || !line.is_linear() {

@@ -147,6 +147,11 @@ impl Survey<'_> {
         if self.feet.is_some() {
             return (1.0, 0.0);
         }
+        // A depth that steps along a border may be least on the lower side of the step, where the slopes of
+        // both sides lead on.
+        if self.smooth_border_jumps.values().any(|jump| *jump > 0.0) {
+            return (0.0, 0.0);
+        }
         // Depth falls along a descent, so each such box is met once: the length of the step out of it is
         // added to the distance missed.
         let (mut min_slope, mut steps) = (self.min_slope, 0.0);
