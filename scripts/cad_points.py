@@ -275,15 +275,17 @@ def convert(given):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("input", help="STEP or IGES, may be .gz")
-    parser.add_argument("-o", "--out", help="the points, as PLY")
-    parser.add_argument("--points", type=int, default=20000, help="about how many")
-    parser.add_argument("--mesh", help="the triangles, as PLY")
-    parser.add_argument("--deflection", type=float, default=0.05, help="of the triangles from the surface, in mm")
-    parser.add_argument("--angle", type=float, default=20.0, help="between neighbouring triangles, in degrees")
-    parser.add_argument("--unit", choices=UNITS, default="mm", help="of what is written")
-    parser.add_argument("--flip", action="store_true", help="turn the faces of no solid")
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("input", help="STEP or IGES file, also gzipped")
+    parser.add_argument("-o", "--out", help="output file for the points, in PLY; give -o, --mesh or both")
+    parser.add_argument("--points", type=int, default=20000, help="number of points, at least one per face [default: %(default)s]")
+    parser.add_argument("--mesh", help="output file for the triangles, in PLY")
+    distance = "target distance of triangles from the surface, always in mm [default: %(default)s]"
+    parser.add_argument("--deflection", type=float, default=0.05, help=distance)
+    parser.add_argument("--angle", type=float, default=20.0, help="target angle between neighbouring triangles, in degrees [default: %(default)s]")
+    parser.add_argument("--unit", choices=UNITS, default="mm", help="unit of the written coordinates; messages are in mm [default: %(default)s]")
+    parser.add_argument("--flip", action="store_true", help="reverse the orientation of faces that belong to no solid")
+    seed = "seed of the sampling; the same seed gives the same file [default: %(default)s]"
+    parser.add_argument("--seed", type=int, default=1, help=seed)
     given = parser.parse_args()
     if not (given.out or given.mesh) or given.points < 1 or not given.deflection > 0 or not given.angle > 0:
         parser.error("give -o, --mesh or both; points, deflection and angle are above 0")
