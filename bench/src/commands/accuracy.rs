@@ -34,7 +34,12 @@ impl Accuracy {
         Ok(Some(Page {
             name: "accuracy",
             title: "Rounding of the compiled tools",
-            covers: &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"],
+            covers: &[
+                "tool-dsl/src",
+                ":!tool-dsl/src/prove",
+                "tools-library/tools",
+                "runtime/src/tool",
+            ],
             sections: vec![Section {
                 title: "",
                 body: body(&rows, &missed_limits, self.points)?,

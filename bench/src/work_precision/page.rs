@@ -45,6 +45,7 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
             "runtime/src/probe",
             "runtime/src/tool",
             "tool-dsl/src",
+            ":!tool-dsl/src/prove",
             "tools-library/tools",
         ],
         sections: vec![Section { title: "", body, missed_limits: Vec::new() }],

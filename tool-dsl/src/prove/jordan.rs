@@ -69,9 +69,9 @@ impl Profile {
     /// where the solid ends, and the points that decide which side is solid lie at a distance of `test_offset`
     /// from the profile. Returns `None` if this does not prove that the profile encloses the solid.
     pub(super) fn max_distance(&self, slack: f64, test_offset: f64) -> Option<f64> {
-        let max_distance = 4.0 * slack / self.sharpest;
+        let max_distance = 4.5 * slack / self.sharpest;
         let proved = 2.0 * max_distance < self.narrowest
-            && max_distance / self.sharpest < self.min_radius
+            && 100.0 * max_distance / self.sharpest < self.min_radius
             && 4.0 * slack < test_offset;
         proved.then_some(max_distance)
     }
@@ -191,9 +191,9 @@ mod tests {
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);",
         );
         // The bottom of the slot has outside corners of 90°.
-        assert!(slot.max_distance(0.02, 0.1).is_some() && slot.max_distance(0.025, 0.2).is_none());
+        assert!(slot.max_distance(0.018, 0.1).is_some() && slot.max_distance(0.02, 0.2).is_none());
         assert_eq!(slot.max_distance(0.0, 0.1), Some(0.0));
         // Points this close decide nothing.
-        assert_eq!(slot.max_distance(0.02, 0.08), None);
+        assert_eq!(slot.max_distance(0.018, 0.072), None);
     }
 }

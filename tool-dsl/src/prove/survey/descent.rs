@@ -12,6 +12,10 @@ use std::f64::consts::TAU;
 /// half diagonals of the box.
 const STEP_FRACTIONS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 const STEPS_IN_HALF_DIAGONALS: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
+/// The distance, relative to the tool's size, from zeros of depth to points that are proved to be outside.
+const ZERO_OFFSET_FRACTION: f64 = 1e-11;
+/// The largest number of times that a box is made smaller along an axis, to a third or more of its side.
+const MAX_SHRINKS: u32 = 100;
 /// The number of other directions tried.
 const EXTRA_DIRECTIONS: u32 = 16;
 
@@ -25,18 +29,69 @@ pub(super) struct Descent {
 }
 
 impl Survey<'_> {
-    /// Returns a lower bound of the rate at which a region's depth falls in the current box, which has the
-    /// given owners.
-    pub(super) fn fall_rate(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
+    /// Returns a lower bound of the rate at which a region's depth falls in a box, which is the current one and
+    /// has the given owners.
+    pub(super) fn fall_rate(&mut self, owner: usize, owners: &[Option<usize>], cell: Cell) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-        // A length is not smooth where it is 0. Next to the outside that is the surface, where depth need not
-        // fall.
-        let is_smooth = depth.value.low > 0.0 || owners.contains(&None);
+        // A length is not smooth where it is 0. On the surface depth need not fall.
+        let is_smooth = depth.value.low > 0.0
+            || owners.contains(&None) && self.is_zero_on_surface_only(owner, cell);
         if self.border_prover.is_length(owner) && is_smooth {
             depth.length.low
         } else {
             depth.fall()
         }
+    }
+
+    /// Returns whether the points of a box at which a region's depth is 0 are proved to be next to points outside the
+    /// solid. Their distance from these is recorded.
+    ///
+    /// This is for edges in space, which have too many point boxes. It succeeds for edges along an axis: the box
+    /// shrinks to the edge, and the shrunk box is outside if it is moved a little.
+    fn is_zero_on_surface_only(&mut self, owner: usize, cell: Cell) -> bool {
+        if self.tool.model.domain != Domain::Space {
+            return false;
+        }
+        let zeros = self.shrunk_to_zeros(owner, cell);
+        self.slopes.set(cell);
+        let step = ZERO_OFFSET_FRACTION * self.size;
+        for direction in 0..27 {
+            let offset = [direction % 3, direction / 3 % 3, direction / 9].map(|k: i32| k - 1);
+            let moved = (0..3).fold(zeros, |moved, axis| {
+                let by = step * f64::from(offset[axis]);
+                moved.with_side(axis, moved.sides[axis].plus(Interval::new(by, by)))
+            });
+            if self.cover.claims(moved).iter().all(|claim| claim.owner.is_none()) {
+                // No offset is longer than twice the step.
+                self.surface_distance = self.surface_distance.max(2.0 * step);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Returns a part of a box that contains all its points at which a region's depth is 0.
+    fn shrunk_to_zeros(&mut self, owner: usize, mut cell: Cell) -> Cell {
+        let depth = self.tool.model.regions[owner].depth;
+        let has_zeros = |survey: &mut Survey<'_>, part: Cell| {
+            survey.slopes.set(part);
+            survey.slopes.get(depth).value.low <= 0.0
+        };
+        for axis in 0..3 {
+            for _ in 0..MAX_SHRINKS {
+                let side = cell.sides[axis];
+                // Not the middle, where zeros often are.
+                let split = side.low + 0.382 * (side.high - side.low);
+                let lower = cell.with_side(axis, Interval::new(side.low, split));
+                let upper = cell.with_side(axis, Interval::new(split, side.high));
+                cell = match [lower, upper].map(|part| has_zeros(self, part)) {
+                    [true, false] => lower,
+                    [false, true] => upper,
+                    _ => break,
+                };
+            }
+        }
+        cell
     }
 
     /// Records the rate at which depth falls from the points of a box.
@@ -51,15 +106,12 @@ impl Survey<'_> {
         }
         if box_size != BoxSize::Point {
             for owner in owners.iter().flatten() {
-                self.min_slope = self.min_slope.min(self.fall_rate(*owner, owners));
+                let rate = self.fall_rate(*owner, owners, cell);
+                self.min_slope = self.min_slope.min(rate);
             }
             self.record_descent_on_axis(cell);
-        } else if owners.contains(&None) {
-            let [first, last] = [0, 1]
-                .map(|end| cell.sides.map(|side| if end == 0 { side.low } else { side.high }));
-            self.surface_distance =
-                self.surface_distance.max(farthest(&cell, first)).max(farthest(&cell, last));
         } else {
+            // Also beside the outside: that it claims a part of the box does not prove that it has one.
             let descent = self.descent_from_point(owners, cell);
             self.descents.push(descent);
         }

@@ -291,7 +291,7 @@ impl<'t> Survey<'t> {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         let known = depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
         let is_positive = depth.value.low >= -TOLERANCE * self.size;
-        let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)]) > 0.0;
+        let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)], cell) > 0.0;
         // In the half plane a direction vanishes at points, which small boxes locate well.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         let is_large = box_size == BoxSize::Coarse
@@ -321,7 +321,7 @@ impl<'t> Survey<'t> {
     ) -> bool {
         self.slopes.set(cell);
         let falls = self.feet.is_some()
-            || owners.iter().flatten().all(|owner| self.fall_rate(*owner, owners) > 0.0);
+            || owners.iter().flatten().all(|owner| self.fall_rate(*owner, owners, cell) > 0.0);
         if !box_size.is_last() && !falls {
             return false;
         }
