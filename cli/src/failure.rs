@@ -78,6 +78,19 @@ pub(crate) enum Failure {
     /// The tool could not be loaded.
     #[error(transparent)]
     Tool(#[from] ToolError),
+    /// A tool library could not be imported.
+    #[error(transparent)]
+    Import(#[from] touchoff::import::ImportError),
+    /// A tool library has no such tool.
+    #[error(
+        "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
+    )]
+    NoSuchEntry {
+        /// The requested tool.
+        name: String,
+        /// The library.
+        file: String,
+    },
     /// The requested proof is not possible.
     #[error(transparent)]
     Uncertified(#[from] touchoff::certify::NotCertifiable),

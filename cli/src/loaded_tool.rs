@@ -1,6 +1,6 @@
 //! Tools as the command line names them: built in, or from `.tool` files.
 
-use crate::arguments::ParamArguments;
+use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use crate::output::show;
 use std::ffi::OsStr;
@@ -9,8 +9,9 @@ use tool_dsl::diagnostic::escaped;
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile_with_arguments};
 use tools_library::TOOLS;
-use touchoff::Tool;
+use touchoff::import::Library;
 use touchoff::tool::Interpreted;
+use touchoff::{Escaped, Tool};
 
 /// A built-in tool, or one from a `.tool` file.
 pub(crate) enum LoadedTool {
@@ -23,7 +24,11 @@ impl LoadedTool {
     ///
     /// # Errors
     /// If there is no such tool, its file cannot be loaded, or a built-in tool is given values.
-    pub(crate) fn load(name: &OsStr, params: &ParamArguments) -> Result<LoadedTool, Failure> {
+    pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
+        let params = &arguments.params;
+        if let Some(library) = &arguments.library {
+            return Ok(LoadedTool::File(Box::new(from_library(name, library, params)?)));
+        }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
         }
@@ -41,6 +46,31 @@ impl LoadedTool {
             LoadedTool::File(tool) => &**tool,
         }
     }
+}
+
+/// Loads a tool of a library or of a folder of `.tool` files.
+fn from_library(
+    name: &OsStr,
+    library: &Path,
+    params: &ParamArguments,
+) -> Result<Interpreted, Failure> {
+    if library.is_dir() {
+        let file = library.join(name);
+        let file = if file.is_file() { file } else { file.with_extension("tool") };
+        return load_file(&file, params);
+    }
+    let name = name.to_string_lossy();
+    let imported = Library::read(library)?;
+    let tool = imported.find(&name).ok_or_else(|| Failure::NoSuchEntry {
+        name: name.into_owned(),
+        file: library.display().to_string(),
+    })?;
+    let folder = tempfile::tempdir()?;
+    let tool_file = tool.write_to(folder.path())?;
+    for note in &tool.entry.notes {
+        message!("warning: {}: {note}", Escaped(tool.entry.label()));
+    }
+    load_file(&tool_file, params)
 }
 
 /// Returns a built-in tool by its name.

@@ -13,6 +13,7 @@ mod explain;
 mod failure;
 mod fmt;
 mod haptic;
+mod import;
 mod lengths;
 mod loaded_tool;
 mod part;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Path(arguments) => postures::path::path(&arguments, json).map(success),
         Command::Sample(arguments) => part::sample(&arguments, json).map(success),
         Command::Bench(arguments) => bench::bench(&arguments, json).map(success),
+        Command::Import(arguments) => import::import(&arguments, json),
         Command::Tools(arguments) => tools::tools(&arguments, json).map(success),
         Command::Check(arguments) => check::check(&arguments, json),
         Command::Explain(arguments) => {

@@ -105,6 +105,7 @@
 //! |---|---|
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
+//! | `import` | tool libraries of CAM systems as `.tool` files: `import::Library`; implies `interpreter` |
 //! | `haptic` | the haptic loop |
 //! | `spacenav` | a SpaceMouse in the loop; implies `haptic` |
 //! | `postures` | posture maps, sweeps and paths; implies `parallel` |
@@ -140,6 +141,8 @@ mod escape;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 mod id;
+#[cfg(feature = "import")]
+pub mod import;
 mod input;
 mod interval;
 mod keywords;

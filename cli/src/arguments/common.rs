@@ -42,6 +42,23 @@ impl ParamArguments {
     }
 }
 
+/// The source of the tools that are named, and values for their params.
+#[derive(Args, Default)]
+pub(crate) struct ToolArguments {
+    /// Library of the tools that `--tool` names: one that `touchoff import` reads, with tools by name, title or number,
+    /// or a folder of `.tool` files.
+    #[arg(long = "tools", value_name = "LIBRARY|DIR")]
+    pub(crate) library: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) params: ParamArguments,
+}
+
+impl ToolArguments {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.library.is_none() && self.params.is_empty()
+    }
+}
+
 /// The part, and the sampling of its points.
 #[derive(Args)]
 pub(crate) struct PartFile {

@@ -1,7 +1,7 @@
 //! The arguments of the commands that compute contact: `run`, `verify`, `haptic`, `sample` and `bench`.
 
 use super::values::{allowance, core, count, length, point, positive, rate};
-use super::{MeshFile, ParamArguments, PartFile};
+use super::{MeshFile, PartFile, ToolArguments};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::ffi::OsString;
@@ -17,7 +17,7 @@ pub(crate) struct Sample {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: Option<OsString>,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Output file for the points.
     #[arg(short, long, value_name = "OUT.touchoff")]
     pub(crate) output: PathBuf,
@@ -31,7 +31,7 @@ pub(crate) struct Run {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: OsString,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit.
     #[arg(long, value_name = "FILE")]
     pub(crate) program: PathBuf,
@@ -58,7 +58,7 @@ pub(crate) struct Verify {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: OsString,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit.
     #[arg(long, value_name = "FILE")]
     pub(crate) program: PathBuf,
@@ -91,7 +91,7 @@ pub(crate) struct Haptic {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: OsString,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Device that moves the tool.
     #[arg(long, value_enum, default_value_t = DeviceKind::Hand)]
     pub(crate) device: DeviceKind,
@@ -178,7 +178,7 @@ pub(crate) struct Bench {
     #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
     pub(crate) tool: Option<OsString>,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Program of the tool along the part: APT-CL, or a table of poses, in the part's unit.
     #[arg(long, value_name = "FILE", requires = "part")]
     pub(crate) program: Option<PathBuf>,

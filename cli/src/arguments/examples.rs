@@ -56,6 +56,13 @@ Examples:
   Save as many points as miss no depth above 0.05 mm:
     touchoff sample --part part.stl --unit mm --sampling-error 0.05 -o part.touchoff";
 
+pub(super) const IMPORT: &str = "\
+Examples:
+  Import all tools of a library, and list them:
+    touchoff import library.json -o tools
+  Only list them:
+    touchoff import library.json --list";
+
 pub(super) const BENCH: &str = "\
 Examples:
   The thesis's tube, in some seconds:

@@ -7,9 +7,9 @@ pub(crate) mod postures;
 mod tools;
 mod values;
 
-pub(crate) use common::{MeshFile, ParamArguments, PartFile};
+pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
 pub(crate) use contact::{Bench, DeviceKind, Haptic, Run, Sample, Verify};
-pub(crate) use tools::{Check, Draw, Expand, Explain, Fmt, Stage, Tools, ToolsCommand};
+pub(crate) use tools::{Check, Draw, Expand, Explain, Fmt, Import, Stage, Tools, ToolsCommand};
 
 use clap::{Parser, Subcommand};
 
@@ -27,7 +27,7 @@ Exit status:
      rewrite
   2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, or a
      program that could not be checked
-  3  `check` only warns
+  3  `check` only warns; `import` left a tool out
   130  a signal ended `haptic`
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
 disk, is a failure. A file is replaced once it is whole: one that cannot be written is left as it was.";
@@ -89,6 +89,11 @@ pub(crate) enum Command {
     /// certified depth) and its bound.
     #[command(after_help = examples::BENCH)]
     Bench(Box<Bench>),
+    /// Import the tools of a CAM system's library as `.tool` files, with a proof of each.
+    ///
+    /// Cutters and holders become files of their own, which the tool mounts. The exit status is 3 if a tool was left out.
+    #[command(after_help = examples::IMPORT)]
+    Import(Import),
     /// List the built-in tools or the tools of files, or print the text of a built-in tool.
     #[command(after_help = examples::TOOLS)]
     Tools(Tools),

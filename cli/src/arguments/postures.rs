@@ -3,7 +3,7 @@
 use super::values::{
     allowance, direction, direction_count, finite, positive_length, posture_count,
 };
-use super::{MeshFile, ParamArguments};
+use super::{MeshFile, ToolArguments};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::ffi::OsString;
@@ -19,7 +19,7 @@ pub(crate) struct Sweep {
     #[arg(long = "tool", required = true, value_delimiter = ',', value_name = "NAME|FILE.tool")]
     pub(crate) tools: Vec<OsString>,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Number of directions per hemisphere, from 1 to 2000.
     #[arg(long, value_name = "NUMBER", default_value_t = 200, value_parser = direction_count)]
     pub(crate) directions: u16,
@@ -85,7 +85,7 @@ pub(crate) struct Path {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: OsString,
     #[command(flatten)]
-    pub(crate) params: ParamArguments,
+    pub(crate) params: ToolArguments,
     /// Largest depth allowed for surfaces that cut, at cutter locations and between them, in the part's unit
     /// [default: the map's tolerance].
     #[arg(long, value_name = "LENGTH", value_parser = positive_length)]

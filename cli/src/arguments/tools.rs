@@ -39,6 +39,23 @@ pub(crate) enum ToolsCommand {
 }
 
 #[derive(Args)]
+pub(crate) struct Import {
+    /// Libraries: Fusion 360 (`.json`, `.tools`), FreeCAD (`.fctb`, `.fctl`, `.fcholder`), HSM (`.hsmlib`), LinuxCNC
+    /// (`.tbl`), APT and NX (`.apt`, `.cl`, `.cls`).
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
+    /// Output folder [default: the library's name, in the current folder].
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// List the tools, and write nothing.
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Import only the tool with this name, title or number.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) only: Option<String>,
+}
+
+#[derive(Args)]
 pub(crate) struct Check {
     /// `.tool` files to check.
     #[arg(required = true, value_name = "FILE.tool")]

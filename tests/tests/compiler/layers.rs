@@ -44,6 +44,7 @@ const RUNTIME: &[&str] = &[
     "pose",
     "motion",
     "tool",
+    "import",
     "bvh",
     "cloud",
     "point_bvh",

@@ -1,0 +1,217 @@
+//! `touchoff import`: tools of CAM systems become `.tool` files, each proved.
+
+use crate::arguments::Import;
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::progress::Progress;
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use tool_dsl::compile;
+use tool_dsl::prove::Certificate;
+use tool_dsl::source::Source;
+use touchoff::Escaped;
+use touchoff::import::{ImportError, ImportedTool, Library};
+
+/// The exit status if a tool was left out; `check` has the same for warnings.
+const LEFT_OUT: u8 = 3;
+
+/// One line of `import --json`: a tool, or an entry that was left out.
+#[derive(Serialize)]
+struct Row<'a> {
+    source: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    number: Option<u32>,
+    #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
+    kind: Option<&'a str>,
+    title: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stickout: Option<f64>,
+    /// Whether depth is proved to be the distance to the surface; absent with `--list`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proved: Option<bool>,
+    notes: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<&'a str>,
+}
+
+/// Imports libraries, and prints one line per tool.
+pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure> {
+    let mut out = Output::lines();
+    let mut left_out = 0;
+    for file in &arguments.files {
+        left_out += Run { arguments, file, json }.library(&mut out)?;
+    }
+    out.flush()?;
+    Ok(if left_out == 0 { ExitCode::SUCCESS } else { ExitCode::from(LEFT_OUT) })
+}
+
+/// The import of one library.
+struct Run<'a> {
+    arguments: &'a Import,
+    file: &'a Path,
+    json: bool,
+}
+
+impl Run<'_> {
+    /// Imports the library, and returns the number of tools left out.
+    fn library(&self, out: &mut Output) -> Result<usize, Failure> {
+        let library = Library::read(self.file)?;
+        let tools = self.wanted(&library)?;
+        let mut left_out = 0;
+        if self.arguments.only.is_none() {
+            for skipped in library.skipped() {
+                self.skip(out, &skipped.name, &skipped.reason)?;
+            }
+            left_out = library.skipped().len();
+        }
+        if self.arguments.list {
+            for tool in &tools {
+                self.print(out, tool, None)?;
+            }
+            return Ok(left_out);
+        }
+        let folder = match &self.arguments.output {
+            Some(folder) => folder.clone(),
+            None => PathBuf::from(self.file.file_stem().unwrap_or_default()),
+        };
+        for (tool, proof) in tools.iter().zip(prove(&tools, self.json)?) {
+            match proof {
+                Ok(exact) => {
+                    tool.write_to(&folder)?;
+                    self.print(out, tool, Some(exact))?;
+                }
+                Err(reason) => {
+                    self.skip(out, tool.entry.label(), &reason)?;
+                    left_out += 1;
+                }
+            }
+        }
+        Ok(left_out)
+    }
+
+    /// Returns the tools to import.
+    fn wanted<'l>(&self, library: &'l Library) -> Result<Vec<&'l ImportedTool>, Failure> {
+        let Some(only) = &self.arguments.only else { return Ok(library.tools().iter().collect()) };
+        let tool = library.find(only).ok_or_else(|| Failure::NoSuchEntry {
+            name: only.clone(),
+            file: self.file.display().to_string(),
+        })?;
+        Ok(vec![tool])
+    }
+
+    fn print(
+        &self,
+        out: &mut Output,
+        tool: &ImportedTool,
+        proved: Option<bool>,
+    ) -> Result<(), Failure> {
+        let entry = &tool.entry;
+        let notes: Vec<String> = entry.notes.iter().map(ToString::to_string).collect();
+        if self.json {
+            let row = Row {
+                source: self.file.display().to_string(),
+                file: Some(tool.path()),
+                number: entry.number,
+                kind: Some(&entry.kind),
+                title: &entry.title,
+                unit: Some(entry.unit.symbol()),
+                stickout: entry.stickout,
+                proved,
+                notes,
+                left_out: None,
+            };
+            serde_json::to_writer(&mut *out, &row)?;
+            return Ok(writeln!(out)?);
+        }
+        let number = entry.number.map_or_else(|| "-".to_owned(), |number| format!("T{number}"));
+        let proof = match proved {
+            None => "",
+            Some(true) => "  proved: depth is the distance",
+            Some(false) => "  not proved: run `touchoff check`",
+        };
+        writeln!(
+            out,
+            "{number:<6} {:<24} {}  {}{proof}",
+            Escaped(&entry.kind),
+            tool.path(),
+            Escaped(&entry.title)
+        )?;
+        for note in notes {
+            message!("warning: {}: {note}", tool.path());
+        }
+        Ok(())
+    }
+
+    fn skip(&self, out: &mut Output, name: &str, reason: &str) -> Result<(), Failure> {
+        if self.json {
+            let row = Row {
+                source: self.file.display().to_string(),
+                file: None,
+                number: None,
+                kind: None,
+                title: name,
+                unit: None,
+                stickout: None,
+                proved: None,
+                notes: Vec::new(),
+                left_out: Some(reason),
+            };
+            serde_json::to_writer(&mut *out, &row)?;
+            return Ok(writeln!(out)?);
+        }
+        message!("left out: {}: {reason}", Escaped(name));
+        Ok(())
+    }
+}
+
+/// The proof of a tool: whether depth is proved to be the distance, or why it does not compile.
+type Proof = Result<bool, String>;
+
+/// Compiles and proves tools on all cores, in a temporary folder.
+fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
+    let folder = tempfile::tempdir()
+        .map_err(|source| ImportError::Unwritable { file: std::env::temp_dir(), source })?;
+    let files = tools.iter().map(|tool| tool.write_to(folder.path()));
+    let files: Vec<PathBuf> = files.collect::<Result<_, _>>()?;
+    let progress = Progress::steps(files.len(), "tools", json);
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut proofs = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(file) = files.get(index) else { return proofs };
+            proofs.push((index, proof(file)));
+            progress.advance(1);
+        }
+    };
+    let cores = thread::available_parallelism().map_or(1, Into::into).min(files.len().max(1));
+    let mut proofs: Vec<(usize, Proof)> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().expect("a proof does not panic"))
+            .collect()
+    });
+    proofs.sort_by_key(|(index, _)| *index);
+    Ok(proofs.into_iter().map(|(_, proof)| proof).collect())
+}
+
+fn proof(file: &Path) -> Proof {
+    let source = Source::read(file).map_err(|error| error.to_string())?;
+    let compiled = compile(&source);
+    match compiled.tool() {
+        Some(tool) => Ok(Certificate::prove(tool).is_exact()),
+        None => {
+            let first = compiled.diagnostics().first();
+            let reason = first.map_or_else(String::new, |diagnostic| diagnostic.message());
+            Err(format!("its dimensions are no solid: {reason}"))
+        }
+    }
+}

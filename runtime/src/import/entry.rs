@@ -1,0 +1,199 @@
+//! The tools of a library, in one form for all formats.
+
+use super::shape::{Cutter, ShapeError};
+use super::term::decimal;
+use crate::unit::Unit;
+use std::fmt;
+
+/// A tool of a library.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Entry {
+    /// The tool number, by which a program calls the tool.
+    pub number: Option<u32>,
+    /// The type, in the library's words.
+    pub kind: String,
+    /// The description; may be empty.
+    pub title: String,
+    /// Vendor, product and identifier, as far as the library states them.
+    pub origin: Vec<(&'static str, String)>,
+    /// The unit of the tool's lengths.
+    pub unit: Unit,
+    /// The length from the tip to the holder, in `unit`.
+    pub stickout: Option<f64>,
+    /// What was assumed, and what the library contradicts itself in.
+    pub notes: Vec<Note>,
+    pub(super) cutter: Option<Cutter>,
+    pub(super) shaft: Vec<Section>,
+    pub(super) holder: Option<Holder>,
+}
+
+/// A tool of a library that has no shape here.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Skipped {
+    /// Its position in the library, from 1.
+    pub position: usize,
+    /// Its description, or its type if it has none.
+    pub name: String,
+    /// Why it was left out.
+    pub reason: String,
+}
+
+/// A conical piece of a shaft or a holder, from the tip's side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Section {
+    pub(super) height: f64,
+    pub(super) lower_diameter: f64,
+    pub(super) upper_diameter: f64,
+}
+
+/// A holder.
+#[derive(Clone, Debug)]
+pub(super) struct Holder {
+    pub(super) title: String,
+    pub(super) origin: Vec<(&'static str, String)>,
+    pub(super) unit: Unit,
+    pub(super) sections: Vec<Section>,
+}
+
+/// Something that a reader of the imported tool should know.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// The library does not state this; the second text says what the imported tool has.
+    Unstated(&'static str, String),
+    /// Two statements of the library contradict each other. The last text says which was taken.
+    Contradiction {
+        /// The first statement and its value.
+        first: (&'static str, f64),
+        /// The second.
+        second: (&'static str, f64),
+        /// The one that was taken.
+        taken: &'static str,
+    },
+    /// The holder begins below the end of the flutes: the collet holds the flutes.
+    FlutesInHolder {
+        /// The length of the flutes.
+        flutes: f64,
+        /// The length from the tip to the holder.
+        stickout: f64,
+    },
+    /// The shank is wider than the holder's lower end.
+    ShankTooWide {
+        /// The diameter of the shank.
+        shank: f64,
+        /// The diameter of the holder's lower end.
+        nose: f64,
+    },
+    /// The overall length does not reach the holder. The shank was drawn up to it.
+    TooShort {
+        /// The overall length.
+        length: f64,
+        /// The length from the tip to the holder.
+        stickout: f64,
+    },
+    /// The origin of the library's tool is this far above its tip, while the tip is the origin here.
+    Origin(f64),
+    /// A neck is thinner than a twentieth of the cutting diameter: it would break.
+    ThinNeck {
+        /// The diameter of the neck.
+        neck: f64,
+        /// The cutting diameter.
+        diameter: f64,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Note::Unstated(what, taken) => {
+                write!(f, "the library does not state the {what}: {taken}")
+            }
+            Note::Contradiction { first, second, taken } => write!(
+                f,
+                "the {} is {}, but the {} is {}: the {taken} was taken",
+                first.0,
+                decimal(first.1),
+                second.0,
+                decimal(second.1)
+            ),
+            Note::FlutesInHolder { flutes, stickout } => write!(
+                f,
+                "the flutes are {} long, but the tool sticks out {}: the holder clamps the flutes; lengthen the \
+                 stick-out",
+                decimal(*flutes),
+                decimal(*stickout)
+            ),
+            Note::ShankTooWide { shank, nose } => write!(
+                f,
+                "the shank of {} does not fit into the holder, whose lower end is {} wide: check both",
+                decimal(*shank),
+                decimal(*nose)
+            ),
+            Note::TooShort { length, stickout } => write!(
+                f,
+                "the tool is {} long, but its holder begins at {}: the shank was drawn up to the holder",
+                decimal(*length),
+                decimal(*stickout)
+            ),
+            Note::Origin(above) => write!(
+                f,
+                "programs of the library's system have the origin {} above the tip, while here the tip is the origin: \
+                 shift such a program by that much",
+                decimal(*above)
+            ),
+            Note::ThinNeck { neck, diameter } => write!(
+                f,
+                "the neck of {} under a diameter of {} is thinner than a neck can be: check the shoulder diameter",
+                decimal(*neck),
+                decimal(*diameter)
+            ),
+        }
+    }
+}
+
+impl Entry {
+    /// Returns what to call the tool: its description, or its type.
+    pub fn label(&self) -> &str {
+        if self.title.is_empty() { &self.kind } else { &self.title }
+    }
+
+    /// Adds the notes that follow from the dimensions, whatever the format.
+    pub(super) fn add_notes(&mut self) {
+        let Some(cutter) = &self.cutter else { return };
+        let mut notes = Vec::new();
+        if let (Some(holder), Some(stickout)) = (&self.holder, self.stickout) {
+            if cutter.flute_length > stickout {
+                notes.push(Note::FlutesInHolder { flutes: cutter.flute_length, stickout });
+            }
+            if cutter.length < stickout {
+                notes.push(Note::TooShort { length: cutter.length, stickout });
+            }
+            let nose = holder.sections.first().map(|section| section.lower_diameter);
+            let factor = holder.unit.factor_to(self.unit);
+            if let (Some(nose), Some(shank)) = (nose, self.shank_diameter())
+                && shank > nose * factor * (1.0 + 1e-9)
+            {
+                notes.push(Note::ShankTooWide { shank, nose: nose * factor });
+            }
+        }
+        if let Some((_, Some(neck))) = cutter.shoulder
+            && neck < cutter.diameter / 20.0
+        {
+            notes.push(Note::ThinNeck { neck, diameter: cutter.diameter });
+        }
+        self.notes.extend(notes);
+    }
+
+    /// Returns the diameter that the holder clamps.
+    fn shank_diameter(&self) -> Option<f64> {
+        let from_shaft = self.shaft.last().map(|section| section.upper_diameter);
+        from_shaft.or(self.cutter.as_ref()?.shank_diameter)
+    }
+}
+
+/// Returns the sentence that says why a tool was left out.
+pub(super) fn reason(error: &ShapeError) -> String {
+    format!("{error}: correct it in the library and export it again")
+}

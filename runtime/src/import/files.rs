@@ -1,0 +1,218 @@
+//! Writes imported tools as `.tool` files.
+
+use super::entry::{Entry, Holder, Section};
+use super::name::{Names, quotable, type_name};
+use super::outline::{Outline, plain};
+use super::shape::{Cutter, ShapeError};
+use super::term::{Term, decimal, rounded};
+use crate::unit::Unit;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// A file of an imported tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolFile {
+    /// The path relative to the output folder, with `/`.
+    pub path: String,
+    /// The text.
+    pub text: String,
+}
+
+/// Writes files for one library. Holders with the same sections are one file.
+#[derive(Debug, Default)]
+pub(super) struct Writer {
+    tools: Names,
+    holders: Names,
+    holder_files: BTreeMap<String, ToolFile>,
+}
+
+impl Writer {
+    /// Returns the name of a tool, and its files: those that it mounts, then its own.
+    pub(super) fn write(
+        &mut self,
+        entry: &Entry,
+        source: &str,
+    ) -> Result<(String, Vec<ToolFile>), ShapeError> {
+        let mut files = Vec::new();
+        let otherwise = match entry.number {
+            Some(number) => format!("{} {number}", entry.kind),
+            None => entry.kind.clone(),
+        };
+        let Some(cutter) = &entry.cutter else {
+            let Some(holder) = &entry.holder else { return Err(ShapeError::Unstated("shape")) };
+            let path = self.holder(holder, source, &mut files)?;
+            return Ok((path.trim_end_matches(".tool").to_owned(), files));
+        };
+        let name = self.tools.file(&entry.title, &otherwise);
+        let stickout = entry.stickout.filter(|_| entry.holder.is_some());
+        let mut cutter = cutter.clone();
+        if let Some(stickout) = stickout {
+            cutter.length = cutter.length.max(stickout);
+        }
+        let outline = cutter.outline()?;
+        let heading = heading(entry, source);
+        let title = quotable(&entry.title);
+        if stickout.is_none() && entry.shaft.is_empty() {
+            let mut text = heading;
+            begin(&mut text, &type_name(&name), &title, entry.unit);
+            outline.write(&mut text);
+            text.push_str("}\n");
+            files.push(ToolFile { path: format!("{name}.tool"), text });
+            return Ok((name, files));
+        }
+        let mut text = String::new();
+        begin(&mut text, &format!("{}Cutter", type_name(&name)), &title, entry.unit);
+        outline.write(&mut text);
+        text.push_str("}\n");
+        files.push(ToolFile { path: format!("cutters/{name}.tool"), text });
+
+        let mut assembly = heading;
+        begin(&mut assembly, &type_name(&name), &title, entry.unit);
+        if let Some(stickout) = stickout {
+            let _ = writeln!(assembly, "    param stickout = {};", decimal(stickout));
+        }
+        let _ = write!(assembly, "\n    mount \"cutters/{name}.tool\" as cutter;\n");
+        let from = rounded(shaft_start(&cutter, &outline));
+        // A shaft that begins above the holder's lower end is inside the holder.
+        let sections = clipped(&entry.shaft, cutter.length - from);
+        if !sections.is_empty() && stickout.is_none_or(|stickout| stickout > from) {
+            let outline = sections_outline(&sections, "shaft")?;
+            let mut text = String::new();
+            begin(&mut text, &format!("{}Shaft", type_name(&name)), &title, entry.unit);
+            outline.write(&mut text);
+            text.push_str("}\n");
+            files.push(ToolFile { path: format!("shafts/{name}.tool"), text });
+            let _ = writeln!(
+                assembly,
+                "    mount \"shafts/{name}.tool\" as shaft at z = {};",
+                decimal(from)
+            );
+        }
+        if let (Some(holder), Some(_)) = (&entry.holder, stickout) {
+            let path = self.holder(holder, source, &mut files)?;
+            let _ = writeln!(assembly, "    mount \"{path}\" as holder at z = stickout;");
+        }
+        assembly.push_str("}\n");
+        files.push(ToolFile { path: format!("{name}.tool"), text: assembly });
+        Ok((name, files))
+    }
+
+    /// Adds a holder's file, and returns its path.
+    fn holder(
+        &mut self,
+        holder: &Holder,
+        source: &str,
+        files: &mut Vec<ToolFile>,
+    ) -> Result<String, ShapeError> {
+        let outline = sections_outline(&holder.sections, "body")?;
+        let title = quotable(&holder.title);
+        let mut body = format!("    units {};\n", holder.unit.symbol());
+        outline.write(&mut body);
+        let key = format!("{title}\n{body}");
+        if let Some(known) = self.holder_files.get(&key) {
+            files.push(known.clone());
+            return Ok(known.path.clone());
+        }
+        let name = self.holders.file(&holder.title, "holder");
+        let path = format!("holders/{name}.tool");
+        let mut text = format!("// Imported from {}.\n", quotable(source));
+        push_origin(&mut text, &holder.origin);
+        let _ = writeln!(text, "tool {} \"{title}\" {{", type_name(&name));
+        text.push_str(&body);
+        text.push_str("}\n");
+        let file = ToolFile { path: path.clone(), text };
+        self.holder_files.insert(key, file.clone());
+        files.push(file);
+        Ok(path)
+    }
+}
+
+/// Returns the height at which a shaft of sections begins: the end of the shoulder, or of the cutting part.
+fn shaft_start(cutter: &Cutter, outline: &Outline) -> f64 {
+    let stated = cutter.shoulder.map_or(0.0, |(length, _)| length);
+    stated.max(cutter.flute_length).max(outline.cutting_end())
+}
+
+fn begin(text: &mut String, name: &str, title: &str, unit: Unit) {
+    let _ = writeln!(text, "tool {name} \"{title}\" {{\n    units {};", unit.symbol());
+}
+
+/// Returns the comment above a tool: its source, its origin and the notes.
+fn heading(entry: &Entry, source: &str) -> String {
+    let number = entry.number.map_or_else(String::new, |number| format!(", T{number}"));
+    let mut text =
+        format!("// Imported from {}: {}{number}.\n", quotable(source), quotable(&entry.kind));
+    push_origin(&mut text, &entry.origin);
+    for note in &entry.notes {
+        let _ = writeln!(text, "// Note: {}.", quotable(&note.to_string()));
+    }
+    text
+}
+
+fn push_origin(text: &mut String, origin: &[(&'static str, String)]) {
+    let origin: Vec<String> = origin
+        .iter()
+        .map(|(what, value)| (what, quotable(value)))
+        .filter(|(_, value)| !value.is_empty())
+        .map(|(what, value)| format!("{what} {value}"))
+        .collect();
+    if !origin.is_empty() {
+        let _ = writeln!(text, "// {}.", origin.join(", "));
+    }
+}
+
+/// Returns sections cut off at a height, or continued to it as a cylinder.
+fn clipped(sections: &[Section], height: f64) -> Vec<Section> {
+    let mut clipped = Vec::new();
+    let mut z = 0.0;
+    for section in sections {
+        if z >= height {
+            break;
+        }
+        let rest = height - z;
+        z += section.height;
+        if section.height > rest {
+            let part = rest / section.height;
+            let change = section.upper_diameter - section.lower_diameter;
+            let upper_diameter = section.lower_diameter + part * change;
+            clipped.push(Section { height: rest, upper_diameter, ..*section });
+        } else {
+            clipped.push(*section);
+        }
+    }
+    if let Some(last) = clipped.last()
+        && z < height
+    {
+        let diameter = last.upper_diameter;
+        let height = height - z;
+        clipped.push(Section { height, lower_diameter: diameter, upper_diameter: diameter });
+    }
+    clipped
+}
+
+/// Returns the half section of a stack of sections.
+fn sections_outline(sections: &[Section], surface: &'static str) -> Result<Outline, ShapeError> {
+    let mut outline = Outline::new();
+    let surface = plain(surface);
+    let mut z = 0.0;
+    for section in sections {
+        for diameter in [section.lower_diameter, section.upper_diameter] {
+            if !(diameter > 0.0 && diameter.is_finite()) {
+                return Err(ShapeError::OutOfRange("diameter of a section", diameter));
+            }
+        }
+        if !(section.height >= 0.0 && section.height.is_finite()) {
+            return Err(ShapeError::OutOfRange("height of a section", section.height));
+        }
+        let [lower, upper] = [section.lower_diameter, section.upper_diameter]
+            .map(|diameter| Term::number(rounded(diameter / 2.0)));
+        outline.line(&lower, &Term::number(rounded(z)), surface);
+        z += section.height;
+        outline.line(&upper, &Term::number(rounded(z)), surface);
+    }
+    if z <= 0.0 {
+        return Err(ShapeError::Unstated("height of any section"));
+    }
+    outline.line(&Term::number(0.0), &Term::number(rounded(z)), surface);
+    Ok(outline)
+}

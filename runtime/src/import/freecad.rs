@@ -1,0 +1,291 @@
+//! Tool bits (`.fctb`), libraries (`.fctl`) and holders (`.fcholder`) of FreeCAD.
+//!
+//! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units. A bit whose shape was
+//! changed by its user cannot be told from one of FreeCAD's own.
+
+use super::entry::{Entry, Holder, Note, Section};
+use super::shape::{Cutter, Shape};
+use super::{Found, Problem, bytes, text};
+use crate::unit::Unit;
+use serde_json::{Map, Value};
+use std::path::{Component, Path, PathBuf};
+
+type Object = Map<String, Value>;
+
+/// Reads a tool bit.
+pub(super) fn bit(content: &str) -> Result<Vec<Found>, String> {
+    let bit = object(content)?;
+    Ok(vec![read_bit(&bit, None)])
+}
+
+/// Reads a library and the bits that it lists, which are in its folder or in `Bit` beside it.
+pub(super) fn library(content: &str, file: &Path) -> Result<Vec<Found>, String> {
+    let library = object(content)?;
+    let tools = library.get("tools").and_then(Value::as_array).ok_or("there is no list `tools`")?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    Ok(tools.iter().map(|tool| listed_bit(tool, folder)).collect())
+}
+
+fn listed_bit(tool: &Value, folder: &Path) -> Found {
+    let path = tool.get("path").and_then(Value::as_str).unwrap_or("");
+    let number = tool.get("nr").and_then(Value::as_u64).and_then(|n| u32::try_from(n).ok());
+    let problem = |reason: String| Problem::new(path, &reason);
+    let relative = Path::new(path);
+    // A library must not read files elsewhere.
+    if path.is_empty() || !relative.components().all(|part| matches!(part, Component::Normal(_))) {
+        return Err(problem("its path is not below the library's folder".to_owned()));
+    }
+    let places: [PathBuf; 3] = [
+        folder.join(relative),
+        folder.join("../Bit").join(relative),
+        folder.join("Bit").join(relative),
+    ];
+    let Some(file) = places.iter().find(|place| place.is_file()) else {
+        return Err(problem("there is no such file beside the library: copy it there".to_owned()));
+    };
+    let content = bytes(file).map_err(|error| problem(error.to_string()))?;
+    let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
+    read_bit(&bit, number)
+}
+
+/// Reads a holder.
+pub(super) fn holder(content: &str) -> Result<Vec<Found>, String> {
+    let holder = object(content)?;
+    let title = string(&holder, "name");
+    Ok(vec![read_holder(&holder, title).map_err(|error| Problem::new(title, &error))])
+}
+
+fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
+    let unit = match string(holder, "units") {
+        "mm" => Unit::Millimetre,
+        "in" | "inch" => Unit::Inch,
+        other => return Err(format!("its unit is `{other}`, not `mm` or `inch`")),
+    };
+    let profile = holder.get("profile").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let point = |value: &Value| {
+        let number = |k: usize| value.get(k)?.as_f64().filter(|number| number.is_finite());
+        Some([number(0)?, number(1)?])
+    };
+    let points: Option<Vec<[f64; 2]>> = profile.iter().map(point).collect();
+    let points = points.ok_or("a point of its profile is no pair of numbers")?;
+    let mut sections = Vec::new();
+    for pair in points.windows(2) {
+        let ([below, low], [above, high]) = (pair[0], pair[1]);
+        if high < low {
+            return Err("its profile runs back toward the tip".to_owned());
+        }
+        if high > low {
+            sections.push(Section {
+                height: high - low,
+                lower_diameter: 2.0 * below,
+                upper_diameter: 2.0 * above,
+            });
+        }
+    }
+    let mut entry = entry(unit, "holder", title, holder);
+    entry.holder =
+        Some(Holder { title: title.to_owned(), origin: entry.origin.clone(), unit, sections });
+    Ok(entry)
+}
+
+fn read_bit(bit: &Object, number: Option<u32>) -> Found {
+    let title = string(bit, "name");
+    let read = || -> Result<Entry, String> {
+        let shape = string(bit, "shape").trim_end_matches(".fcstd").trim_end_matches(".FCStd");
+        let mut entry = entry(Unit::Millimetre, shape, title, bit);
+        entry.number = number;
+        let empty = Object::new();
+        let parameters = bit.get("parameter").and_then(Value::as_object).unwrap_or(&empty);
+        entry.cutter = Some(cutter(shape, &Parameters(parameters), &mut entry.notes)?);
+        Ok(entry)
+    };
+    read().map_err(|error| Problem::new(title, &error))
+}
+
+fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {
+    let origin = [("id", string(object, "id")), ("source", string(object, "source"))];
+    Entry {
+        number: None,
+        kind: kind.to_owned(),
+        title: title.to_owned(),
+        origin: origin
+            .into_iter()
+            .filter(|(_, value)| !value.is_empty())
+            .map(|(name, value)| (name, value.to_owned()))
+            .collect(),
+        unit,
+        stickout: None,
+        notes: Vec::new(),
+        cutter: None,
+        shaft: Vec::new(),
+        holder: None,
+    }
+}
+
+fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cutter, String> {
+    let length = of.length("Length")?;
+    let mut shank_diameter = of.optional_length("ShankDiameter")?;
+    let mut shoulder = None;
+    let flutes = || of.length("CuttingEdgeHeight");
+    let mut diameter = of.length("Diameter")?;
+    let (shape, flute_length) = match shape {
+        "endmill" | "reamer" => (Shape::Flat { corner: 0.0 }, flutes()?),
+        "ballend" => (Shape::Ball, flutes()?),
+        "bullnose" => (Shape::Flat { corner: corner(of, diameter)? }, flutes()?),
+        "chamfer" => {
+            let tip_diameter = of.optional_length("TipDiameter")?.unwrap_or(0.0);
+            let half_angle = of.angle("CuttingEdgeAngle")? / 2.0;
+            let wide = tip_diameter + 2.0 * flutes()? * half_angle.to_radians().tan();
+            if (wide - diameter).abs() > 0.01 * diameter {
+                notes.push(Note::Contradiction {
+                    first: ("diameter", diameter),
+                    second: ("diameter at the end of the cone", super::term::rounded(wide)),
+                    taken: "cone",
+                });
+            }
+            (Shape::Cone { tip_diameter, half_angle }, flutes()?)
+        }
+        "v-bit" => {
+            let tip_diameter = of.optional_length("TipDiameter")?.unwrap_or(0.0);
+            let point_angle = of.angle("CuttingEdgeAngle")?;
+            let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
+            let flute_length = super::term::rounded(cone + flutes()?);
+            (Shape::Drill { tip_diameter, point_angle }, flute_length)
+        }
+        "dovetail" => {
+            let neck = of.length("NeckDiameter")?;
+            shoulder =
+                Some((super::term::rounded(flutes()? + of.length("NeckHeight")?), Some(neck)));
+            (
+                Shape::Dovetail { corner: 0.0, half_angle: of.angle("CuttingEdgeAngle")? / 2.0 },
+                flutes()?,
+            )
+        }
+        "drill" => (Shape::Drill { tip_diameter: 0.0, point_angle: of.angle("TipAngle")? }, length),
+        "tap" => {
+            let point_angle = of.angle("TipAngle")?;
+            let cone = diameter / 2.0 / (point_angle / 2.0).to_radians().tan();
+            let flute_length = super::term::rounded(cone + of.length("CuttingEdgeLength")?);
+            (Shape::Drill { tip_diameter: 0.0, point_angle }, flute_length)
+        }
+        "taperedballnose" => {
+            let half_angle = of.angle("TaperAngle")? / 2.0;
+            let cone_to = of.optional_length("TaperDiameter")?.unwrap_or(0.0);
+            (Shape::TaperedBall { radius: diameter / 2.0, half_angle, cone_to }, flutes()?)
+        }
+        "radius" => {
+            let max_diameter = std::mem::replace(&mut diameter, of.length("TipDiameter")?);
+            (Shape::Radius { corner: of.length("CuttingRadius")?, max_diameter }, flutes()?)
+        }
+        "slittingsaw" => {
+            let cap_height = of.optional_length("CapHeight")?.unwrap_or(0.0);
+            let thickness = of.length("BladeThickness")?;
+            if cap_height > 0.0 {
+                notes.push(Note::Origin(cap_height));
+            }
+            let cap_diameter = of.optional_length("CapDiameter")?.unwrap_or(0.0);
+            let saw = Shape::Saw { thickness, cap_diameter, cap_height };
+            // The length begins at the blade, the cap below it.
+            return Ok(Cutter {
+                shape: saw,
+                diameter,
+                flute_length: super::term::rounded(thickness + cap_height),
+                length: super::term::rounded(length + cap_height),
+                shoulder: None,
+                shank_diameter,
+            });
+        }
+        "probe" => {
+            shank_diameter = of.optional_length("ShaftDiameter")?;
+            (Shape::Probe, diameter / 2.0)
+        }
+        "thread-mill" | "threadmill" => {
+            let neck_diameter = of.length("NeckDiameter")?;
+            shoulder = Some((of.length("NeckLength")?, Some(neck_diameter)));
+            let crest = of.optional_length("Crest")?.unwrap_or(0.0);
+            let angle = of.angle("cuttingAngle")?;
+            (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
+        }
+        other => return Err(format!("the shape `{other}` is none of FreeCAD's own")),
+    };
+    Ok(Cutter { shape, diameter, flute_length, length, shoulder, shank_diameter })
+}
+
+/// Returns the corner radius of a bull nose; older bits state the flat part or the torus instead.
+fn corner(of: &Parameters<'_>, diameter: f64) -> Result<f64, String> {
+    if let Some(corner) = of.optional_length("CornerRadius")?.or(of.optional_length("TorusRadius")?)
+    {
+        return Ok(corner);
+    }
+    match of.optional_length("FlatRadius")? {
+        Some(flat) => Ok(super::term::rounded(diameter / 2.0 - flat)),
+        None => Err("it does not state its `CornerRadius`".to_owned()),
+    }
+}
+
+/// The parameters of a bit.
+struct Parameters<'a>(&'a Object);
+
+impl Parameters<'_> {
+    /// Returns a length in mm.
+    fn length(&self, key: &str) -> Result<f64, String> {
+        self.optional_length(key)?.ok_or_else(|| format!("it does not state its `{key}`"))
+    }
+
+    fn optional_length(&self, key: &str) -> Result<Option<f64>, String> {
+        self.quantity(key, |unit| match unit {
+            "" | "mm" => Some(1.0),
+            "cm" => Some(10.0),
+            "m" => Some(1000.0),
+            "in" | "\"" | "inch" => Some(25.4),
+            "ft" => Some(304.8),
+            "um" | "µm" | "μm" => Some(1e-3),
+            _ => None,
+        })
+    }
+
+    /// Returns an angle in degrees.
+    fn angle(&self, key: &str) -> Result<f64, String> {
+        self.quantity(key, |unit| match unit {
+            "" | "°" | "deg" => Some(1.0),
+            "rad" => Some(180.0 / std::f64::consts::PI),
+            _ => None,
+        })?
+        .ok_or_else(|| format!("it does not state its `{key}`"))
+    }
+
+    fn quantity(
+        &self,
+        key: &str,
+        factor: impl Fn(&str) -> Option<f64>,
+    ) -> Result<Option<f64>, String> {
+        let text = match self.0.get(key) {
+            None | Some(Value::Null) => return Ok(None),
+            Some(Value::Number(number)) => return Ok(number.as_f64()),
+            Some(Value::String(text)) => text.trim(),
+            Some(other) => return Err(format!("its `{key}` is {other}, no quantity")),
+        };
+        let end = text
+            .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e' | 'E')))
+            .unwrap_or(text.len());
+        let (number, unit) = text.split_at(end);
+        let value: Option<f64> = number.parse().ok();
+        match (value.filter(|value| value.is_finite()), factor(unit.trim())) {
+            (Some(value), Some(1.0)) => Ok(Some(value)),
+            (Some(value), Some(factor)) => Ok(Some(super::term::rounded(value * factor))),
+            _ => Err(format!("its `{key}` is `{text}`, no number with a unit")),
+        }
+    }
+}
+
+fn object(content: &str) -> Result<Object, String> {
+    match serde_json::from_str(content) {
+        Ok(Value::Object(object)) => Ok(object),
+        Ok(_) => Err("it is no JSON object".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn string<'a>(object: &'a Object, key: &str) -> &'a str {
+    object.get(key).and_then(Value::as_str).unwrap_or("").trim()
+}

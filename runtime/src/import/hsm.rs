@@ -1,0 +1,235 @@
+//! Tool libraries of HSMWorks and its kin (`.hsmlib`), as XML.
+//!
+//! Types and dimensions are those of Fusion 360, under longer names, so each tool is read as one of Fusion's. Two
+//! things differ: `taper-angle` is the whole angle of the point of a drill, and a `section` of a shaft or holder gives
+//! the diameter that the outline reaches after its length, so that the first one is the lower end.
+
+use super::{Found, fusion};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use serde_json::{Map, Value, json};
+
+type Object = Map<String, Value>;
+
+/// The names of dimensions in HSM and in Fusion 360.
+const DIMENSIONS: [(&str, &str); 22] = [
+    ("axial-distance", "axial-distance"),
+    ("body-length", "LB"),
+    ("corner-radius", "RE"),
+    ("diameter", "DC"),
+    ("flute-length", "LCF"),
+    ("lower-radius", "lower-radius"),
+    ("maximum-cutting-diameter", "DCX"),
+    ("number-of-teeth", "NT"),
+    ("overall-length", "OAL"),
+    ("profile-radius", "profile-radius"),
+    ("shaft-diameter", "SFDM"),
+    ("shoulder-diameter", "shoulder-diameter"),
+    ("shoulder-length", "shoulder-length"),
+    ("taper-angle", "TA"),
+    ("thread-pitch", "TP"),
+    ("thread-profile-angle", "thread-profile-angle"),
+    ("tip-angle", "SIG"),
+    ("tip-diameter", "tip-diameter"),
+    ("tip-length", "tip-length"),
+    ("tip-offset", "tip-offset"),
+    ("upper-radius", "upper-radius"),
+    ("assembly-gauge-length", "assemblyGaugeLength"),
+];
+
+/// Reads the tools of a library.
+pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
+    let mut reader = Reader::from_str(text);
+    let mut found = Vec::new();
+    let mut open: Option<Tool> = None;
+    let mut is_library = false;
+    loop {
+        let position = reader.buffer_position();
+        let at = |error: &dyn std::fmt::Display| format!("byte {position}: {error}");
+        match reader.read_event().map_err(|error| at(&error))? {
+            Event::Eof => break,
+            Event::Start(element) => {
+                let name = local_name(&element);
+                match (name.as_str(), &mut open) {
+                    ("tool-library" | "tool-table", None) => is_library = true,
+                    ("tool", None) => open = Some(Tool::new(&element).map_err(|e| at(&e))?),
+                    (_, Some(tool)) => tool.begin(&name, &element).map_err(|e| at(&e))?,
+                    _ => {}
+                }
+            }
+            Event::Empty(element) => {
+                let name = local_name(&element);
+                if let Some(tool) = &mut open {
+                    tool.begin(&name, &element).map_err(|e| at(&e))?;
+                    tool.end(&name);
+                }
+            }
+            Event::Text(text) => {
+                if let Some(tool) = &mut open {
+                    tool.text.push_str(&text.decode().map_err(|e| at(&e))?);
+                }
+            }
+            Event::End(element) => {
+                let name = String::from_utf8_lossy(element.local_name().as_ref()).into_owned();
+                match open.take() {
+                    Some(tool) if name == "tool" => found.push(fusion::tool(&tool.finish())),
+                    Some(mut tool) => {
+                        tool.end(&name);
+                        open = Some(tool);
+                    }
+                    None => {}
+                }
+            }
+            _ => {}
+        }
+    }
+    if open.is_some() || !is_library {
+        return Err("there is no complete `tool-library`".to_owned());
+    }
+    Ok(found)
+}
+
+/// A tool being read, as an object of Fusion's JSON.
+struct Tool {
+    object: Object,
+    geometry: Object,
+    /// The shaft or the holder whose sections are being read, with its sections.
+    stack: Option<(&'static str, Object, Vec<(f64, f64)>)>,
+    text: String,
+}
+
+impl Tool {
+    fn new(element: &BytesStart<'_>) -> Result<Tool, String> {
+        let attributes = attributes(element)?;
+        let mut object = Object::new();
+        for (from, to) in [("type", "type"), ("unit", "unit"), ("guid", "guid")] {
+            if let Some(value) = attribute(&attributes, from) {
+                object.insert(to.to_owned(), json!(value));
+            }
+        }
+        Ok(Tool { object, geometry: Object::new(), stack: None, text: String::new() })
+    }
+
+    fn begin(&mut self, name: &str, element: &BytesStart<'_>) -> Result<(), String> {
+        self.text.clear();
+        let attributes = attributes(element)?;
+        match name {
+            "nc" => {
+                let number = attribute(&attributes, "number").and_then(|n| n.parse::<u32>().ok());
+                self.object.insert("post-process".to_owned(), json!({ "number": number }));
+            }
+            "body" => {
+                for (from, to) in DIMENSIONS {
+                    let Some(text) = attribute(&attributes, from) else { continue };
+                    let value: f64 =
+                        text.parse().map_err(|_| format!("`{from}` is `{text}`, no number"))?;
+                    self.geometry.insert(to.to_owned(), json!(value));
+                }
+                for key in ["tapered-type", "thread-tip-type"] {
+                    if let Some(value) = attribute(&attributes, key) {
+                        self.object.insert(key.to_owned(), json!(value));
+                    }
+                }
+            }
+            "shaft" | "holder" => {
+                let kind = if name == "shaft" { "shaft" } else { "holder" };
+                let mut object = Object::new();
+                let keys = ["description", "guid", "vendor", "product-id", "unit"];
+                for key in keys {
+                    if let Some(value) = attribute(&attributes, key) {
+                        object.insert(key.to_owned(), json!(value));
+                    }
+                }
+                self.stack = Some((kind, object, Vec::new()));
+            }
+            "section" => {
+                if let Some((.., sections)) = &mut self.stack {
+                    let number = |key: &str| {
+                        let text = attribute(&attributes, key).unwrap_or("");
+                        text.parse::<f64>().map_err(|_| format!("`{key}` is `{text}`, no number"))
+                    };
+                    sections.push((number("diameter")?, number("length")?));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, name: &str) {
+        let text = self.text.trim().to_owned();
+        match name {
+            "description" if self.stack.is_none() => {
+                self.object.insert("description".to_owned(), json!(text));
+            }
+            "manufacturer" if self.stack.is_none() => {
+                self.object.insert("vendor".to_owned(), json!(text));
+            }
+            "product-id" if self.stack.is_none() => {
+                self.object.insert("product-id".to_owned(), json!(text));
+            }
+            "shaft" | "holder" => {
+                if let Some((kind, mut object, sections)) = self.stack.take()
+                    && !sections.is_empty()
+                {
+                    object.insert("segments".to_owned(), segments(&sections));
+                    // A holder is in the tool's unit unless it states its own.
+                    if let Some(unit) = self.object.get("unit") {
+                        object.entry("unit").or_insert(unit.clone());
+                    }
+                    self.object.insert(kind.to_owned(), Value::Object(object));
+                }
+            }
+            _ => {}
+        }
+        self.text.clear();
+    }
+
+    fn finish(mut self) -> Value {
+        let kind = self.object.get("type").and_then(Value::as_str).unwrap_or("");
+        if matches!(kind, "drill" | "spot drill" | "counter sink")
+            && let Some(angle) = self.geometry.remove("TA")
+        {
+            self.geometry.insert("SIG".to_owned(), angle);
+        }
+        self.object.insert("geometry".to_owned(), Value::Object(self.geometry));
+        Value::Object(self.object)
+    }
+}
+
+/// Returns the outline of `(diameter, length)` sections as Fusion's segments.
+fn segments(sections: &[(f64, f64)]) -> Value {
+    let mut below = sections[0].0;
+    let mut segments = Vec::new();
+    for (diameter, length) in sections {
+        segments.push(json!({
+            "height": length,
+            "lower-diameter": below,
+            "upper-diameter": diameter,
+        }));
+        below = *diameter;
+    }
+    Value::Array(segments)
+}
+
+fn local_name(element: &BytesStart<'_>) -> String {
+    String::from_utf8_lossy(element.local_name().as_ref()).into_owned()
+}
+
+fn attributes(element: &BytesStart<'_>) -> Result<Vec<(String, String)>, String> {
+    element
+        .attributes()
+        .map(|attribute| {
+            let attribute = attribute.map_err(|error| error.to_string())?;
+            let key = String::from_utf8_lossy(attribute.key.local_name().as_ref()).into_owned();
+            let value = attribute
+                .normalized_value(quick_xml::XmlVersion::Implicit1_0)
+                .map_err(|error| error.to_string())?;
+            Ok((key, value.into_owned()))
+        })
+        .collect()
+}
+
+fn attribute<'a>(attributes: &'a [(String, String)], key: &str) -> Option<&'a str> {
+    attributes.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+}

@@ -1,0 +1,258 @@
+//! Import of tool libraries: CAM systems' tools become `.tool` files.
+//!
+//! [`Library::read`] reads a library of Fusion 360, FreeCAD, HSM or LinuxCNC, or the cutters of an APT or NX program,
+//! and [`ImportedTool::write_to`] writes a `.tool` file for each tool, with the holder in a file of its own that is mounted.
+//! What a format does not state is left open, and a [`Note`] says so; statements that contradict each other are
+//! reported with the one that was taken. A tool without a shape that can be derived is [`Skipped`], with the reason.
+//! The same file gives the same bytes each time.
+//!
+//! ```
+//! use touchoff::import::Library;
+//!
+//! let json = r#"{"data": [{"type": "ball end mill", "unit": "millimeters", "description": "D6 ball",
+//!     "geometry": {"DC": 6, "RE": 3, "LCF": 20, "OAL": 50, "SFDM": 6}}]}"#;
+//! let library = Library::parse("library.json".as_ref(), json.as_bytes())?;
+//! let tool = &library.tools()[0];
+//! assert_eq!(tool.files[0].path, "d6_ball.tool");
+//! assert!(tool.files[0].text.contains("arc to (R, R) center (0, R) as ball cutting;"));
+//! # Ok::<(), touchoff::import::ImportError>(())
+//! ```
+
+mod apt;
+mod entry;
+mod error;
+mod files;
+mod form;
+mod freecad;
+mod fusion;
+mod hsm;
+mod linuxcnc;
+mod name;
+mod outline;
+mod shape;
+mod term;
+#[cfg(test)]
+mod tests;
+
+pub use entry::{Entry, Note, Skipped};
+pub use error::ImportError;
+pub use files::ToolFile;
+
+use crate::tool::Interpreted;
+use entry::reason;
+use files::Writer;
+use std::fs;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// The largest file that is read, and the largest text that an archive may hold, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
+/// The largest number of tools in a library.
+const MAX_TOOLS: usize = 20_000;
+
+/// A tool library.
+#[derive(Clone, Debug)]
+pub struct Library {
+    tools: Vec<ImportedTool>,
+    skipped: Vec<Skipped>,
+}
+
+/// A tool of a library, with its files.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ImportedTool {
+    /// What the library states.
+    pub entry: Entry,
+    /// The tool's name, which is the name of its file without the ending.
+    pub name: String,
+    /// The files: those that it mounts, then its own. Tools with the same holder share its file.
+    pub files: Vec<ToolFile>,
+}
+
+/// What a format's reader returns for one tool.
+type Found = Result<Entry, Problem>;
+
+/// A tool that could not be read.
+struct Problem {
+    name: String,
+    reason: String,
+}
+
+impl Problem {
+    fn new(name: &str, reason: &str) -> Problem {
+        Problem { name: name.to_owned(), reason: reason.to_owned() }
+    }
+}
+
+impl Library {
+    /// Reads a tool library. A FreeCAD `.fctl` reads the `.fctb` files that it lists.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is not in a format that can be read.
+    pub fn read(file: &Path) -> Result<Library, ImportError> {
+        Library::parse(file, &bytes(file)?)
+    }
+
+    /// Reads a tool library from the content of a file. The name gives the format by its ending, and the folder of the
+    /// files that a FreeCAD `.fctl` lists.
+    ///
+    /// # Errors
+    /// If the content is not in the format.
+    pub fn parse(file: &Path, content: &[u8]) -> Result<Library, ImportError> {
+        let ending = file.extension().map(|ending| ending.to_ascii_lowercase());
+        let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or("");
+        let (format, found) = match ending {
+            "json" => ("a Fusion 360 tool library", text(content).and_then(|t| fusion::read(&t))),
+            "tools" => {
+                ("a Fusion 360 tool library", unzipped(content).and_then(|t| fusion::read(&t)))
+            }
+            "fctb" => ("a FreeCAD tool bit", text(content).and_then(|t| freecad::bit(&t))),
+            "fctl" => {
+                ("a FreeCAD tool library", text(content).and_then(|t| freecad::library(&t, file)))
+            }
+            "fcholder" => {
+                ("a FreeCAD tool holder", text(content).and_then(|t| freecad::holder(&t)))
+            }
+            "hsmlib" | "xml" => ("an HSM tool library", text(content).and_then(|t| hsm::read(&t))),
+            "tbl" => ("a LinuxCNC tool table", text(content).and_then(|t| linuxcnc::read(&t))),
+            "apt" | "cl" | "cls" | "apt-cl" | "ncl" => {
+                ("an APT program", text(content).and_then(|t| apt::read(&t)))
+            }
+            _ => return Err(ImportError::UnknownFormat { file: file.to_owned() }),
+        };
+        let found = found.map_err(|reason| ImportError::Malformed {
+            file: file.to_owned(),
+            format,
+            reason,
+        })?;
+        if found.len() > MAX_TOOLS {
+            return Err(ImportError::TooManyTools { file: file.to_owned(), limit: MAX_TOOLS });
+        }
+        Ok(Library::of(file, found))
+    }
+
+    fn of(file: &Path, found: Vec<Found>) -> Library {
+        let source = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+        let mut writer = Writer::default();
+        let mut library = Library { tools: Vec::new(), skipped: Vec::new() };
+        for (index, found) in found.into_iter().enumerate() {
+            let position = index + 1;
+            match found {
+                Err(Problem { name, reason }) => {
+                    library.skipped.push(Skipped { position, name, reason });
+                }
+                Ok(mut entry) => {
+                    entry.add_notes();
+                    match writer.write(&entry, &source) {
+                        Ok((name, files)) => {
+                            library.tools.push(ImportedTool { entry, name, files })
+                        }
+                        Err(error) => library.skipped.push(Skipped {
+                            position,
+                            name: entry.label().to_owned(),
+                            reason: reason(&error),
+                        }),
+                    }
+                }
+            }
+        }
+        library
+    }
+
+    /// Returns the tools that have a shape, in the library's order.
+    pub fn tools(&self) -> &[ImportedTool] {
+        &self.tools
+    }
+
+    /// Returns the tools that were left out.
+    pub fn skipped(&self) -> &[Skipped] {
+        &self.skipped
+    }
+
+    /// Returns the tool with this name, title or number.
+    pub fn find(&self, wanted: &str) -> Option<&ImportedTool> {
+        let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
+        let named = |tool: &&ImportedTool| tool.name == wanted || tool.entry.title == wanted;
+        let numbered = |tool: &&ImportedTool| number.is_some() && tool.entry.number == number;
+        self.tools.iter().find(named).or_else(|| self.tools.iter().find(numbered))
+    }
+}
+
+impl ImportedTool {
+    /// Returns the path of the tool's own file, relative to the output folder.
+    pub fn path(&self) -> String {
+        format!("{}.tool", self.name)
+    }
+
+    /// Writes the tool's files below a folder, which is made if it does not exist, and returns the path of the tool's
+    /// own. A file with other content is not replaced.
+    ///
+    /// # Errors
+    /// If a file exists with other content, or cannot be written.
+    pub fn write_to(&self, folder: &Path) -> Result<PathBuf, ImportError> {
+        for ToolFile { path, text } in &self.files {
+            let file = folder.join(path);
+            let unwritable = |source| ImportError::Unwritable { file: file.clone(), source };
+            match fs::read(&file) {
+                Ok(known) if known == text.as_bytes() => continue,
+                Ok(_) => return Err(ImportError::Exists { file }),
+                Err(_) => {}
+            }
+            if let Some(parent) = file.parent() {
+                fs::create_dir_all(parent).map_err(unwritable)?;
+            }
+            fs::write(&file, text).map_err(unwritable)?;
+        }
+        Ok(folder.join(self.path()))
+    }
+
+    /// Loads the tool, interpreted.
+    ///
+    /// # Errors
+    /// [`ImportError::Unwritable`] if no temporary folder can be written, [`ImportError::Tool`] if the tool does not
+    /// compile: its dimensions are no solid.
+    pub fn load(&self) -> Result<Interpreted, ImportError> {
+        let folder = tempfile::tempdir()
+            .map_err(|source| ImportError::Unwritable { file: std::env::temp_dir(), source })?;
+        Ok(Interpreted::load(self.write_to(folder.path())?)?)
+    }
+}
+
+/// Reads a file, up to the limit.
+fn bytes(file: &Path) -> Result<Vec<u8>, ImportError> {
+    let unreadable = |source| ImportError::Unreadable { file: file.to_owned(), source };
+    let mut content = Vec::new();
+    fs::File::open(file)
+        .and_then(|opened| opened.take(MAX_BYTES + 1).read_to_end(&mut content))
+        .map_err(unreadable)?;
+    if content.len() as u64 > MAX_BYTES {
+        return Err(ImportError::TooLarge { file: file.to_owned(), limit: MAX_BYTES });
+    }
+    Ok(content)
+}
+
+/// Decodes a text by its byte-order mark; without one it has to be UTF-8.
+fn text(content: &[u8]) -> Result<String, String> {
+    let (encoding, mark) =
+        encoding_rs::Encoding::for_bom(content).unwrap_or((encoding_rs::UTF_8, 0));
+    encoding
+        .decode_without_bom_handling_and_without_replacement(&content[mark..])
+        .map(String::from)
+        .ok_or_else(|| format!("its text is not {}", encoding.name()))
+}
+
+/// Returns the JSON file of an archive.
+fn unzipped(content: &[u8]) -> Result<String, String> {
+    let mut archive =
+        zip::ZipArchive::new(std::io::Cursor::new(content)).map_err(|error| error.to_string())?;
+    let json = (0..archive.len())
+        .find(|k| archive.name_for_index(*k).is_some_and(|name| name.ends_with(".json")))
+        .ok_or("the archive has no `.json` file")?;
+    let file = archive.by_index(json).map_err(|error| error.to_string())?;
+    let mut content = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut content).map_err(|error| error.to_string())?;
+    if content.len() as u64 > MAX_BYTES {
+        return Err(format!("its content is larger than {MAX_BYTES} bytes"));
+    }
+    text(&content)
+}

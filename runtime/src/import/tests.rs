@@ -1,0 +1,236 @@
+//! Imported tools against closed forms, and files that are no libraries.
+
+use super::{Entry, ImportError, Library, Note};
+use crate::tool::{Interpreted, Tool};
+use serde_json::{Value, json};
+
+fn library(tool: &Value) -> Library {
+    let text = json!({ "version": 33, "data": [tool] }).to_string();
+    Library::parse("library.json".as_ref(), text.as_bytes()).expect("a library")
+}
+
+/// Returns a Fusion tool with these dimensions; the overall length is 60 and the shank as wide as the cutter.
+fn fusion(kind: &str, dimensions: &Value) -> Value {
+    let mut geometry = json!({ "DC": 10, "LCF": 20, "OAL": 60, "LB": 40 });
+    for (key, value) in dimensions.as_object().expect("an object") {
+        geometry[key] = value.clone();
+    }
+    json!({ "type": kind, "unit": "millimeters", "description": "a tool", "geometry": geometry })
+}
+
+fn loaded(tool: &Value) -> (Entry, Interpreted) {
+    let library = library(tool);
+    let tool = library.tools().first().unwrap_or_else(|| panic!("{:?}", library.skipped()));
+    let loaded = tool.load().unwrap_or_else(|error| panic!("{error}\n{:?}", tool.files));
+    assert_eq!(loaded.warnings(), "", "{:?}", tool.files);
+    (tool.entry.clone(), loaded)
+}
+
+/// Returns the corners of a tool's outline.
+fn corners(tool: &Value) -> Vec<[f64; 2]> {
+    loaded(tool).1.info().outline.iter().map(|segment| segment.to).collect()
+}
+
+fn assert_corners(kind: &str, dimensions: &Value, expected: &[[f64; 2]]) {
+    let corners = corners(&fusion(kind, dimensions));
+    let same = corners.len() == expected.len()
+        && corners.iter().zip(expected).all(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12);
+    assert!(same, "{kind} {dimensions}: {corners:?}, not {expected:?}");
+}
+
+/// Every corner is computed here by the formulas of a drawing, in doubles.
+#[test]
+fn cutting_parts_have_the_corners_of_their_drawings() {
+    let top = [[5.0, 20.0], [5.0, 60.0], [0.0, 60.0]];
+    let with = |first: &[[f64; 2]]| [first, &top].concat();
+    let straight = |first: &[[f64; 2]]| [first, &[[5.0, 20.0], [5.0, 60.0], [0.0, 60.0]]].concat();
+    assert_corners("flat end mill", &json!({}), &with(&[[5.0, 0.0]]));
+    assert_corners("ball end mill", &json!({ "RE": 5 }), &with(&[[5.0, 5.0]]));
+    assert_corners("bull nose end mill", &json!({ "RE": 2 }), &with(&[[3.0, 0.0], [5.0, 2.0]]));
+    // A point of 90 degrees is as high as the radius.
+    assert_corners("drill", &json!({ "SIG": 90 }), &straight(&[[5.0, 5.0]]));
+    let (sin, cos, tan) = (0.5, 3f64.sqrt() / 2.0, 1.0 / 3f64.sqrt());
+    let neck = json!({ "TA": 30, "shoulder-diameter": 6, "tip-diameter": 2, "LCF": 1, "SFDM": 6 });
+    let high = 4.0 / tan;
+    let chamfer = [[1.0, 0.0], [5.0, high], [3.0, high + 2.0 / tan], [3.0, 60.0], [0.0, 60.0]];
+    assert_corners("chamfer mill", &neck, &chamfer);
+    let inner = 5.0 - (1.0 - sin) / cos;
+    let wide = 5.0 + 20.0 * tan;
+    let tapered = [
+        [inner, 0.0],
+        [inner + cos, 1.0 - sin],
+        [wide, 20.0],
+        [5.0, 20.0],
+        [5.0, 60.0],
+        [0.0, 60.0],
+    ];
+    assert_corners("tapered mill", &json!({ "TA": 30, "RE": 1, "SFDM": 10 }), &tapered);
+    let edge = [4.0 + cos, 1.0 + sin];
+    let narrow = edge[0] - (4.0 - edge[1]) * tan;
+    let dovetail = [[4.0, 0.0], edge, [narrow, 4.0], [2.0, 4.0], [2.0, 60.0], [0.0, 60.0]];
+    assert_corners("dovetail mill", &json!({ "TA": 30, "RE": 1, "LCF": 4, "SFDM": 4 }), &dovetail);
+    let ball = [[5.0, 5.0], [3.0, 9.0], [3.0, 60.0], [0.0, 60.0]];
+    assert_corners("lollipop mill", &json!({ "shoulder-diameter": 6, "LCF": 9, "SFDM": 6 }), &ball);
+    let slot =
+        [[4.0, 0.0], [5.0, 1.0], [5.0, 3.0], [4.0, 4.0], [3.0, 4.0], [3.0, 60.0], [0.0, 60.0]];
+    assert_corners("slot mill", &json!({ "RE": 1, "LCF": 4, "SFDM": 6 }), &slot);
+    let radius = [[5.0, 0.0], [7.0, 2.0], [7.0, 20.0], [7.0, 60.0], [0.0, 60.0]];
+    assert_corners("radius mill", &json!({ "RE": 2 }), &radius);
+    let root = 5.0 - 1.0 / tan;
+    let thread = [
+        [root, 0.0],
+        [5.0, 1.0],
+        [root, 2.0],
+        [5.0, 3.0],
+        [root, 4.0],
+        [root, 5.0],
+        [4.0, 5.0],
+        [4.0, 60.0],
+        [0.0, 60.0],
+    ];
+    let teeth = json!({ "TP": 2, "NT": 2, "LCF": 5, "thread-profile-angle": 60, "SFDM": 8 });
+    assert_corners("thread mill", &teeth, &thread);
+    let face =
+        [[5.0, 0.0], [15.0, 10.0 / tan], [15.0, 20.0], [8.0, 20.0], [8.0, 60.0], [0.0, 60.0]];
+    assert_corners("face mill", &json!({ "TA": 30, "DCX": 30, "SFDM": 16 }), &face);
+    let center =
+        [[1.0, 1.0], [1.0, 3.0], [5.0, 3.0 + 4.0 / tan], [5.0, 20.0], [5.0, 60.0], [0.0, 60.0]];
+    let pilot = json!({ "tip-diameter": 2, "tip-length": 3, "SIG": 90, "TA": 60 });
+    assert_corners("center drill", &pilot, &center);
+}
+
+#[test]
+fn an_assembly_has_the_corners_of_cutter_shaft_and_holder() {
+    let mut tool = fusion(
+        "flat end mill",
+        &json!({ "shoulder-length": 25, "shoulder-diameter": 8, "SFDM": 6 }),
+    );
+    tool["shaft"] =
+        json!({ "segments": [{ "height": 5, "lower-diameter": 6, "upper-diameter": 12 }] });
+    // A holder in inches, with a groove.
+    tool["holder"] = json!({ "type": "holder", "unit": "inches", "description": "ER16",
+        "segments": [{ "height": 1, "lower-diameter": 1, "upper-diameter": 1 },
+                     { "height": 1, "lower-diameter": 0.5, "upper-diameter": 2 }] });
+    let expected = [
+        [5.0, 0.0],
+        [5.0, 20.0],
+        [4.0, 20.0],
+        [4.0, 25.0],
+        [3.0, 25.0],
+        [6.0, 30.0],
+        [6.0, 40.0],
+        [12.7, 40.0],
+        [12.7, 65.4],
+        [6.35, 65.4],
+        [25.4, 90.8],
+        [0.0, 90.8],
+    ];
+    let corners = corners(&tool);
+    let same = corners.len() == expected.len()
+        && corners.iter().zip(expected).all(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12);
+    assert!(same, "{corners:?}");
+    let (entry, tool) = loaded(&tool);
+    let names: Vec<&str> = tool.info().surfaces.iter().map(|surface| &*surface.name).collect();
+    assert_eq!(names, ["cutter.face", "cutter.flute", "cutter.neck", "shaft.shaft", "holder.body"]);
+    assert!(matches!(
+        entry.notes[..],
+        [Note::Contradiction { first: ("shank diameter", 6.0), .. }]
+    ));
+}
+
+#[test]
+fn contradictions_and_gaps_are_noted() {
+    let holder = json!({ "type": "holder", "unit": "millimeters", "description": "H",
+        "segments": [{ "height": 10, "lower-diameter": 8, "upper-diameter": 20 }] });
+    let mut tool = fusion("flat end mill", &json!({ "LB": 15, "SFDM": 10 }));
+    tool["holder"] = holder.clone();
+    let notes = |tool: &Value| library(tool).tools()[0].entry.notes.clone();
+    assert_eq!(
+        notes(&tool),
+        [
+            Note::FlutesInHolder { flutes: 20.0, stickout: 15.0 },
+            Note::ShankTooWide { shank: 10.0, nose: 8.0 },
+        ]
+    );
+    let mut tool = fusion("flat end mill", &json!({ "LB": 70, "SFDM": 6 }));
+    tool["holder"] = holder;
+    assert_eq!(notes(&tool), [Note::TooShort { length: 60.0, stickout: 70.0 }]);
+    let thin = json!({ "shoulder-length": 30, "shoulder-diameter": 0.2, "SFDM": 6 });
+    let thin = notes(&fusion("flat end mill", &thin));
+    assert_eq!(thin, [Note::ThinNeck { neck: 0.2, diameter: 10.0 }]);
+}
+
+#[test]
+fn the_same_library_gives_the_same_files() {
+    let tools = [fusion("flat end mill", &json!({})), fusion("flat end mill", &json!({}))];
+    let text = json!({ "data": tools }).to_string();
+    let read = || Library::parse("l.json".as_ref(), text.as_bytes()).expect("a library");
+    let files = |library: &Library| {
+        library.tools().iter().flat_map(|t| t.files.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(files(&read()), files(&read()));
+    let paths: Vec<String> = read().tools().iter().map(super::ImportedTool::path).collect();
+    assert_eq!(paths, ["a_tool.tool", "a_tool_2.tool"]);
+}
+
+#[test]
+fn entries_without_a_solid_are_left_out_with_the_reason() {
+    let reason = |tool: &Value| library(tool).skipped()[0].reason.clone();
+    assert!(reason(&fusion("laser cutter", &json!({}))).contains("no solid"));
+    assert!(reason(&fusion("bull nose end mill", &json!({}))).contains("corner radius"));
+    assert!(reason(&fusion("flat end mill", &json!({ "DC": -1 }))).contains("diameter is -1"));
+    assert!(
+        reason(&fusion("bull nose end mill", &json!({ "RE": 6 }))).contains("corner radius, 6")
+    );
+    assert!(reason(&json!({ "type": "drill", "unit": "parsec" })).contains("parsec"));
+    assert!(reason(&json!(3)).contains("no object"));
+}
+
+#[test]
+fn files_that_are_no_libraries_are_refused() {
+    let parse =
+        |name: &str, text: &[u8]| Library::parse(name.as_ref(), text).expect_err("no library");
+    assert!(matches!(parse("part.stl", b""), ImportError::UnknownFormat { .. }));
+    let malformed = |name: &str, text: &[u8]| match parse(name, text) {
+        ImportError::Malformed { reason, .. } => reason,
+        other => panic!("{other}"),
+    };
+    assert!(malformed("l.json", b"{").contains("EOF"));
+    assert!(malformed("l.json", b"{}").contains("`data`"));
+    assert!(malformed("l.json", b"\xff\xfe\x00").contains("UTF-16"));
+    assert!(malformed("l.tools", b"PK").contains("zip") || !malformed("l.tools", b"PK").is_empty());
+    assert!(malformed("l.hsmlib", b"<tool-library><tool>").contains("tool-library"));
+    assert!(malformed("l.tbl", b"T1 D#2").contains("line 1"));
+    assert!(malformed("l.apt", b"PARTNO/X").contains("CUTTER"));
+    assert!(malformed("l.fctb", b"[]").contains("no JSON object"));
+}
+
+/// The same ball end mill in three notations.
+#[test]
+fn notations_agree() {
+    let outline = |library: &Library| {
+        let tool = library.tools().first().unwrap_or_else(|| panic!("{:?}", library.skipped()));
+        tool.load().expect("a tool").info().outline.iter().map(|s| s.to).collect::<Vec<_>>()
+    };
+    let parse =
+        |name: &str, text: &str| Library::parse(name.as_ref(), text.as_bytes()).expect("a library");
+    let fusion = outline(&library(&fusion("ball end mill", &json!({ "OAL": 50, "SFDM": 10 }))));
+    let bit = r#"{ "version": 2, "name": "ball", "shape": "ballend.fcstd", "parameter": { "Diameter": "1.00 cm",
+        "CuttingEdgeHeight": "20.0 mm", "ShankDiameter": "10 mm", "Length": "50.000 mm" } }"#;
+    assert_eq!(outline(&parse("ball.fctb", bit)), fusion);
+    let hsm = r#"<?xml version="1.0"?><tool-library xmlns="http://www.hsmworks.com/xml/2004/cnc/tool-library">
+        <tool type="ball end mill" unit="millimeters"><description>ball &amp; shank</description><nc number="7"/>
+        <body diameter="10" corner-radius="5" flute-length="20" overall-length="50" shaft-diameter="10"/></tool>
+        </tool-library>"#;
+    let mut utf16: Vec<u8> = vec![0xff, 0xfe];
+    utf16.extend(hsm.encode_utf16().flat_map(u16::to_le_bytes));
+    let hsm = Library::parse("l.hsmlib".as_ref(), &utf16).expect("a library");
+    assert_eq!(outline(&hsm), fusion);
+    assert_eq!(
+        (hsm.tools()[0].entry.number, &*hsm.tools()[0].entry.title),
+        (Some(7), "ball & shank")
+    );
+    let apt = parse("p.apt", "UNITS/MM\nCUTTER/10,5,0,5,0,0,50\nLOADTL/3\nFINI\n");
+    assert_eq!(outline(&apt), [[5.0, 5.0], [5.0, 50.0], [0.0, 50.0]]);
+    assert_eq!(apt.tools()[0].entry.number, Some(3));
+}
