@@ -69,6 +69,17 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                     tool.text.push_str(&text.decode().map_err(|e| at(&e))?);
                 }
             }
+            Event::GeneralRef(entity) => {
+                if let Some(tool) = &mut open {
+                    let name = entity.decode().map_err(|e| at(&e))?;
+                    let character = entity.resolve_char_ref().map_err(|e| at(&e))?;
+                    match (character, quick_xml::escape::resolve_predefined_entity(&name)) {
+                        (Some(character), _) => tool.text.push(character),
+                        (None, Some(text)) => tool.text.push_str(text),
+                        (None, None) => return Err(at(&format!("unknown entity `{name}`"))),
+                    }
+                }
+            }
             Event::End(element) => {
                 let name = String::from_utf8_lossy(element.local_name().as_ref()).into_owned();
                 match open.take() {

@@ -269,8 +269,7 @@ impl Cutter {
                 }
                 let high = outline.define("high", radius.minus(&tip).over(&angle.tan()));
                 outline.line(radius, &high, cutting("cone"));
-                let neck =
-                    self.shoulder.and_then(|(_, diameter)| diameter).unwrap_or(self.diameter);
+                let neck = self.neck_diameter();
                 if returns && neck < self.diameter {
                     let neck = outline.param("shoulder_diameter", neck).half();
                     let up = high.plus(&radius.minus(&neck).over(&angle.tan()));
