@@ -104,9 +104,17 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
 struct Tool {
     object: Object,
     geometry: Object,
-    /// The shaft or the holder whose sections are being read, with its sections.
-    stack: Option<(&'static str, Object, Vec<(f64, f64)>)>,
+    stack: Option<Stack>,
     text: String,
+}
+
+/// The shaft or the holder whose sections are being read.
+struct Stack {
+    /// Its name among the tool's keys.
+    key: &'static str,
+    object: Object,
+    /// The diameter that each section reaches, and its length.
+    sections: Vec<(f64, f64)>,
 }
 
 impl Tool {
@@ -151,10 +159,10 @@ impl Tool {
                         object.insert(key.to_owned(), json!(value));
                     }
                 }
-                self.stack = Some((kind, object, Vec::new()));
+                self.stack = Some(Stack { key: kind, object, sections: Vec::new() });
             }
             "section" => {
-                if let Some((.., sections)) = &mut self.stack {
+                if let Some(Stack { sections, .. }) = &mut self.stack {
                     let number = |key: &str| {
                         let text = attribute(&attributes, key).unwrap_or("");
                         text.parse::<f64>().map_err(|_| format!("`{key}` is `{text}`, no number"))
@@ -180,7 +188,7 @@ impl Tool {
                 self.object.insert("product-id".to_owned(), json!(text));
             }
             "shaft" | "holder" => {
-                if let Some((kind, mut object, sections)) = self.stack.take()
+                if let Some(Stack { key, mut object, sections }) = self.stack.take()
                     && !sections.is_empty()
                 {
                     object.insert("segments".to_owned(), segments(&sections));
@@ -188,7 +196,7 @@ impl Tool {
                     if let Some(unit) = self.object.get("unit") {
                         object.entry("unit").or_insert(unit.clone());
                     }
-                    self.object.insert(kind.to_owned(), Value::Object(object));
+                    self.object.insert(key.to_owned(), Value::Object(object));
                 }
             }
             _ => {}

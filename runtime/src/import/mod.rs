@@ -145,7 +145,7 @@ impl Library {
                     entry.add_notes();
                     match writer.write(&entry, &source) {
                         Ok((name, files)) => {
-                            library.tools.push(ImportedTool { entry, name, files })
+                            library.tools.push(ImportedTool { entry, name, files });
                         }
                         Err(error) => library.skipped.push(Skipped {
                             position,
