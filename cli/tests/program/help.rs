@@ -1,12 +1,13 @@
 //! Help texts: every command has two examples that work as they stand.
 
 use crate::bench::{Bench, stderr, stdout, touchoff};
+use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "tools", "check",
-    "explain", "fmt", "expand", "draw",
+    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "import", "tools",
+    "check", "explain", "fmt", "expand", "draw",
 ];
 
 const TOOL: &str = "tool My {
@@ -63,6 +64,7 @@ fn examples_work_as_they_stand() {
     std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
     bench.write("program.apt", PROGRAM);
     bench.write("my.tool", TOOL);
+    bench.write("library.json", LIBRARY);
     for command in COMMANDS.into_iter().chain(["tools list", "tools show"]) {
         let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
         let help = stdout(&touchoff(&words));

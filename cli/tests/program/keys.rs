@@ -31,6 +31,7 @@ fn all_keys_are_documented() {
     let (part, map, path) = (place("block.stl"), place("map.postures"), place("path.apt"));
     let gouge = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
     let program = bench.write("gouge.apt", gouge);
+    let library = bench.write("library.json", crate::import::LIBRARY);
     let solid = bench.write("solid.csv", "-4,0,-0.2,0,0,0,1\n4,0,-0.2,0,0,0,1\n");
     let tool = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools/fig_7_3.tool");
     let tool = tool.display().to_string();
@@ -42,6 +43,7 @@ fn all_keys_are_documented() {
         format!("sweep PART --tool D2Ball --directions 20 --tolerance 0.05 -o {map}"),
         format!("map {map}"),
         format!("path {map} --part {part} --tool D2Ball --stepover 1 -o {path}"),
+        format!("import {library} -o {}", place("tools")),
         "tools".to_owned(),
         "tools show D2Ball".to_owned(),
         format!("check {tool}"),

@@ -6,6 +6,7 @@ mod explain;
 mod fmt;
 mod haptic;
 mod help;
+mod import;
 mod keys;
 mod measured;
 mod mistakes;

@@ -1,0 +1,72 @@
+//! From a tool library to a program that is checked with its tools.
+
+use crate::bench::{Bench, stderr, stdout, touchoff};
+use serde_json::Value;
+
+/// A ball end mill in a nut, and a drill without a holder.
+pub(super) const LIBRARY: &str = r#"{ "version": 33, "data": [
+  { "type": "ball end mill", "unit": "millimeters", "description": "D4 ball", "guid": "1", "vendor": "Example",
+    "geometry": { "DC": 4, "RE": 2, "LCF": 10, "OAL": 50, "SFDM": 4, "LB": 30, "shoulder-length": 12,
+      "shoulder-diameter": 3.8, "assemblyGaugeLength": 47 },
+    "holder": { "type": "holder", "unit": "millimeters", "description": "ER16 nut", "gaugeLength": 17.5,
+      "segments": [ { "height": 1.1, "lower-diameter": 25.8, "upper-diameter": 28 },
+                    { "height": 16.4, "lower-diameter": 28, "upper-diameter": 28 } ] },
+    "post-process": { "number": 3 } },
+  { "type": "drill", "unit": "inches", "description": "1/4 drill", "geometry": { "DC": 0.25, "LCF": 2, "OAL": 3,
+      "SIG": 118, "SFDM": 0.25 }, "post-process": { "number": 4 } } ] }"#;
+
+#[test]
+fn an_imported_tool_checks_a_program() {
+    let bench = Bench::new();
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let library = bench.write("library.json", LIBRARY);
+    let (folder, part) = (place("tools"), place("block.stl"));
+    let output = touchoff(&["import", &library, "-o", &folder, "--json"]);
+    let rows: Vec<Value> =
+        stdout(&output).lines().map(|row| serde_json::from_str(row).expect("an object")).collect();
+    assert_eq!(rows.len(), 2, "{}", stderr(&output));
+    assert!(rows.iter().all(|row| row["proved"] == true), "{rows:?}");
+    assert_eq!(rows[0]["stickout"], 30.0);
+    // The gauge lengths of holder and stick-out are 47.5, not 47.
+    assert!(rows[0]["notes"][0].as_str().is_some_and(|note| note.contains("47.5")), "{rows:?}");
+    let tool = place("tools/d4_ball.tool");
+    let checked = touchoff(&["check", &tool]);
+    assert!(checked.status.success(), "{}", stderr(&checked));
+    let text = std::fs::read_to_string(&tool).expect("the tool's file");
+    assert!(text.contains("mount \"holders/er16_nut.tool\" as holder at z = stickout;"), "{text}");
+    let formatted = touchoff(&["fmt", "--check", &tool, &place("tools/cutters/d4_ball.tool")]);
+    assert!(formatted.status.success(), "{}", stderr(&formatted));
+    // The ball's centre is 2 above the tip: at a depth of 0.5 the program gouges.
+    let program = bench.write(
+        "gouge.apt",
+        "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n",
+    );
+    let verify = |tool: &str, from: &str| {
+        let tools = ["--tools", from, "--tool", tool, "--program", &program];
+        let part = ["--part", &part, "--unit", "mm", "--json"];
+        touchoff(&[&["verify"][..], &tools, &part].concat())
+    };
+    let by_number = verify("T3", &library);
+    assert_eq!(by_number.status.code(), Some(1), "{}", stderr(&by_number));
+    assert_eq!(stdout(&by_number), stdout(&verify("D4 ball", &library)));
+    assert_eq!(stdout(&by_number), stdout(&verify("d4_ball", &folder)));
+    let missing = verify("T9", &library);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(stderr(&missing).contains("has no tool"), "{}", stderr(&missing));
+}
+
+#[test]
+fn importing_again_changes_nothing() {
+    let bench = Bench::new();
+    let library = bench.write("library.json", LIBRARY);
+    let folder = bench.folder.path().join("tools").display().to_string();
+    let import = || touchoff(&["import", &library, "-o", &folder]);
+    assert!(import().status.success());
+    assert!(import().status.success());
+    let file = bench.folder.path().join("tools/1_4_drill.tool");
+    std::fs::write(&file, "mine").expect("a writable folder");
+    let refused = import();
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).contains("other content"), "{}", stderr(&refused));
+    assert_eq!(std::fs::read_to_string(&file).expect("the file"), "mine");
+}
