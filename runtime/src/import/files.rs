@@ -8,6 +8,8 @@ use super::term::{Term, decimal, rounded};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use tool_dsl::format::format;
+use tool_dsl::source::Source;
 
 /// A file of an imported tool.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,14 +59,14 @@ impl Writer {
             begin(&mut text, &type_name(&name), &title, entry.unit);
             outline.write(&mut text);
             text.push_str("}\n");
-            files.push(ToolFile { path: format!("{name}.tool"), text });
+            files.push(file(format!("{name}.tool"), text));
             return Ok((name, files));
         }
         let mut text = String::new();
         begin(&mut text, &format!("{}Cutter", type_name(&name)), &title, entry.unit);
         outline.write(&mut text);
         text.push_str("}\n");
-        files.push(ToolFile { path: format!("cutters/{name}.tool"), text });
+        files.push(file(format!("cutters/{name}.tool"), text));
 
         let mut assembly = heading;
         begin(&mut assembly, &type_name(&name), &title, entry.unit);
@@ -81,7 +83,7 @@ impl Writer {
             begin(&mut text, &format!("{}Shaft", type_name(&name)), &title, entry.unit);
             outline.write(&mut text);
             text.push_str("}\n");
-            files.push(ToolFile { path: format!("shafts/{name}.tool"), text });
+            files.push(file(format!("shafts/{name}.tool"), text));
             let _ = writeln!(
                 assembly,
                 "    mount \"shafts/{name}.tool\" as shaft at z = {};",
@@ -93,7 +95,7 @@ impl Writer {
             let _ = writeln!(assembly, "    mount \"{path}\" as holder at z = stickout;");
         }
         assembly.push_str("}\n");
-        files.push(ToolFile { path: format!("{name}.tool"), text: assembly });
+        files.push(file(format!("{name}.tool"), assembly));
         Ok((name, files))
     }
 
@@ -106,9 +108,9 @@ impl Writer {
     ) -> Result<String, ShapeError> {
         let outline = sections_outline(&holder.sections, "body")?;
         let title = quotable(&holder.title);
-        let mut body = format!("    units {};\n", holder.unit.symbol());
+        let mut body = String::new();
         outline.write(&mut body);
-        let key = format!("{title}\n{body}");
+        let key = format!("{title}\n{}\n{body}", holder.unit.symbol());
         if let Some(known) = self.holder_files.get(&key) {
             files.push(known.clone());
             return Ok(known.path.clone());
@@ -117,10 +119,10 @@ impl Writer {
         let path = format!("holders/{name}.tool");
         let mut text = format!("// Imported from {}.\n", quotable(source));
         push_origin(&mut text, &holder.origin);
-        let _ = writeln!(text, "tool {} \"{title}\" {{", type_name(&name));
+        begin(&mut text, &type_name(&name), &title, holder.unit);
         text.push_str(&body);
         text.push_str("}\n");
-        let file = ToolFile { path: path.clone(), text };
+        let file = file(path.clone(), text);
         self.holder_files.insert(key, file.clone());
         files.push(file);
         Ok(path)
@@ -134,7 +136,14 @@ fn shaft_start(cutter: &Cutter, outline: &Outline) -> f64 {
 }
 
 fn begin(text: &mut String, name: &str, title: &str, unit: Unit) {
-    let _ = writeln!(text, "tool {name} \"{title}\" {{\n    units {};", unit.symbol());
+    let title = if title.is_empty() { String::new() } else { format!(" \"{title}\"") };
+    let _ = writeln!(text, "tool {name}{title} {{\n    units {};", unit.symbol());
+}
+
+/// Returns a file with its text in the standard layout.
+fn file(path: String, text: String) -> ToolFile {
+    let formatted = format(&Source::new(&path, &text));
+    ToolFile { path, text: formatted.unwrap_or(text) }
 }
 
 /// Returns the comment above a tool: its source, its origin and the notes.
