@@ -222,7 +222,7 @@ impl Polynomial {
             factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
         }
         let [c, b, a] = factors;
-        // No root, or a double one: b² ≤ 4 a c, up to the 256 bits of constants.
+        // At most one root: b² ≤ 4 a c, up to the 256 bits of constants.
         let (square, four) = (&b * &b, &Number::int(4) * &(&a * &c));
         let difference = (&square - &four).to_f64();
         if difference > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
