@@ -112,7 +112,7 @@ impl fmt::Display for Note {
             }
             Note::Contradiction { first, second, taken } => write!(
                 f,
-                "the {} is {}, but the {} is {}: the {taken} was taken",
+                "the {} is {}, but the {} is {}; taken: the {taken}",
                 first.0,
                 decimal(first.1),
                 second.0,

@@ -29,14 +29,20 @@ impl Names {
 /// Returns the ASCII letters and digits of a label, in lower case and joined by `_`.
 fn snake(label: &str) -> String {
     let mut name = String::new();
-    for character in label.chars() {
+    let mut characters = label.chars().peekable();
+    while let Some(character) = characters.next() {
         if name.len() >= MAX_NAME {
             break;
         }
         match character {
             c if c.is_ascii_alphanumeric() => name.push(c.to_ascii_lowercase()),
             // A decimal point, so that D2.5 and D25 differ.
-            '.' | ',' if name.ends_with(|c: char| c.is_ascii_digit()) => name.push('p'),
+            '.' | ','
+                if name.ends_with(|c: char| c.is_ascii_digit())
+                    && characters.peek().is_some_and(char::is_ascii_digit) =>
+            {
+                name.push('p');
+            }
             _ if !name.is_empty() && !name.ends_with('_') => name.push('_'),
             _ => {}
         }
