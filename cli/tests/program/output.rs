@@ -378,7 +378,6 @@ fn old_options_are_refused() {
         "haptic --most-force 1",
         "haptic --awake 1",
         "haptic --seconds 1",
-        "sweep --tools a",
         "sweep --out a",
         "sweep --niceness 1",
         "map --to a",
