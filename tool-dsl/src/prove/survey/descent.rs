@@ -34,13 +34,10 @@ impl Survey<'_> {
     pub(super) fn fall_rate(&mut self, owner: usize, owners: &[Option<usize>], cell: Cell) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         // A length is not smooth where it is 0. On the surface depth need not fall.
-        let is_smooth = depth.value.low > 0.0
-            || owners.contains(&None) && self.is_zero_on_surface_only(owner, cell);
-        if self.border_prover.is_length(owner) && is_smooth {
-            depth.length.low
-        } else {
-            depth.fall()
-        }
+        let is_smooth_length = self.border_prover.is_length(owner)
+            && (depth.value.low > 0.0
+                || owners.contains(&None) && self.is_zero_on_surface_only(owner, cell));
+        if is_smooth_length { depth.length.low } else { depth.fall() }
     }
 
     /// Returns whether the points of a box at which a region's depth is 0 are proved to be next to points outside the
