@@ -20,7 +20,7 @@ use touchoff::import::{ImportError, ImportedTool, Library};
 const LEFT_OUT: u8 = 3;
 
 /// One line of `import --json`: a tool, or an entry that was left out.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Row<'a> {
     source: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,7 +33,7 @@ struct Row<'a> {
     unit: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stickout: Option<f64>,
-    /// Whether depth is proved to be the distance to the surface; absent with `--list`.
+    /// True if depth is proved to be the distance to the surface; absent with `--list`.
     #[serde(skip_serializing_if = "Option::is_none")]
     proved: Option<bool>,
     notes: Vec<String>,
@@ -99,11 +99,7 @@ impl Run<'_> {
     /// Returns the tools to import.
     fn wanted<'l>(&self, library: &'l Library) -> Result<Vec<&'l ImportedTool>, Failure> {
         let Some(only) = &self.arguments.only else { return Ok(library.tools().iter().collect()) };
-        let tool = library.find(only).ok_or_else(|| Failure::NoSuchEntry {
-            name: only.clone(),
-            file: self.file.display().to_string(),
-        })?;
-        Ok(vec![tool])
+        Ok(vec![find(library, only, self.file)?])
     }
 
     fn print(
@@ -115,20 +111,21 @@ impl Run<'_> {
         let entry = &tool.entry;
         let notes: Vec<String> = entry.notes.iter().map(ToString::to_string).collect();
         if self.json {
-            let row = Row {
-                source: self.file.display().to_string(),
-                file: Some(tool.path()),
-                number: entry.number,
-                kind: Some(&entry.kind),
-                title: &entry.title,
-                unit: Some(entry.unit.symbol()),
-                stickout: entry.stickout,
-                proved,
-                notes,
-                left_out: None,
-            };
-            serde_json::to_writer(&mut *out, &row)?;
-            return Ok(writeln!(out)?);
+            return row(
+                out,
+                &Row {
+                    source: self.file.display().to_string(),
+                    file: Some(tool.path()),
+                    number: entry.number,
+                    kind: Some(&entry.kind),
+                    title: &entry.title,
+                    unit: Some(entry.unit.symbol()),
+                    stickout: entry.stickout,
+                    proved,
+                    notes,
+                    left_out: None,
+                },
+            );
         }
         let number = entry.number.map_or_else(|| "-".to_owned(), |number| format!("T{number}"));
         let proof = match proved {
@@ -151,24 +148,39 @@ impl Run<'_> {
 
     fn skip(&self, out: &mut Output, name: &str, reason: &str) -> Result<(), Failure> {
         if self.json {
-            let row = Row {
-                source: self.file.display().to_string(),
-                file: None,
-                number: None,
-                kind: None,
-                title: name,
-                unit: None,
-                stickout: None,
-                proved: None,
-                notes: Vec::new(),
-                left_out: Some(reason),
-            };
-            serde_json::to_writer(&mut *out, &row)?;
-            return Ok(writeln!(out)?);
+            return row(
+                out,
+                &Row {
+                    source: self.file.display().to_string(),
+                    title: name,
+                    left_out: Some(reason),
+                    ..Row::default()
+                },
+            );
         }
         message!("left out: {}: {reason}", Escaped(name));
         Ok(())
     }
+}
+
+fn row(out: &mut Output, row: &Row<'_>) -> Result<(), Failure> {
+    serde_json::to_writer(&mut *out, row)?;
+    Ok(writeln!(out)?)
+}
+
+/// Returns the tool of a library by its name or number.
+///
+/// # Errors
+/// [`Failure::NoSuchEntry`].
+pub(crate) fn find<'l>(
+    library: &'l Library,
+    name: &str,
+    file: &Path,
+) -> Result<&'l ImportedTool, Failure> {
+    library.find(name).ok_or_else(|| Failure::NoSuchEntry {
+        name: name.to_owned(),
+        file: file.display().to_string(),
+    })
 }
 
 /// The proof of a tool: whether depth is proved to be the distance, or why it does not compile.

@@ -2,6 +2,7 @@
 
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
+use crate::import::find;
 use crate::output::show;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -61,10 +62,7 @@ fn from_library(
     }
     let name = name.to_string_lossy();
     let imported = Library::read(library)?;
-    let tool = imported.find(&name).ok_or_else(|| Failure::NoSuchEntry {
-        name: name.into_owned(),
-        file: library.display().to_string(),
-    })?;
+    let tool = find(&imported, &name, library)?;
     let folder = tempfile::tempdir()?;
     let tool_file = tool.write_to(folder.path())?;
     for note in &tool.entry.notes {

@@ -110,25 +110,18 @@ fn tool(
         notes.clear();
         notes.push(Note::Unstated("holder", "the tool ends at its length".to_owned()));
     }
-    Ok(Entry {
-        number,
-        kind: "cutter".to_owned(),
-        title: String::new(),
-        origin: vec![("line", line.to_string())],
-        unit,
-        stickout: None,
-        notes,
-        cutter: Some(Cutter {
-            shape,
-            diameter,
-            flute_length,
-            length,
-            shoulder: None,
-            shank_diameter: None,
-        }),
-        shaft: Vec::new(),
-        holder: None,
-    })
+    let mut entry = Entry::new(unit, "cutter", "", vec![("line", line.to_string())]);
+    entry.number = number;
+    entry.notes = notes;
+    entry.cutter = Some(Cutter {
+        shape,
+        diameter,
+        flute_length,
+        length,
+        shoulder: None,
+        shank_diameter: None,
+    });
+    Ok(entry)
 }
 
 /// Returns the shape of APT's general cutter. The simple ones keep their simple names.

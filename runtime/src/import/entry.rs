@@ -21,7 +21,7 @@ pub struct Entry {
     pub unit: Unit,
     /// The length from the tip to the holder, in `unit`.
     pub stickout: Option<f64>,
-    /// What was assumed, and what the library contradicts itself in.
+    /// Assumptions, and contradictions of the library.
     pub notes: Vec<Note>,
     pub(super) cutter: Option<Cutter>,
     pub(super) shaft: Vec<Section>,
@@ -154,6 +154,27 @@ impl fmt::Display for Note {
 }
 
 impl Entry {
+    /// Returns a tool of which nothing else is known.
+    pub(super) fn new(
+        unit: Unit,
+        kind: &str,
+        title: &str,
+        origin: Vec<(&'static str, String)>,
+    ) -> Entry {
+        Entry {
+            number: None,
+            kind: kind.to_owned(),
+            title: title.to_owned(),
+            origin,
+            unit,
+            stickout: None,
+            notes: Vec::new(),
+            cutter: None,
+            shaft: Vec::new(),
+            holder: None,
+        }
+    }
+
     /// Returns what to call the tool: its description, or its type.
     pub fn label(&self) -> &str {
         if self.title.is_empty() { &self.kind } else { &self.title }

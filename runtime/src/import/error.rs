@@ -39,7 +39,7 @@ pub enum ImportError {
         file: PathBuf,
         /// The format.
         format: &'static str,
-        /// What is wrong, with its position if known.
+        /// The error, with its position if known.
         reason: String,
     },
     /// The library has more tools than the limit.

@@ -4,6 +4,7 @@
 //! changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section};
+use super::fusion::tool_number;
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
 use crate::unit::Unit;
@@ -28,7 +29,7 @@ pub(super) fn library(content: &str, file: &Path) -> Result<Vec<Found>, String> 
 
 fn listed_bit(tool: &Value, folder: &Path) -> Found {
     let path = tool.get("path").and_then(Value::as_str).unwrap_or("");
-    let number = tool.get("nr").and_then(Value::as_u64).and_then(|n| u32::try_from(n).ok());
+    let number = tool.get("nr").and_then(tool_number);
     let problem = |reason: String| Problem::new(path, &reason);
     let relative = Path::new(path);
     // A library must not read files elsewhere.
@@ -103,23 +104,11 @@ fn read_bit(bit: &Object, number: Option<u32>) -> Found {
 }
 
 fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {
-    let origin = [("id", string(object, "id")), ("source", string(object, "source"))];
-    Entry {
-        number: None,
-        kind: kind.to_owned(),
-        title: title.to_owned(),
-        origin: origin
-            .into_iter()
-            .filter(|(_, value)| !value.is_empty())
-            .map(|(name, value)| (name, value.to_owned()))
-            .collect(),
-        unit,
-        stickout: None,
-        notes: Vec::new(),
-        cutter: None,
-        shaft: Vec::new(),
-        holder: None,
-    }
+    let origin = [("id", string(object, "id")), ("source", string(object, "source"))]
+        .into_iter()
+        .filter(|(_, value)| !value.is_empty())
+        .map(|(name, value)| (name, value.to_owned()));
+    Entry::new(unit, kind, title, origin.collect())
 }
 
 fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cutter, String> {

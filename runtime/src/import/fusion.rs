@@ -37,23 +37,9 @@ pub(super) fn tool(value: &Value) -> Found {
 fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     let unit = unit(tool)?;
     let origin = origin(tool);
-    let number = tool
-        .get("post-process")
-        .and_then(|post| post.get("number"))
-        .and_then(Value::as_u64)
-        .and_then(|number| u32::try_from(number).ok());
-    let mut entry = Entry {
-        number,
-        kind: kind.to_owned(),
-        title: title.to_owned(),
-        origin,
-        unit,
-        stickout: None,
-        notes: Vec::new(),
-        cutter: None,
-        shaft: Vec::new(),
-        holder: None,
-    };
+    let mut entry = Entry::new(unit, kind, title, origin);
+    entry.number =
+        tool.get("post-process").and_then(|post| post.get("number")).and_then(tool_number);
     if kind == "holder" {
         entry.holder = Some(holder(tool)?);
         return Ok(entry);
@@ -130,7 +116,6 @@ fn cutter(
         "chamfer mill" => Shape::Chamfer {
             tip_diameter: geometry.get("tip-diameter").unwrap_or(0.0),
             half_angle: geometry.require("TA", "taper angle")?,
-            returns: true,
         },
         "dovetail mill" => Shape::Dovetail {
             corner: geometry.get("RE").unwrap_or(0.0),
@@ -278,6 +263,11 @@ impl Geometry<'_> {
     fn require(&self, key: &str, name: &'static str) -> Result<f64, String> {
         self.get(key).ok_or_else(|| super::entry::reason(&ShapeError::Unstated(name)))
     }
+}
+
+/// Returns a tool number.
+pub(super) fn tool_number(value: &Value) -> Option<u32> {
+    value.as_u64().and_then(|number| u32::try_from(number).ok())
 }
 
 fn number_of(object: &Object, key: &str) -> Option<f64> {

@@ -2,7 +2,7 @@
 //!
 //! [`Library::read`] reads a library of Fusion 360, FreeCAD, HSM or LinuxCNC, or the cutters of an APT or NX program,
 //! and [`ImportedTool::write_to`] writes a `.tool` file for each tool, with the holder in a file of its own that is mounted.
-//! What a format does not state is left open, and a [`Note`] says so; statements that contradict each other are
+//! A [`Note`] names each thing that a format leaves open; statements that contradict each other are
 //! reported with the one that was taken. A tool without a shape that can be derived is [`Skipped`], with the reason.
 //! The same file gives the same bytes each time.
 //!
@@ -61,7 +61,7 @@ pub struct Library {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ImportedTool {
-    /// What the library states.
+    /// The tool as the library states it.
     pub entry: Entry,
     /// The tool's name, which is the name of its file without the ending.
     pub name: String,
@@ -69,7 +69,7 @@ pub struct ImportedTool {
     pub files: Vec<ToolFile>,
 }
 
-/// What a format's reader returns for one tool.
+/// The result of a format's reader for one tool.
 type Found = Result<Entry, Problem>;
 
 /// A tool that could not be read.

@@ -100,20 +100,23 @@ impl Outline {
 
     /// Adds a convex arc, unless its ends are one point.
     pub(super) fn arc(&mut self, to: (&Term, &Term), centre: (&Term, &Term), surface: Surface) {
-        self.push(
-            Point(to.0.clone(), to.1.clone()),
-            Some((Circle::Centre(Point(centre.0.clone(), centre.1.clone())), false)),
-            surface,
-        );
+        self.arc_about(to, centre, false, surface);
     }
 
     /// Adds a concave arc, unless its ends are one point.
     pub(super) fn hollow(&mut self, to: (&Term, &Term), centre: (&Term, &Term), surface: Surface) {
-        self.push(
-            Point(to.0.clone(), to.1.clone()),
-            Some((Circle::Centre(Point(centre.0.clone(), centre.1.clone())), true)),
-            surface,
-        );
+        self.arc_about(to, centre, true, surface);
+    }
+
+    fn arc_about(
+        &mut self,
+        to: (&Term, &Term),
+        centre: (&Term, &Term),
+        concave: bool,
+        surface: Surface,
+    ) {
+        let centre = Circle::Centre(Point(centre.0.clone(), centre.1.clone()));
+        self.push(Point(to.0.clone(), to.1.clone()), Some((centre, concave)), surface);
     }
 
     /// Adds an arc of a radius, of at most half a turn, unless its ends are one point.

@@ -13,7 +13,7 @@ pub(super) struct Term {
     strength: Strength,
 }
 
-/// How tightly the outermost operator of an expression binds.
+/// The precedence of the outermost operator of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 enum Strength {
     Sum,

@@ -1,8 +1,11 @@
 //! Drills and thread mills.
 
-use super::super::outline::{Outline, cutting, plain};
+use super::super::outline::{Outline, cutting};
 use super::super::term::Term;
-use super::{Cutter, FACE, MAX_TEETH, NECK, ShapeError, positive};
+use super::{Cutter, NECK, ShapeError, flat_tip, positive};
+
+/// The number of teeth of a thread mill that are drawn.
+const MAX_TEETH: f64 = 60.0;
 
 impl Cutter {
     /// Draws a point.
@@ -13,22 +16,15 @@ impl Cutter {
         tip_diameter: f64,
         point_angle: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
-
         self.check_tip(tip_diameter)?;
         if !(0.0..=180.0).contains(&point_angle) || point_angle == 0.0 {
             return Err(ShapeError::OutOfRange("point angle", point_angle));
         }
         if point_angle == 180.0 {
-            outline.line(radius, &zero, FACE);
-            return self.flutes(outline, radius);
+            return self.flat(outline, radius, 0.0);
         }
         let angle = outline.angle("point_angle", point_angle);
-        let mut tip = zero.clone();
-        if tip_diameter > 0.0 {
-            tip = outline.param("tip_diameter", tip_diameter).half();
-            outline.line(&tip, &zero, FACE);
-        }
+        let tip = flat_tip(outline, tip_diameter);
         let high = radius.minus(&tip).over(&angle.half().tan());
         outline.line(radius, &high, cutting("point"));
         self.flutes(outline, radius)
@@ -82,8 +78,7 @@ impl Cutter {
             return Err(ShapeError::OutOfRange("thread profile angle", angle));
         }
         if pitch <= 0.0 {
-            outline.line(radius, &Term::number(0.0), FACE);
-            return self.flutes(outline, radius);
+            return self.flat(outline, radius, 0.0);
         }
         let zero = Term::number(0.0);
         // A tooth that fits up to rounding is drawn.
@@ -109,17 +104,13 @@ impl Cutter {
             ));
         }
         let root = outline.define("root", root);
-        outline.line(&root, &zero, plain("neck"));
+        outline.line(&root, &zero, NECK);
         for tooth in 0..count as u32 {
             let k = Term::number(f64::from(tooth));
             outline.line(radius, &p.times(&k.plus(&Term::number(0.5))), cutting("thread"));
             outline.line(&root, &p.times(&Term::number(f64::from(tooth) + 1.0)), cutting("thread"));
         }
-        if self.flute_length > outline.end().1.value() {
-            let flute = self.flute_param(outline)?;
-            outline.line(&root, &flute, NECK);
-        }
-        Ok(())
+        self.up_to_flute_length(outline, &root, NECK)
     }
 
     /// Draws one tooth with a flat crest.
@@ -132,7 +123,6 @@ impl Cutter {
         angle: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         positive("neck diameter", neck_diameter)?;
         if neck_diameter >= self.diameter || crest < 0.0 {
             return Err(ShapeError::Contradiction(

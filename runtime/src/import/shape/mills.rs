@@ -2,7 +2,7 @@
 
 use super::super::outline::{Outline, cutting};
 use super::super::term::Term;
-use super::{CORNER, Cutter, FACE, FLUTE, NECK, ShapeError, positive};
+use super::{CORNER, Cutter, FACE, FLUTE, NECK, ShapeError, ball_on_neck, flat_tip, positive};
 
 impl Cutter {
     /// Draws a cylinder; its lower edge may be rounded.
@@ -13,7 +13,6 @@ impl Cutter {
         corner: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_corner(corner)?;
         if corner == 0.0 {
             outline.line(radius, &zero, FACE);
@@ -29,12 +28,11 @@ impl Cutter {
     /// Draws a ball.
     pub(super) fn ball(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         outline.arc((radius, radius), (&zero, radius), cutting("ball"));
         self.flutes(outline, radius)
     }
 
-    /// Draws a cone from a flat tip. The arc of the edge touches the tip's plane and the cone of radius R + z tan a.
+    /// Draws a cone from a flat tip.
     pub(super) fn tapered(
         &self,
         outline: &mut Outline,
@@ -42,31 +40,9 @@ impl Cutter {
         corner: f64,
         half_angle: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
-
         self.check_angle("taper angle", half_angle)?;
         let angle = outline.angle("taper_angle", half_angle);
-        if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
-        } else {
-            // The arc touches the tip's plane and the cone of radius R + z tan a.
-            let corner = outline.param("corner_radius", corner);
-            let one = Term::number(1.0);
-            let inner = radius.minus(&corner.times(&one.minus(&angle.sin())).over(&angle.cos()));
-            if inner.value() < 0.0 {
-                return Err(ShapeError::Contradiction(
-                    "corner radius",
-                    corner.value(),
-                    "diameter",
-                    self.diameter,
-                ));
-            }
-            let inner = outline.define("inner", inner);
-            outline.line(&inner, &zero, FACE);
-            let to_d = inner.plus(&corner.times(&angle.cos()));
-            let to_z = corner.minus(&corner.times(&angle.sin()));
-            outline.arc((&to_d, &to_z), (&inner, &corner), CORNER);
-        }
+        self.edge_of_cone(outline, radius, corner, &angle)?;
         let flute = self.flute_param(outline)?;
         let wide = radius.plus(&flute.times(&angle.tan()));
         self.cone(outline, &wide, &flute)
@@ -81,7 +57,6 @@ impl Cutter {
         cone_to: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         positive("ball's radius", ball)?;
         self.check_angle("taper angle", half_angle)?;
         let angle = outline.angle("taper_angle", half_angle);
@@ -106,31 +81,23 @@ impl Cutter {
         tip_diameter: f64,
         half_angle: f64,
     ) -> Result<(), ShapeError> {
-        let zero = Term::number(0.0);
-
         self.check_angle("cutting edge angle", half_angle)?;
         let angle = outline.angle("taper_angle", half_angle);
-        let mut tip = zero.clone();
-        if tip_diameter > 0.0 {
-            tip = outline.param("tip_diameter", tip_diameter).half();
-            outline.line(&tip, &zero, FACE);
-        }
+        let tip = flat_tip(outline, tip_diameter);
         let flute = self.flute_param(outline)?;
         outline.line(&tip.plus(&flute.times(&angle.tan())), &flute, cutting("cone"));
         Ok(())
     }
 
-    /// Draws a cone from a tip and, if it returns, the same cone back to the neck.
+    /// Draws a cone from a tip and, if the neck is narrower, the same cone back to it.
     pub(super) fn chamfer(
         &self,
         outline: &mut Outline,
         radius: &Term,
         tip_diameter: f64,
         half_angle: f64,
-        returns: bool,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_tip(tip_diameter)?;
         self.check_angle("taper angle", half_angle)?;
         if half_angle == 0.0 {
@@ -144,15 +111,11 @@ impl Cutter {
         let high = outline.define("high", radius.minus(&tip).over(&angle.tan()));
         outline.line(radius, &high, cutting("cone"));
         let neck = self.neck_diameter();
-        if returns && neck < self.diameter {
+        if neck < self.diameter {
             let neck = outline.param("shoulder_diameter", neck).half();
             let up = high.plus(&radius.minus(&neck).over(&angle.tan()));
             outline.line(&neck, &up, cutting("cone"));
-            if self.flute_length > up.value() {
-                let flute = self.flute_param(outline)?;
-                outline.line(&neck, &flute, NECK);
-            }
-            return Ok(());
+            return self.up_to_flute_length(outline, &neck, NECK);
         }
         self.flutes(outline, radius)
     }
@@ -166,7 +129,6 @@ impl Cutter {
         angle: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_corner(width)?;
         self.check_angle("chamfer angle", angle)?;
         let width = outline.param("chamfer_width", width);
@@ -185,7 +147,6 @@ impl Cutter {
         half_angle: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_corner(corner)?;
         self.check_angle("dovetail angle", half_angle)?;
         let angle = outline.angle("dovetail_angle", half_angle);
@@ -218,7 +179,6 @@ impl Cutter {
     /// Draws a ball on a neck.
     pub(super) fn lollipop(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         let neck = self.neck_diameter();
         if neck >= self.diameter {
             outline.arc((radius, radius), (&zero, radius), cutting("ball"));
@@ -227,9 +187,7 @@ impl Cutter {
         positive("neck's diameter", neck)?;
         let name = if self.has_neck() { "shoulder_diameter" } else { "shank_diameter" };
         let neck = outline.param(name, neck).half();
-        outline.arc((radius, radius), (&zero, radius), cutting("ball"));
-        let up = radius.plus(&radius.squared().minus(&neck.squared()).sqrt());
-        outline.arc((&neck, &up), (&zero, radius), cutting("ball"));
+        ball_on_neck(outline, radius, &neck, cutting("ball"));
         Ok(())
     }
 
@@ -241,7 +199,6 @@ impl Cutter {
         corner: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_corner(corner)?;
         if corner == 0.0 {
             outline.line(radius, &zero, FACE);
@@ -277,7 +234,6 @@ impl Cutter {
         max_diameter: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         outline.line(radius, &zero, FACE);
         if corner <= 0.0 {
             return self.flutes(outline, radius);

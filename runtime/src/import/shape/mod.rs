@@ -47,11 +47,10 @@ pub(super) enum Shape {
         tip_diameter: f64,
         half_angle: f64,
     },
-    /// A cone from a tip, with half its angle. If `returns`, it narrows to the neck in the same way.
+    /// A cone from a tip, with half its angle, that narrows to the neck in the same way.
     Chamfer {
         tip_diameter: f64,
         half_angle: f64,
-        returns: bool,
     },
     /// A point, with its whole angle; 180 is flat.
     Drill {
@@ -165,9 +164,6 @@ const FLUTE: Surface = cutting("flute");
 const NECK: Surface = plain("neck");
 const SHANK: Surface = plain("shank");
 
-/// The number of teeth of a thread mill that are drawn.
-const MAX_TEETH: f64 = 60.0;
-
 impl Cutter {
     /// Returns the half section.
     ///
@@ -197,8 +193,8 @@ impl Cutter {
             Shape::TaperedBall { radius: ball, half_angle, cone_to } => {
                 self.tapered_ball(outline, ball, half_angle, cone_to)
             }
-            Shape::Chamfer { tip_diameter, half_angle, returns } => {
-                self.chamfer(outline, radius, tip_diameter, half_angle, returns)
+            Shape::Chamfer { tip_diameter, half_angle } => {
+                self.chamfer(outline, radius, tip_diameter, half_angle)
             }
             Shape::Drill { tip_diameter, point_angle } => {
                 self.drill(outline, radius, tip_diameter, point_angle)
@@ -259,11 +255,54 @@ impl Cutter {
 
     /// Draws the flutes as a cylinder up to the stated length.
     fn flutes(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
+        self.up_to_flute_length(outline, radius, FLUTE)
+    }
+
+    /// Draws a cylinder up to the length of the flutes, if that is higher.
+    fn up_to_flute_length(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        surface: Surface,
+    ) -> Result<(), ShapeError> {
         if self.flute_length > outline.end().1.value() {
             let flute = self.flute_param(outline)?;
-            outline.line(radius, &flute, FLUTE);
+            outline.line(radius, &flute, surface);
         }
         Ok(())
+    }
+
+    /// Draws a flat tip below a cone of radius `R + z tan a`, and its edge, an arc that touches both. Returns the point
+    /// where the cone begins.
+    fn edge_of_cone(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        corner: f64,
+        angle: &Term,
+    ) -> Result<[Term; 2], ShapeError> {
+        let zero = Term::number(0.0);
+        if corner == 0.0 {
+            outline.line(radius, &zero, FACE);
+            return Ok([radius.clone(), zero]);
+        }
+        let corner = outline.param("corner_radius", corner);
+        let one = Term::number(1.0);
+        let inner = radius.minus(&corner.times(&one.minus(&angle.sin())).over(&angle.cos()));
+        if inner.value() < 0.0 {
+            return Err(ShapeError::Contradiction(
+                "corner radius",
+                corner.value(),
+                "diameter",
+                self.diameter,
+            ));
+        }
+        let inner = outline.define("inner", inner);
+        outline.line(&inner, &zero, FACE);
+        let d = inner.plus(&corner.times(&angle.cos()));
+        let z = corner.minus(&corner.times(&angle.sin()));
+        outline.arc((&d, &z), (&inner, &corner), CORNER);
+        Ok([d, z])
     }
 
     /// Draws the flutes as a cone.
@@ -366,6 +405,25 @@ impl Cutter {
     fn check_angle(&self, name: &'static str, angle: f64) -> Result<(), ShapeError> {
         if (0.0..90.0).contains(&angle) { Ok(()) } else { Err(ShapeError::OutOfRange(name, angle)) }
     }
+}
+
+/// Draws the flat tip of a cone, and returns its radius.
+fn flat_tip(outline: &mut Outline, diameter: f64) -> Term {
+    let zero = Term::number(0.0);
+    if diameter == 0.0 {
+        return zero;
+    }
+    let tip = outline.param("tip_diameter", diameter).half();
+    outline.line(&tip, &zero, FACE);
+    tip
+}
+
+/// Draws a ball up to the neck that leaves it.
+fn ball_on_neck(outline: &mut Outline, radius: &Term, neck: &Term, surface: Surface) {
+    let zero = Term::number(0.0);
+    outline.arc((radius, radius), (&zero, radius), surface);
+    let up = radius.plus(&radius.squared().minus(&neck.squared()).sqrt());
+    outline.arc((neck, &up), (&zero, radius), surface);
 }
 
 fn positive(name: &'static str, value: f64) -> Result<(), ShapeError> {

@@ -2,7 +2,7 @@
 
 use super::super::outline::{Outline, plain};
 use super::super::term::Term;
-use super::{CORNER, Cutter, FACE, FLUTE, ShapeError, positive};
+use super::{CORNER, Cutter, FACE, FLUTE, ShapeError, ball_on_neck, positive};
 
 impl Cutter {
     /// Draws a blade with a clamping screw below.
@@ -15,7 +15,6 @@ impl Cutter {
         cap_height: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         positive("blade thickness", thickness)?;
         let thickness = outline.param("blade_thickness", thickness);
         if cap_diameter > 0.0 && cap_height > 0.0 {
@@ -36,16 +35,13 @@ impl Cutter {
     /// Draws the ball of a probe.
     pub(super) fn probe(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         let stem = self.shank_diameter.unwrap_or(self.diameter);
         if stem >= self.diameter {
             outline.arc((radius, radius), (&zero, radius), plain("ball"));
             return Ok(());
         }
         let stem = outline.param("shank_diameter", stem).half();
-        outline.arc((radius, radius), (&zero, radius), plain("ball"));
-        let up = radius.plus(&radius.squared().minus(&stem.squared()).sqrt());
-        outline.arc((&stem, &up), (&zero, radius), plain("ball"));
+        ball_on_neck(outline, radius, &stem, plain("ball"));
         Ok(())
     }
 

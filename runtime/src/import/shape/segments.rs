@@ -15,33 +15,12 @@ impl Cutter {
     ) -> Result<(), ShapeError> {
         self.check_corner(corner)?;
         self.check_angle("taper angle", half_angle)?;
-        let zero = Term::number(0.0);
         if half_angle == 0.0 || max_diameter <= self.diameter {
-            if corner == 0.0 {
-                outline.line(radius, &zero, FACE);
-            } else {
-                let corner = outline.param("corner_radius", corner);
-                let inner = radius.minus(&corner);
-                outline.line(&inner, &zero, FACE);
-                outline.arc((radius, &corner), (&inner, &corner), CORNER);
-            }
-            return self.flutes(outline, radius);
+            return self.flat(outline, radius, corner);
         }
         let angle = outline.angle("taper_angle", half_angle);
         let wide = outline.param("max_diameter", max_diameter).half();
-        let [mut d, mut z] = [radius.clone(), zero.clone()];
-        if corner == 0.0 {
-            outline.line(radius, &zero, FACE);
-        } else {
-            let corner = outline.param("corner_radius", corner);
-            let one = Term::number(1.0);
-            let inner = radius.minus(&corner.times(&one.minus(&angle.sin())).over(&angle.cos()));
-            let inner = outline.define("inner", inner);
-            outline.line(&inner, &zero, FACE);
-            d = inner.plus(&corner.times(&angle.cos()));
-            z = corner.minus(&corner.times(&angle.sin()));
-            outline.arc((&d, &z), (&inner, &corner), CORNER);
-        }
+        let [d, z] = self.edge_of_cone(outline, radius, corner, &angle)?;
         if upper > 0.0 {
             let upper = outline.param("upper_radius", upper);
             let centre_d = wide.minus(&upper);
@@ -142,7 +121,6 @@ impl Cutter {
         corner: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         self.check_corner(corner)?;
         if face <= corner || face < self.diameter / 2.0 {
             return Err(ShapeError::Contradiction(
@@ -175,7 +153,6 @@ impl Cutter {
         flank: f64,
     ) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-
         positive("radius of the tip", ball)?;
         if flank <= ball || flank < self.diameter / 2.0 || ball > self.diameter / 2.0 {
             return Err(ShapeError::Contradiction(
