@@ -226,11 +226,11 @@ fn diagnostics_name_items_that_only_tools_have() {
 #[test]
 fn points_have_three_numbers() {
     let message = refused(&format!("{BALL} direction: toward (1, 2); }}"));
-    assert_eq!(message, "a point in a solid has three numbers, this has 2: write `(x, y, z)`");
+    assert_eq!(message, "a point in a solid has three numbers; this has 2: write `(x, y, z)`");
     let message = refused(&format!("{BALL} direction: away from (1, 2, 0, 5); }}"));
     assert!(message.contains("a decimal comma? write `0.5`"), "{message}");
     let message = refused(&format!("{BALL} direction: (1, 0); }}"));
-    assert_eq!(message, "a direction in a solid has three numbers, this has 2: write `(x, y, z)`");
+    assert_eq!(message, "a direction in a solid has three numbers; this has 2: write `(x, y, z)`");
     assert!(
         refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("this direction mixes")
     );

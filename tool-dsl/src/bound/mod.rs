@@ -319,7 +319,8 @@ fn endless(model: &Model) -> Diagnostic {
             },
         );
     }
-    Diagnostic::new(model.name_span, CheckKind::UnboundedRegions)
+    let kind = CheckKind::UnboundedRegions { domain: domain.keyword() };
+    Diagnostic::new(model.name_span, kind)
 }
 
 /// Returns the innermost position from `outer` toward `inner` for which `empty` still holds, by bisection.

@@ -16,7 +16,7 @@ kinds! {
         }
         explain "A pose places the tip. The tip must be the end of the tool that points away from the spindle.";
     error T0602 ConstantOverflow
-        "constant out of range"
+        "constant too large for double precision"
         message "a constant of this tool overflows double precision"
         help "avoid powers of powers of large constants, or write lengths in a larger unit"
         explain "Generated code computes in double precision, in which this constant would be infinite."
@@ -31,10 +31,13 @@ kinds! {
         message "region {region} has no proved bound toward {direction} {coordinate}"
         help "add a condition such as `{coordinate} {bound}`"
         explain "Queries skip everything outside the tool's bounding box, so that box must be proved.";
-    error T0605 UnboundedRegions
+    error T0605 UnboundedRegions { domain: &'static str }
         "unbounded regions"
         message "the regions have no proved bounds"
-        help "add conditions such as `d <= 3, 0 <= z <= 40` to each region"
+        help (*domain) {
+            "solid" => "add conditions such as `hypot(x, y) <= 3, 0 <= z <= 40` to each region",
+            _ => "add conditions such as `d <= 3, 0 <= z <= 40` to each region",
+        }
         explain "Queries skip everything outside the tool's bounding box, so that box must be proved."
         without "the proof for one region decides: no tool is known that is unbounded only as a whole";
     error T0606 TooManyTests { limit: usize }
@@ -73,7 +76,7 @@ kinds! {
         help "add a condition that the radicand is at least 0, or write `max(0, …)` under the root"
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
     error T0612 DivisionByZero { location: String, subject: Subject }
-        "division by zero"
+        "division by zero at a point"
         message "division by zero at {location}, in {subject}"
         help "add a condition that keeps the region away from this point"
         explain "Each quantity of a region must have a value at all of its points, and each curve at all points of the tool.";
@@ -106,7 +109,7 @@ kinds! {
         "depth with an infinite slope"
         message "`depth` of {region} has an infinite slope at {location}"
         help "write a depth that grows in proportion to the distance to the surface; certified queries need it"
-        explain "A depth such as the square root of the distance gets steeper toward the surface, so no multiple of the distance bounds it.";
+        explain "A depth such as the square root of the distance gets steeper toward the surface, so no constant times the distance is an upper bound.";
     warning T0619 UnboundedQuantity { quantity: &'static str, region: String, value: FormattedNumber, location: String }
         "quantity that grows without bound"
         message "`{quantity}` of {region} grows without bound toward the surface: it is {value} near {location}"
@@ -148,7 +151,7 @@ kinds! {
         help ((exact, factor)) {
             (true, _) => "no action needed: a profile's depth is exact by construction, although this proof is incomplete",
             (false, Some(factor)) => "the bound proved during compilation still holds: depth is at most {factor} times the distance",
-            (false, None) => "simplify the regions: without this proof, no multiple of the distance bounds the depth",
+            (false, None) => "simplify the regions: without this proof, no constant times the distance is known to bound the depth",
         }
         explain "The prover divides the tool into a limited number of boxes. It found nothing wrong in those that are left."
         without "only `touchoff check` proves this far; compilation stops earlier";

@@ -188,8 +188,8 @@ kinds! {
     error T0431 WrongComponentCount { role: Role, domain: &'static str, expected: usize, count: usize, coordinates: String }
         "point or direction with the wrong number of components"
         message (expected) {
-            2 => "{role} in a {domain} has two numbers, this has {count}",
-            _ => "{role} in a {domain} has three numbers, this has {count}",
+            2 => "{role} in a {domain} has two numbers; this has {count}",
+            _ => "{role} in a {domain} has three numbers; this has {count}",
         }
         help ((role, expected)) {
             (Role::Direction, 2) => "write `(radial, axial)`: the components across the axis and along the file's z",

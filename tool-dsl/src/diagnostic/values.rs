@@ -97,14 +97,14 @@ kinds! {
     error T0212 WrongArgumentCount { function: String, variadic: bool, count: usize }
         "wrong number of arguments"
         message (variadic) {
-            true => "`{function}` takes two or more arguments, this has {count}",
-            false => "`{function}` takes one argument, this has {count}",
+            true => "`{function}` takes two or more arguments; this call has {count}",
+            false => "`{function}` takes one argument; this call has {count}",
         }
         help (variadic) {
             true => "write `{function}(a, b)`",
             false => "write `{function}(a)`",
         }
-        explain "`min`, `max` and `hypot` take two or more arguments, all other functions take one.";
+        explain "`min`, `max` and `hypot` take two or more arguments; all other functions take one.";
     error T0213 UnknownUnit { unit: String, suggestion: Option<&'static str>, known: Names }
         "unknown unit of a number"
         message "unknown unit `{unit}`"
@@ -154,7 +154,7 @@ kinds! {
         "value out of range"
         message "the value {value:e} is out of range"
         help "keep values at 0, or between 1e-90 and 1e90 in absolute value"
-        explain "Generated code computes in double precision. Within this range no square or product of two numbers overflows.";
+        explain "Generated code computes in double precision. Within this range no square or product of two numbers overflows or underflows.";
     error T0221 ExpressionTooDeep { limit: u32 }
         "expression nested too deeply"
         message "this expression is nested too deeply"
@@ -162,7 +162,7 @@ kinds! {
         explain "A name counts as the expression that it stands for, so a chain of curves adds up.";
     error T0222 NotLength { role: Role, dimension: Dimension }
         "dimension other than a length"
-        message "{role} takes a length, this is {dimension}"
+        message "{role} takes a length; this is {dimension}"
         help "write a number without a unit, or with `mm`, `inch` or `m`"
         explain "Points, radii and positions along the axis are lengths.";
     error T0223 MixedOperands { operation: Operation, left: Dimension, right: Dimension }
@@ -215,12 +215,12 @@ kinds! {
         explain "With arguments of different dimensions the result would depend on the unit.";
     error T0231 TrigonometryOfVariable { function: String }
         "trigonometric function of a coordinate"
-        message "`{function}` takes constants only, this varies from point to point"
+        message "`{function}` takes constants only; its argument varies from point to point"
         help "use only numbers, `let`s and `param`s in the argument of `{function}`"
         explain "Trigonometric functions are slow, and their last bits differ between machines. They are computed once, when the tool is compiled.";
     error T0232 NotAngle { function: String, dimension: Dimension, value: f64 }
         "trigonometric function of a number"
-        message "`{function}` takes an angle, this is {dimension}"
+        message "`{function}` takes an angle; this is {dimension}"
         help "write `{function}({value}deg)` or `{function}({value}rad)`"
         explain "An angle needs a unit, since degrees are easily mistaken for radians.";
     error T0233 HugeAngle
@@ -231,13 +231,13 @@ kinds! {
     error T0234 TanOfRightAngle
         "tangent of a right angle"
         message "`tan` of a right angle is undefined"
-        help "write an angle of less than 90deg"
+        help "write an angle other than 90deg and its odd multiples"
         explain "The tangent grows without bound toward a right angle.";
     error T0235 CurveOfAngle
         "curve that is an angle"
         message "a curve cannot be an angle"
         help "write an expression that is a number or a power of length"
-        explain "A curve is zero along a line of the section, and its sign tells the two sides apart.";
+        explain "A curve is zero along a line of the section (in a `solid`, on a surface), and its sign tells the two sides apart.";
     error T0236 DuplicateArgument { name: String }
         "param given twice"
         message "`{name}` is given twice"

@@ -58,9 +58,6 @@ impl Certificate {
     fn undecided_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics = Vec::new();
-        if model.is_exact() && self.is_continuous() && !self.is_exact() {
-            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));
-        }
         if let Some(open_proof) = self.undecided.first() {
             let kind = CheckKind::Undecided {
                 statement: open_proof.statement.clone(),
@@ -70,6 +67,9 @@ impl Certificate {
                 factor: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
             };
             diagnostics.push(Diagnostic::new(model.name_span, kind));
+        } else if model.is_exact() && self.is_continuous() && !self.is_exact() {
+            // Every proof is finished, and yet the depth is not proved to be the distance.
+            diagnostics.push(Diagnostic::new(model.name_span, CheckKind::DepthNotProvedExact));
         }
         diagnostics
     }
