@@ -30,13 +30,21 @@ pub enum PoseError {
     #[error("the pose has a coordinate that is not a number within {LARGEST_COORDINATE:e}")]
     NotFinite,
     /// The norm of the axis or the quaternion is not 1 within the tolerance.
-    #[error("the {what} has norm {norm}: give a unit vector (within {AXIS_TOLERANCE} of 1)")]
+    #[error(
+        "the {what} has norm {norm}: give a unit {} (within {AXIS_TOLERANCE} of 1)",
+        unit_kind(.what)
+    )]
     NotUnit {
         /// `axis` or `quaternion`.
         what: &'static str,
         /// The norm found.
         norm: f64,
     },
+}
+
+/// Returns the kind of unit value that a pose takes as its axis or quaternion.
+fn unit_kind(what: &str) -> &'static str {
+    if what == "quaternion" { "quaternion" } else { "vector" }
 }
 
 impl Pose {

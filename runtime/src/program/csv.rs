@@ -33,8 +33,9 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
             continue;
         }
         let cells: Vec<&str> = row.split(',').map(str::trim).collect();
-        let names = columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
-        if !names {
+        let is_header =
+            columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
+        if !is_header {
             let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
             locations.push(CutterLocation { line, pose, rapid: false });
         }
@@ -46,16 +47,16 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
 /// Refuses a table that announces an end mark and does not end with it.
 fn check_end(text: &str) -> Result<(), Located> {
     // Spreadsheets pad the line with separators and may put it in quotes.
-    let is = |line: &str, mark: &str| {
+    let is_mark = |line: &str, mark: &str| {
         line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
     };
     let mut filled = lines(text).filter(|(_, line)| !line.is_empty());
     let Some((first, head)) = filled.next() else { return Ok(()) };
-    if !is(head, HEAD) {
+    if !is_mark(head, HEAD) {
         return Ok(());
     }
     match filled.last() {
-        Some((_, line)) if is(line, END) => Ok(()),
+        Some((_, line)) if is_mark(line, END) => Ok(()),
         last => Err((last.map_or(first, |(line, _)| line), ProgramFault::NoEndMark)),
     }
 }
@@ -169,6 +170,7 @@ mod tests {
             "part.cl:5: the table stops here without its end mark `# end of program`: write it again, or add \
              the mark if this is the end"
         );
+        // As a spreadsheet saves it: comment lines are padded with empty cells.
         let sheet = whole
             .replace('\n', ",,,,,\r\n")
             .replace("k,,,,,", "k")
@@ -215,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn skips_comments_names_and_marks() {
+    fn skips_comments_names_and_a_byte_order_mark() {
         let text = "\u{feff}# made by hand\r\n\r\n X , y,Z, i,j,\"k\"\r\n\
                     \t1 , -2,+3.5,0,.6,8e-1 # tip\r\n4,5,6,0,0,-1";
         let locations = locations(text);
@@ -265,12 +267,12 @@ mod tests {
                      (`0,5`): write points (`0.5`)"
                 ),
             ),
-            ("1.5;2;3;0;0;1\n", format!("1: found 1 columns, expected {either}: {semicolons}")),
+            ("1.5;2;3;0;0;1\n", format!("1: found 1 column, expected {either}: {semicolons}")),
             ("0,5;1,5;2,5;0,0;1,0;0,0\n", format!("1: `5;1` is not a number: {semicolons}")),
             (
                 "1 2 3 0 0 1\n",
                 format!(
-                    "1: found 1 columns, expected {either}: separate the columns by commas, not \
+                    "1: found 1 column, expected {either}: separate the columns by commas, not \
                      blanks"
                 ),
             ),
@@ -297,7 +299,11 @@ mod tests {
                     .to_owned(),
             ),
             ("# a\n\n1,2,3,0,0,0.5\n", format!("3: the axis has norm 0.5: {unit}")),
-            ("1,2,3,0,0,0,2\n", format!("1: the quaternion has norm 2: {unit}")),
+            (
+                "1,2,3,0,0,0,2\n",
+                "1: the quaternion has norm 2: give a unit quaternion (within 0.001 of 1)"
+                    .to_owned(),
+            ),
         ] {
             assert_eq!(refusal(text), format!("part.cl:{message}"), "{text:?}");
         }

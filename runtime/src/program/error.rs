@@ -112,7 +112,7 @@ pub enum ProgramFault {
         start: String,
     },
     /// A row with a wrong number of columns.
-    #[error("found {found} columns, expected {expected}: {remedy}")]
+    #[error("found {found} column{}, expected {expected}: {remedy}", plural(*.found))]
     Columns {
         /// Number of columns of the row.
         found: usize,
@@ -265,4 +265,9 @@ pub enum ProgramFault {
         /// The word that ended the program.
         end: &'static str,
     },
+}
+
+/// Returns the plural's ending for a number of things.
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }
