@@ -16,12 +16,12 @@ use touchoff::{Cloud, CloudError, CoveringRadius, Mesh, Part, Probe, Sampling, T
 /// The file extension of saved parts.
 const SAVED: &str = "touchoff";
 
-/// Number of points above which `run` certifies depth instead: sampling more takes seconds, and a query on them takes no
-/// less time than a certified one (docs/accuracy.md).
+/// Number of points above which `run` certifies depth instead: sampling more takes seconds, and queries take about as
+/// long as certified ones (docs/accuracy.md).
 const MAX_POINTS_OF_RUN: usize = 1_000_000;
 
 /// A part, and its mesh if it has one.
-pub(crate) struct Loaded {
+pub(crate) struct LoadedPart {
     pub(crate) part: Part,
     pub(crate) mesh: Option<Mesh>,
     /// Tolerance of certified depth, in the part's unit, if the sampling error needs too many points.
@@ -63,14 +63,14 @@ fn read_geometry(part: &Path, unit: Unit) -> Result<Geometry, Failure> {
     Ok(geometry)
 }
 
-/// Reads a part and samples its points. A sampling error is one of depth for the tool `info`, or for any tool whose depth
-/// is the distance to its surface.
+/// Reads a part and samples its points. `--sampling-error` bounds the error of depth for the tool `info`; without a
+/// tool, for every tool whose depth is a distance (L = 1). `json` suppresses the progress display.
 pub(crate) fn load(
     arguments: &PartFile,
     info: Option<&ToolInfo>,
     dense: DenseSampling,
     json: bool,
-) -> Result<Loaded, Failure> {
+) -> Result<LoadedPart, Failure> {
     let file = arguments.part.display();
     let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
     if is_saved(&arguments.part) {
@@ -78,12 +78,13 @@ pub(crate) fn load(
             return Err(no_mesh("--sampling-error"));
         }
         let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
-        return Ok(Loaded { part, mesh: None, certify: None });
+        return Ok(LoadedPart { part, mesh: None, certify: None });
     }
     match read_geometry(&arguments.part, arguments.unit)? {
         Geometry::Mesh(mesh) => {
             let (cloud, certify) = sample_cloud(&mesh, arguments, info, (dense, json))?;
-            Ok(Loaded { part: Part::new(&cloud, mesh.diagnostics()), mesh: Some(mesh), certify })
+            let part = Part::new(&cloud, mesh.diagnostics());
+            Ok(LoadedPart { part, mesh: Some(mesh), certify })
         }
         Geometry::Points(_) if arguments.sampling_error.is_some() => {
             Err(no_mesh("--sampling-error"))
@@ -99,7 +100,7 @@ pub(crate) fn load(
                 points.points.len()
             );
             let part = Part::from_cloud(&Cloud::from_points(points, arguments.unit)?);
-            Ok(Loaded { part, mesh: None, certify: None })
+            Ok(LoadedPart { part, mesh: None, certify: None })
         }
     }
 }
@@ -152,8 +153,8 @@ fn sample_cloud(
         Some((_, Some(lipschitz))) if lipschitz > 0.0 => lipschitz,
         Some((info, _)) => return Err(Failure::NoLipschitz(info.name.to_string())),
     };
-    // Leaves room for the rounding error bound, which `Probe::sampling_error_bound` adds. With very uneven points that
-    // bound may be larger.
+    // Leaves room for the rounding error bound that `Probe::sampling_error_bound` adds. If points are very uneven, that
+    // bound may be larger than the room, and the printed bound then exceeds the requested error by the difference.
     let radius = error / lipschitz * (1.0 - 1e-6);
     let max_points =
         if dense == DenseSampling::Certify { MAX_POINTS_OF_RUN } else { MAX_BLUE_NOISE_POINTS };
@@ -219,7 +220,7 @@ pub(crate) fn sample(arguments: &Sample, json: bool) -> Result<(), Failure> {
         let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
         return Err(Failure::SavedName { file, better });
     }
-    let Loaded { part, .. } =
+    let LoadedPart { part, .. } =
         load(&arguments.part, tool.map(Tool::info), DenseSampling::Sample, json)?;
     print_covering_radius(&part, tool, arguments.part.unit);
     part.save(output)?;

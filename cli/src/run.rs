@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::lengths::{format_length, format_number};
 use crate::loaded_tool::LoadedTool;
 use crate::output::Output;
-use crate::part::{self, DenseSampling, Loaded, NO_INSIDE};
+use crate::part::{self, DenseSampling, LoadedPart, NO_INSIDE};
 use crate::program;
 use crate::progress::Progress;
 use crate::timing::{Timing, nanoseconds};
@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     let tool = loaded.tool();
     let unit = arguments.part.unit;
     let program = program::read(&arguments.program, tool.info(), unit)?;
-    let Loaded { part, mesh, certify } =
+    let LoadedPart { part, mesh, certify } =
         part::load(&arguments.part, Some(tool.info()), DenseSampling::Certify, json)?;
     let certify = [arguments.certify, certify].into_iter().flatten().reduce(f64::min);
     let bvh = match (certify, &mesh) {

@@ -139,7 +139,8 @@ fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a tool's source to `output`, and the files that it mounts below `output`'s folder.
+/// Writes a tool's source to `output`, and the files that it mounts below `output`'s folder. Makes the folders that are
+/// missing.
 ///
 /// # Errors
 /// If `output` does not end in `.tool`, if a mounted file exists with other content or has the name of `output`, or if
@@ -167,12 +168,16 @@ fn write_tool(
             return Err(Failure::MountedFileExists { file, name });
         }
     }
+    let create_folder_of = |file: &Path| {
+        let folder = file.parent().unwrap_or(folder);
+        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))
+    };
     for (file, text) in &mounted {
-        let parent = file.parent().unwrap_or(folder);
-        std::fs::create_dir_all(parent).map_err(|source| unwritable(parent, source))?;
+        create_folder_of(file)?;
         write_file(file, text)?;
         message!("{}: written", file.display());
     }
+    create_folder_of(output)?;
     write_file(output, text)?;
     message!("{}: written", output.display());
     Ok(())

@@ -21,7 +21,7 @@ use touchoff::{Interval, SurfaceId, Unit};
 /// The exit status if there are findings.
 const FOUND: u8 = 1;
 
-/// The exit status if nothing could be checked, the same as for wrong options.
+/// The exit status if there is no verdict, even with findings; the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
 
 /// One finding.
@@ -193,7 +193,7 @@ fn status(report: &VerifyReport, arguments: &Verify) -> u8 {
 fn describe(finding: &Finding, info: &ToolInfo, unit: Unit) -> String {
     let name = |surface| &*info.surface(surface).name;
     let at = match finding.from {
-        Some(from) => format!("at {:.2} of the motion from line {from}", finding.time),
+        Some(from) => format!("at fraction {:.2} of the motion from line {from}", finding.time),
         None => "at the first cutter location".to_owned(),
     };
     let at = if finding.rapid { format!("{at}, in rapid traverse") } else { at };
@@ -209,7 +209,7 @@ fn describe(finding: &Finding, info: &ToolInfo, unit: Unit) -> String {
             } else {
                 String::new()
             };
-            let (name, depth) = (name(*surface), between(*low, *high, unit));
+            let (name, depth) = (name(*surface), format_interval(*low, *high, unit));
             format!("{name} is {depth} {unit} deep in triangle {}, {at}{more}", witness.triangle)
         }
         FindingKind::Near {
@@ -217,7 +217,7 @@ fn describe(finding: &Finding, info: &ToolInfo, unit: Unit) -> String {
         } => format!(
             "{} is {} {unit} from triangle {}, less than its margin of {margin} {unit}, {at}",
             name(*surface),
-            between(*low, *high, unit),
+            format_interval(*low, *high, unit),
             witness.triangle,
         ),
         FindingKind::Inside { surface: None } => {
@@ -235,13 +235,13 @@ fn describe(finding: &Finding, info: &ToolInfo, unit: Unit) -> String {
 }
 
 /// Formats an interval, as one number if both ends print alike.
-fn between(low: f64, high: f64, unit: Unit) -> String {
+fn format_interval(low: f64, high: f64, unit: Unit) -> String {
     let [low, high] = [low, high].map(|value| format_small(value, unit));
     if low == high { high } else { format!("{low} to {high}") }
 }
 
-/// Formats a length as elsewhere, or with an exponent if it is small and would keep fewer than two digits other
-/// than 0.
+/// Formats a length with the usual decimals. A length below 0.01 mm of which these show fewer than two nonzero
+/// digits is written with an exponent.
 fn format_small(value: f64, unit: Unit) -> String {
     let text = format_number(value, unit);
     let digits = text.chars().filter(|c| ('1'..='9').contains(c)).count();

@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = |surface| &*verifier.info().surface(surface).name;
     let mut out = std::io::stdout().lock();
     for found in &report.findings {
-        write!(out, "wall.apt:{}: at {:.2} of the way, ", found.line, found.time)?;
+        write!(out, "wall.apt:{}: at fraction {:.2} of the motion, ", found.line, found.time)?;
         match found.kind {
             FindingKind::Deep { surface, depth: Interval { low, high }, witness, .. } => writeln!(
                 out,

@@ -68,18 +68,18 @@ pub(crate) struct PartFile {
     /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
     #[arg(long)]
     pub(crate) unit: Unit,
-    /// Number of points to sample on the surface, from 1 to 100000000.
+    /// Number of points to sample on the surface, from 1 to 100000000; no effect on points and saved parts.
     #[arg(long, value_name = "NUMBER", default_value_t = 20_000, value_parser = point_count)]
     pub(crate) points: u64,
-    /// Largest depth that may be missed between points, in the part's unit, instead of a number of points. Where
-    /// `run` would need more than a million points, it proves depth to this tolerance instead.
+    /// Largest depth that may be missed between points, in the part's unit, instead of a number of points; needs a
+    /// mesh. Where `run` would need more than a million points, it proves depth to this tolerance instead.
     #[arg(long, value_name = "LENGTH", value_parser = positive_length, conflicts_with = "points")]
     pub(crate) sampling_error: Option<f64>,
     /// Distribution of the points: `blue`, evenly spread; `random`, uniformly; or `monte-carlo`, as `random` with equal
-    /// weights and no covering radius.
+    /// weights and no covering radius; no effect on points and saved parts.
     #[arg(long, value_name = "METHOD", default_value_t = SamplingMethod::BlueNoise)]
     pub(crate) sampling: SamplingMethod,
-    /// Seed of the sampling; the same seed gives the same points.
+    /// Seed of the sampling: the same seed gives the same points; no effect on points and saved parts.
     #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = count)]
     pub(crate) seed: u64,
 }

@@ -32,7 +32,8 @@ pub(crate) enum ToolsCommand {
         /// Name of the built-in tool.
         #[arg(value_name = "NAME")]
         name: String,
-        /// Output file [default: standard output, without the files that the tool mounts].
+        /// Output file, whose folder is made if it is missing [default: standard output, without the files that the
+        /// tool mounts].
         #[arg(short, long, value_name = "OUT.tool")]
         output: Option<PathBuf>,
     },
