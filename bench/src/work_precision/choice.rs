@@ -12,7 +12,7 @@ pub enum ErrorRequirement {
 }
 
 impl ErrorRequirement {
-    /// The requirements on the page.
+    /// The requirements of the last table in `docs/measured/work-precision.md`.
     pub const ALL: [ErrorRequirement; 7] = [
         ErrorRequirement::Force(0.1),
         ErrorRequirement::Force(0.01),
@@ -45,13 +45,14 @@ pub struct Choice {
     /// The setting.
     pub label: Label,
     /// The median time per query in each scene, ns, in the order of the scenes.
-    pub p50: Vec<u64>,
+    pub median_ns: Vec<u64>,
     /// The largest error over all scenes.
     pub error: f64,
 }
 
 /// Returns the setting that meets the requirement in every scene and has the shortest time in its slowest scene.
-/// Returns `None` if no setting does, or if there are no scenes.
+/// Returns `None` if no setting does, or if there are no scenes. `allowed` selects settings; it must give the same
+/// answer for all rows of a setting.
 pub fn fastest(
     rows: &[Row],
     scenes: &[&str],
@@ -66,7 +67,7 @@ pub fn fastest(
         }
     }
     let choices = labels.into_iter().filter_map(|label| choice(rows, scenes, requirement, label));
-    let slowest_median = |choice: &Choice| choice.p50.iter().copied().max();
+    let slowest_median = |choice: &Choice| choice.median_ns.iter().copied().max();
     choices.min_by_key(slowest_median)
 }
 
@@ -77,13 +78,15 @@ fn choice(
     requirement: ErrorRequirement,
     label: Label,
 ) -> Option<Choice> {
-    let (mut p50, mut error) = (Vec::new(), 0.0f64);
+    let (mut median_ns, mut error) = (Vec::new(), 0.0f64);
     for scene in scenes {
         let row = rows.iter().find(|row| row.scene == *scene && row.label() == label)?;
-        error = error.max(requirement.error(row)?);
-        p50.push(row.p50_ns?);
+        // `f64::max` would drop a NaN, and the method would count as exact.
+        error = error.max(requirement.error(row).filter(|error| !error.is_nan())?);
+        median_ns.push(row.p50_ns?);
     }
-    (!p50.is_empty() && error <= requirement.max_error()).then_some(Choice { label, p50, error })
+    let is_met = !median_ns.is_empty() && error <= requirement.max_error();
+    is_met.then_some(Choice { label, median_ns, error })
 }
 
 #[cfg(test)]
@@ -112,13 +115,17 @@ mod tests {
         assert_eq!(name(ErrorRequirement::Depth(0.01)), Some("good"));
         assert_eq!(name(ErrorRequirement::Depth(0.001)), None);
         let even = fastest_for(ErrorRequirement::Force(0.01)).expect("there is one");
-        assert_eq!((even.p50.as_slice(), even.error), (&[700, 700][..], 0.009));
+        assert_eq!((even.median_ns.as_slice(), even.error), (&[700, 700][..], 0.009));
         let only =
             fastest(&rows, &["a"], ErrorRequirement::Force(0.1), |row| row.method != "elsewhere");
         assert_eq!(only.map(|choice| choice.label.method), Some("quick"));
         assert_eq!(fastest(&rows, &[], ErrorRequirement::Force(0.1), |_| true), None);
         let mut without_force = rows[2].clone();
         without_force.err_force = None;
-        assert_eq!(fastest(&[without_force], &["a"], ErrorRequirement::Force(1.0), |_| true), None);
+        let mut invalid_force = without_force.clone();
+        invalid_force.err_force = Some(f64::NAN);
+        for row in [without_force, invalid_force] {
+            assert_eq!(fastest(&[row], &["a"], ErrorRequirement::Force(1.0), |_| true), None);
+        }
     }
 }

@@ -246,10 +246,10 @@ fn write_choice(
     quantity: &str,
     choice: Option<Choice>,
 ) -> Result<(), Error> {
-    let Some(Choice { label, p50, error: worst }) = choice else {
+    let Some(Choice { label, median_ns, error: worst }) = choice else {
         return writeln!(page, "| {tolerance} | {quantity} | none that was measured | | | | | |");
     };
-    let times: Vec<String> = p50.into_iter().map(|ns| format_micros(Some(ns))).collect();
+    let times: Vec<String> = median_ns.into_iter().map(|ns| format_micros(Some(ns))).collect();
     let Label { method, points, sampling, weights, tolerance: setting_tolerance, budget } = label;
     let setting = match (points, budget, setting_tolerance) {
         (_, Some(budget), _) => format!("≤ {budget}"),

@@ -9,10 +9,10 @@
 
 mod corners;
 mod empty;
-mod roots;
 mod samples;
 mod section;
 mod signs;
+mod zero_set;
 
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic};

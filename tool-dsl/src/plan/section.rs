@@ -2,8 +2,8 @@
 //! is left.
 
 use super::corners::{Corner, corners};
-use super::roots::Zeros;
 use super::samples::{SampleSubset, Samples};
+use super::zero_set::Zeros;
 use super::{MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;

@@ -4,7 +4,7 @@ use super::outline::{Feature, Outline, P2, add, len, sub, unit};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Evaluation, Interpreter};
 use touchoff::Level;
-use touchoff::tool::{Evaluations as Lists, Interpreted, Outputs, PointBatch, Tool};
+use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
 use touchoff_tests::oracle::rng::Rng;
 
 /// The results of a comparison.
@@ -35,7 +35,7 @@ pub(crate) type Flaw = (&'static str, String);
 pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> {
     let size = outline.size();
     let [low, high] = outline.reach();
-    let span = sub(high, low).map(|part| part.max(0.05 * size));
+    let span = sub(high, low).map(|component| component.max(0.05 * size));
     let random_point = |rng: &mut Rng| {
         let d = rng.between(0.0, high[0] + 0.2 * span[0]);
         [d, rng.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
@@ -57,6 +57,8 @@ pub(crate) fn points(outline: &Outline, count: usize, rng: &mut Rng) -> Vec<P2> 
                 let (mut a, mut b) = (random_point(rng), random_point(rng));
                 let kind = |p: P2| (outline.nearest(p).0, outline.contains(p));
                 let from = kind(a);
+                // Halves a segment down to a point where the nearest feature, or inside and outside, change, and
+                // steps aside from it.
                 for _ in 0..40 {
                     let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
                     if kind(middle) == from { a = middle } else { b = middle }
@@ -86,17 +88,17 @@ pub(crate) fn compare(
             [d, 0.0, z]
         })
         .collect();
-    let (mut list, mut evaluation) = (PointBatch::default(), Lists::default());
-    points_in_space.iter().for_each(|p| list.push(*p));
-    planned.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
+    let (mut batch, mut evaluations) = (PointBatch::default(), Evaluations::default());
+    points_in_space.iter().for_each(|p| batch.push(*p));
+    planned.evaluate(Level::new(), Outputs::EVERYTHING, &batch, 1.0, &mut evaluations);
     for (k, point) in points_in_space.into_iter().enumerate() {
-        let tape = (evaluation.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Evaluation {
-            region: evaluation.region[k] as usize,
-            depth: evaluation.depth[k],
-            magnitude: evaluation.magnitude[k],
-            direction: evaluation.direction.each_ref().map(|list| list[k]),
-            gradient: evaluation.gradient.each_ref().map(|list| list[k]),
-            niceness: evaluation.niceness[k],
+        let tape = (evaluations.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Evaluation {
+            region: evaluations.region[k] as usize,
+            depth: evaluations.depth[k],
+            magnitude: evaluations.magnitude[k],
+            direction: evaluations.direction.each_ref().map(|component| component[k]),
+            gradient: evaluations.gradient.each_ref().map(|component| component[k]),
+            niceness: evaluations.niceness[k],
         });
         let p = outline.back([point[0], point[2]]);
         let at = |(kind, text): Flaw, who: &str| {
@@ -109,12 +111,11 @@ pub(crate) fn compare(
             (kind, format!("{who}, at {p:?}: {text}"))
         };
         let clearance = planned.clearance(point);
-        let describe_evaluation = |evaluation: Option<Evaluation>| {
-            evaluation
-                .map_or("outside", |evaluation| tool.model.regions[evaluation.region].name.as_str())
+        let describe_evaluation = |found: Option<Evaluation>| {
+            found.map_or("outside", |found| tool.model.regions[found.region].name.as_str())
         };
-        let evaluation = [("reference", reference.evaluate(point, 1.0)), ("tape", tape)];
-        for (who, got) in evaluation {
+        let results = [("reference", reference.evaluate(point, 1.0)), ("tape", tape)];
+        for (who, got) in results {
             let who = || format!("{who} says {}", describe_evaluation(got));
             let one =
                 check_point(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
@@ -124,7 +125,8 @@ pub(crate) fn compare(
     Ok(stats)
 }
 
-/// Returns the feature that a region is named after.
+/// Returns the feature that a region is named after: `s3` is piece 3, `s3/s4.1` the corner between pieces 3 and 4.
+/// The number after the point tells regions of one name apart.
 pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
     let number = |word: &str| word.strip_prefix('s')?.parse::<usize>().ok();
     let Some((a, b)) = name.split_once('/') else { return number(name).map(Feature::Piece) };
@@ -150,11 +152,12 @@ fn check_point(
     let tolerance = 1e-12 * size;
     let (_, least) = outline.nearest(p);
     let inside = outline.contains(p);
-    let sure = least > tolerance;
-    if sure && got.is_some() != inside {
+    // Within the tolerance of the surface either side is right.
+    let is_clear_of_surface = least > tolerance;
+    if is_clear_of_surface && got.is_some() != inside {
         return Err(("wrong side", format!("inside is {inside}, distance {least:e}")));
     }
-    if sure && (clearance > 0.0) == inside {
+    if is_clear_of_surface && (clearance > 0.0) == inside {
         return Err(("wrong side", format!("clearance {clearance}, inside is {inside}")));
     }
     if clearance < -tolerance || clearance.is_nan() {
@@ -163,10 +166,11 @@ fn check_point(
     let worst = |error: f64| ErrorStats { worst: error / size, ..ErrorStats::default() };
     let Some(got) = got else {
         let error = (clearance - least).abs();
-        if sure && (error > tolerance || error.is_nan()) {
+        if is_clear_of_surface && (error > tolerance || error.is_nan()) {
             return Err(("wrong clearance", format!("{clearance} is not {least}")));
         }
-        return Ok(ErrorStats { outside: 1, ..worst(if sure { error } else { 0.0 }) });
+        let error = if is_clear_of_surface { error } else { 0.0 };
+        return Ok(ErrorStats { outside: 1, ..worst(error) });
     };
     let error = (got.depth - least).abs();
     if !(error <= tolerance && got.magnitude == got.depth) {
@@ -179,24 +183,25 @@ fn check_point(
         return Err(("wrong owner", format!("{name} is {excess:e} farther than the nearest")));
     };
     let stats = ErrorStats { inside: 1, ..worst(error) };
-    let (direction, singular) = match owner {
+    // The distance to the nearest point at which the direction does not exist.
+    let (direction, distance_to_singularity) = match owner {
         Feature::Piece(k) => {
             let piece = &outline.pieces[k];
-            let singular = piece.round.map_or(f64::INFINITY, |r| len(sub(p, r.centre)));
-            (piece.outward(p), singular.min(len(sub(piece.to, piece.from))))
+            let to_centre = piece.round.map_or(f64::INFINITY, |r| len(sub(p, r.centre)));
+            (piece.outward(p), to_centre.min(len(sub(piece.to, piece.from))))
         }
         Feature::Corner(k) => (unit(sub(outline.vertex(k), p)), least),
     };
-    let norm = got.direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let norm = got.direction.iter().map(|component| component * component).sum::<f64>().sqrt();
     if !((norm - 1.0).abs() < 1e-14 && got.direction[1] == 0.0) {
         return Err(("wrong direction", format!("{:?} is no unit vector", got.direction)));
     }
-    if singular < 1e-9 * size {
+    if distance_to_singularity < 1e-9 * size {
         return Ok(stats);
     }
     let direction = if outline.down { [direction[0], -direction[1]] } else { direction };
     let off = len(sub([got.direction[0], got.direction[2]], direction));
-    if off > 1e-13 + 1e-13 * size / singular {
+    if off > 1e-13 + 1e-13 * size / distance_to_singularity {
         return Err(("wrong direction", format!("{:?} is not {direction:?}", got.direction)));
     }
     Ok(ErrorStats { directions: 1, ..stats })

@@ -21,10 +21,13 @@ pub(super) enum Zeros {
 impl Planner<'_> {
     /// Returns the side to which the points on a curve go: the side of the solid, so that it includes its
     /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
-    /// same side along the whole curve.
+    /// same side along the whole curve; otherwise the side below. Where some points belong only to the solid
+    /// below and others only to the solid above, both sides need the curve's points.
     pub(super) fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
         let [below, above] =
             [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
+        // For the sides below and above: a point that belongs to the solid on this side only; a point whose first
+        // listed owner is on this side.
         let (mut is_required, mut is_preferred) = ([false; 2], [false; 2]);
         let mut points: Vec<Point> =
             below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
@@ -62,6 +65,7 @@ impl Planner<'_> {
             for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
                 border_points.points.push((*p, rank));
                 let next = (k + 1) % is_on_curve.len();
+                // The chord of a curved edge is on the curve only at its ends.
                 if is_on_curve[next] && piece.edges[k] == Edge::Straight {
                     border_points.edges.push(([*p, piece.vertices[next]], rank));
                 }
@@ -91,7 +95,8 @@ impl Planner<'_> {
     }
 }
 
-/// Points and straight edges on a curve, with the rank of their owner: its index in the list.
+/// Points and straight edges on a curve, with the rank of their owner: its index in the list of regions, or
+/// `usize::MAX` for the outside.
 #[derive(Default)]
 struct BorderPoints {
     points: Vec<(Point, usize)>,
