@@ -243,6 +243,14 @@ pub(crate) enum Failure {
         /// A suitable name.
         better: std::path::PathBuf,
     },
+    /// The file's extension is not that of a library.
+    #[error("a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`: write `-o {}` instead of `{file}`", .better.display())]
+    ExportFormat {
+        /// The requested file.
+        file: String,
+        /// A suitable name.
+        better: std::path::PathBuf,
+    },
     /// The file's extension is not that of a tool.
     #[error("a tool's file ends in `.tool`: write `-o {}` instead of `{file}`", .better.display())]
     ToolFormat {

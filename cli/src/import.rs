@@ -1,4 +1,4 @@
-//! `touchoff import`: tools of CAM systems become `.tool` files, each proved.
+//! `touchoff import`: tools of CAM systems become `.tool` files, each proved; and the table of a library's tools.
 
 use crate::arguments::Import;
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ use touchoff::Escaped;
 use touchoff::import::{ImportError, ImportedTool, Library};
 
 /// The exit status if a tool was left out; `check` has the same for warnings.
-const LEFT_OUT: u8 = 3;
+pub(crate) const LEFT_OUT: u8 = 3;
 
 /// One line of `import --json`: a tool, or an entry that was left out.
 #[derive(Default, Serialize)]
@@ -32,7 +32,15 @@ struct Row<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    diameter: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flute_length: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    length: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     stickout: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    holder: Option<&'a str>,
     /// True if depth is proved to be the distance to the surface; absent with `--list`.
     #[serde(skip_serializing_if = "Option::is_none")]
     proved: Option<bool>,
@@ -46,17 +54,37 @@ pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure
     let mut out = Output::lines();
     let mut left_out = 0;
     for file in &arguments.files {
-        left_out += Run { arguments, file, json }.library(&mut out)?;
+        let only = arguments.only.as_deref();
+        let target = if arguments.list {
+            Target::List { prove: false }
+        } else {
+            let stem = || PathBuf::from(file.file_stem().unwrap_or_default());
+            Target::Folder(arguments.output.clone().unwrap_or_else(stem))
+        };
+        left_out += Run { file, only, target, json }.library(&mut out)?;
     }
     out.flush()?;
     Ok(if left_out == 0 { ExitCode::SUCCESS } else { ExitCode::from(LEFT_OUT) })
 }
 
+/// Prints the tools of a library with their proofs, and writes nothing.
+pub(crate) fn list(file: &Path, json: bool, out: &mut Output) -> Result<(), Failure> {
+    Run { file, only: None, target: Target::List { prove: true }, json }.library(out)?;
+    Ok(())
+}
+
 /// The import of one library.
 struct Run<'a> {
-    arguments: &'a Import,
     file: &'a Path,
+    only: Option<&'a str>,
+    target: Target,
     json: bool,
+}
+
+/// What becomes of the tools.
+enum Target {
+    List { prove: bool },
+    Folder(PathBuf),
 }
 
 impl Run<'_> {
@@ -65,26 +93,27 @@ impl Run<'_> {
         let library = Library::read(self.file)?;
         let tools = self.wanted(&library)?;
         let mut left_out = 0;
-        if self.arguments.only.is_none() {
+        if self.only.is_none() {
             for skipped in library.skipped() {
                 self.skip(out, &skipped.name, &skipped.reason)?;
             }
             left_out = library.skipped().len();
         }
-        if self.arguments.list {
+        if !self.json && !tools.is_empty() {
+            line(out, HEAD)?;
+        }
+        if let Target::List { prove: false } = self.target {
             for tool in &tools {
                 self.print(out, tool, None)?;
             }
             return Ok(left_out);
         }
-        let folder = match &self.arguments.output {
-            Some(folder) => folder.clone(),
-            None => PathBuf::from(self.file.file_stem().unwrap_or_default()),
-        };
         for (tool, proof) in tools.iter().zip(prove(&tools, self.json)?) {
             match proof {
                 Ok(exact) => {
-                    tool.write_to(&folder)?;
+                    if let Target::Folder(folder) = &self.target {
+                        tool.write_to(folder)?;
+                    }
                     self.print(out, tool, Some(exact))?;
                 }
                 Err(reason) => {
@@ -98,7 +127,7 @@ impl Run<'_> {
 
     /// Returns the tools to import.
     fn wanted<'l>(&self, library: &'l Library) -> Result<Vec<&'l ImportedTool>, Failure> {
-        let Some(only) = &self.arguments.only else { return Ok(library.tools().iter().collect()) };
+        let Some(only) = self.only else { return Ok(library.tools().iter().collect()) };
         Ok(vec![find(library, only, self.file)?])
     }
 
@@ -120,25 +149,35 @@ impl Run<'_> {
                     kind: Some(&entry.kind),
                     title: &entry.title,
                     unit: Some(entry.unit.symbol()),
+                    diameter: entry.diameter(),
+                    flute_length: entry.flute_length(),
+                    length: entry.length(),
                     stickout: entry.stickout,
+                    holder: entry.holder(),
                     proved,
                     notes,
                     left_out: None,
                 },
             );
         }
-        let number = entry.number.map_or_else(|| "-".to_owned(), |number| format!("T{number}"));
-        let proof = match proved {
-            None => "",
-            Some(true) => "  proved: depth is the distance",
-            Some(false) => "  not proved: run `touchoff check`",
-        };
-        writeln!(
+        line(
             out,
-            "{number:<6} {:<24} {}  {}{proof}",
-            Escaped(&entry.kind),
-            tool.path(),
-            Escaped(&entry.title)
+            [
+                &entry.number.map_or_else(|| "-".to_owned(), |number| format!("T{number}")),
+                &Escaped(&entry.kind).to_string(),
+                &length(entry.diameter()),
+                &length(entry.flute_length()),
+                &length(entry.length()),
+                &length(entry.stickout),
+                entry.unit.symbol(),
+                match proved {
+                    None => "",
+                    Some(true) => "exact",
+                    Some(false) => "open",
+                },
+                &tool.path(),
+                &Escaped(entry.holder().unwrap_or("-")).to_string(),
+            ],
         )?;
         for note in notes {
             message!("warning: {}: {note}", tool.path());
@@ -161,6 +200,24 @@ impl Run<'_> {
         message!("left out: {}: {reason}", Escaped(name));
         Ok(())
     }
+}
+
+/// The head of the table, in the order of [`line`].
+const HEAD: [&str; 10] =
+    ["number", "type", "diameter", "flutes", "length", "stick-out", "", "depth", "file", "holder"];
+
+/// Prints a line of the table.
+fn line(out: &mut Output, cells: [&str; 10]) -> Result<(), Failure> {
+    let [number, kind, diameter, flutes, length, stickout, unit, depth, file, holder] = cells;
+    Ok(writeln!(
+        out,
+        "{number:<7}{kind:<24}{diameter:>9}{flutes:>9}{length:>9}{stickout:>11} {unit:<5} {depth:<6} {file:<32} {holder}"
+    )?)
+}
+
+/// Formats a length of the table.
+fn length(length: Option<f64>) -> String {
+    length.map_or_else(|| "-".to_owned(), |length| format!("{}", (length * 1e4).round() / 1e4))
 }
 
 fn row(out: &mut Output, row: &Row<'_>) -> Result<(), Failure> {

@@ -10,6 +10,7 @@ mod demo;
 mod draw;
 mod expand;
 mod explain;
+mod export;
 mod failure;
 mod fmt;
 mod haptic;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Sample(arguments) => part::sample(&arguments, json).map(success),
         Command::Bench(arguments) => bench::bench(&arguments, json).map(success),
         Command::Import(arguments) => import::import(&arguments, json),
+        Command::Export(arguments) => export::export(&arguments, json),
         Command::Tools(arguments) => tools::tools(&arguments, json).map(success),
         Command::Check(arguments) => check::check(&arguments, json),
         Command::Explain(arguments) => {

@@ -1,7 +1,8 @@
-//! `touchoff tools`: lists the built-in tools or those in `.tool` files, and prints the source of a built-in tool.
+//! `touchoff tools`: lists the built-in tools or those of `.tool` files and libraries, and prints the source of a built-in tool.
 
 use crate::arguments::{ParamArguments, Tools, ToolsCommand};
 use crate::failure::Failure;
+use crate::import;
 use crate::loaded_tool::{built_in, load_file};
 use crate::output::{Output, extension, unwritable, write_file};
 use serde::Serialize;
@@ -64,7 +65,7 @@ impl<'a> Row<'a> {
 /// Runs `touchoff tools`, `tools list` and `tools show`.
 pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
     match &arguments.command {
-        None => list(&[], &ParamArguments::default(), json),
+        None => list(&arguments.files, &ParamArguments::default(), json),
         Some(ToolsCommand::List { files, params }) => list(files, params, json),
         Some(ToolsCommand::Show { name, output }) => show(name, output.as_deref(), json),
     }
@@ -72,14 +73,22 @@ pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
 
 /// Lists the tools in files; without files, the built-in tools.
 fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Failure> {
+    let is_library = |file: &&PathBuf| extension(file).is_some_and(|ending| ending != "tool");
+    let (libraries, files): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(is_library);
+    let mut out = Output::lines();
+    for library in &libraries {
+        import::list(library, json, &mut out)?;
+    }
+    if !libraries.is_empty() && files.is_empty() {
+        return Ok(out.flush()?);
+    }
     let files: Vec<Interpreted> =
-        files.iter().map(|file| load_file(file, params)).collect::<Result<_, _>>()?;
+        files.into_iter().map(|file| load_file(file, params)).collect::<Result<_, _>>()?;
     let infos: Vec<&ToolInfo> = match files.as_slice() {
         [] if params.is_empty() => TOOLS.iter().map(|tool| tool.info()).collect(),
         [] => return Err(Failure::UnusedParams("name the files to list")),
         files => files.iter().map(Tool::info).collect(),
     };
-    let mut out = Output::lines();
     for info in infos {
         if json {
             serde_json::to_writer(&mut out, &Row::of(info))?;

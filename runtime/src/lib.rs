@@ -105,7 +105,7 @@
 //! |---|---|
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
-//! | `import` | tool libraries of CAM systems as `.tool` files: `import::Library`; implies `interpreter` |
+//! | `import` | tool libraries of CAM systems as `.tool` files, and back: `import::Library`, `export::export`; implies `interpreter` |
 //! | `haptic` | the haptic loop |
 //! | `spacenav` | a SpaceMouse in the loop; implies `haptic` |
 //! | `postures` | posture maps, sweeps and paths; implies `parallel` |
@@ -138,6 +138,8 @@ pub mod certify;
 pub mod cloud;
 mod debug;
 mod escape;
+#[cfg(feature = "import")]
+pub mod export;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 mod id;

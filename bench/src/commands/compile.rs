@@ -1,6 +1,7 @@
-//! The page `compile.md`: size of each tool's code, compile time, and cost of loading a tool at run time instead.
+//! The page `compile.md`: size of each tool's code, compile time, cost of loading a tool at run time instead, and
+//! import of tool libraries.
 
-use super::interpreter;
+use super::{imported, interpreter};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -11,7 +12,8 @@ use touchoff_bench::page::{Page, Section};
 /// Number of compilations of each tool: in the release build, and in the unoptimised build.
 const COUNTS: [usize; 2] = [7, 3];
 
-/// Measures the code of each tool, its compile time with and without optimisation, and the cost of interpreting it.
+/// Measures the code of each tool, its compile time with and without optimisation, and the cost of interpreting it, and the
+/// import of a tool library.
 #[derive(Args)]
 pub(crate) struct Compile {
     /// Prints only the compile times of this build, in seconds: one line per tool with best, median and worst.
@@ -44,10 +46,17 @@ impl Compile {
         Ok(Some(Page {
             name: "compile",
             title: "What compiling a tool costs, and what loading it costs",
-            covers: &["tool-dsl/src", "tool-macros/src", "tools-library/tools", "runtime/src/tool"],
+            covers: &[
+                "tool-dsl/src",
+                "tool-macros/src",
+                "tools-library/tools",
+                "runtime/src/tool",
+                "runtime/src/import",
+            ],
             sections: vec![
                 Section { title: "Compiled", body: body(&rows), missed_limits: Vec::new() },
                 interpreter::section()?,
+                imported::section()?,
             ],
             figures: Vec::new(),
         }))

@@ -4,6 +4,7 @@ mod accuracy;
 mod certified;
 mod compile;
 mod haptics;
+mod imported;
 mod interpreter;
 mod mutants;
 mod postures;

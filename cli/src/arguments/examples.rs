@@ -63,6 +63,13 @@ Examples:
   Only list them:
     touchoff import library.json --list";
 
+pub(super) const EXPORT: &str = "\
+Examples:
+  Write a built-in tool and one of your own as a library of Fusion 360:
+    touchoff export D2Ball my.tool -o exported.json
+  Write the cutter of a tool as a CUTTER statement of APT:
+    touchoff export D2Ball -o cutter.apt";
+
 pub(super) const BENCH: &str = "\
 Examples:
   The thesis's tube, in some seconds:
@@ -74,8 +81,8 @@ pub(super) const TOOLS: &str = "\
 Examples:
   List the built-in tools:
     touchoff tools
-  Write the text of a built-in tool to a file of your own:
-    touchoff tools show D2Ball -o d2_ball.tool";
+  List the tools of a library with their sizes and proofs:
+    touchoff tools library.json";
 
 pub(super) const TOOLS_LIST: &str = "\
 Examples:

@@ -9,7 +9,9 @@ mod values;
 
 pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
 pub(crate) use contact::{Bench, DeviceKind, Haptic, Run, Sample, Verify};
-pub(crate) use tools::{Check, Draw, Expand, Explain, Fmt, Import, Stage, Tools, ToolsCommand};
+pub(crate) use tools::{
+    Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
+};
 
 use clap::{Parser, Subcommand};
 
@@ -27,7 +29,7 @@ Exit status:
      rewrite
   2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, or a
      program that could not be checked
-  3  `check` only warns; `import` left a tool out
+  3  `check` only warns; `import` or `export` left a tool out
   130  a signal ended `haptic`
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
 disk, is a failure. A file is replaced once it is whole: one that cannot be written is left as it was.";
@@ -94,7 +96,12 @@ pub(crate) enum Command {
     /// Cutters and holders become files of their own, which the tool mounts. The exit status is 3 if a tool was left out.
     #[command(after_help = examples::IMPORT)]
     Import(Import),
-    /// List the built-in tools or the tools of files, or print the text of a built-in tool.
+    /// Export tools to the format of a CAM system: Fusion 360, FreeCAD or APT.
+    ///
+    /// Each is imported again: what a format cannot express is left out with the reason. The exit status is then 3.
+    #[command(after_help = examples::EXPORT)]
+    Export(Export),
+    /// List the built-in tools or the tools of files and libraries, or print the text of a built-in tool.
     #[command(after_help = examples::TOOLS)]
     Tools(Tools),
     /// Check `.tool` files, and print the bounds that are proved for them.

@@ -1,12 +1,16 @@
 //! The arguments of the commands for tools and their files.
 
-use super::{ParamArguments, examples};
+use super::{ParamArguments, ToolArguments, examples};
 use clap::{Args, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 #[derive(Args)]
-#[command(subcommand_value_name = "list|show")]
+#[command(subcommand_value_name = "list|show", args_conflicts_with_subcommands = true)]
 pub(crate) struct Tools {
+    /// `.tool` files and tool libraries to list instead of the built-in tools.
+    #[arg(value_name = "FILE")]
+    pub(crate) files: Vec<PathBuf>,
     /// Action; without one, list the built-in tools.
     #[command(subcommand)]
     pub(crate) command: Option<ToolsCommand>,
@@ -14,11 +18,12 @@ pub(crate) struct Tools {
 
 #[derive(Subcommand)]
 pub(crate) enum ToolsCommand {
-    /// List the built-in tools, or the tools of files, with their units and titles.
+    /// List the built-in tools, or the tools of files, with their units and titles. Tools of a library are listed with
+    /// number, type, sizes and holder, and with the proof that depth is exact.
     #[command(after_help = examples::TOOLS_LIST)]
     List {
-        /// `.tool` files to list instead of the built-in tools.
-        #[arg(value_name = "FILE.tool")]
+        /// `.tool` files and tool libraries to list instead of the built-in tools.
+        #[arg(value_name = "FILE")]
         files: Vec<PathBuf>,
         #[command(flatten)]
         params: ParamArguments,
@@ -54,6 +59,18 @@ pub(crate) struct Import {
     /// Import only the tool with this name, title or number.
     #[arg(long, value_name = "NAME")]
     pub(crate) only: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct Export {
+    /// Tools to export: built-in tools, `.tool` files, or tools of the library `--tools`.
+    #[arg(required = true, value_name = "NAME|FILE.tool")]
+    pub(crate) tools: Vec<OsString>,
+    /// Output file; its ending gives the format: `.json` (Fusion 360), `.fctb` (FreeCAD, one tool) or `.apt`.
+    #[arg(short, long, value_name = "OUT.json|OUT.fctb|OUT.apt")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) tool: ToolArguments,
 }
 
 #[derive(Args)]

@@ -4,10 +4,10 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "import", "tools",
-    "check", "explain", "fmt", "expand", "draw",
+    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "import",
+    "export", "tools", "check", "explain", "fmt", "expand", "draw",
 ];
 
 const TOOL: &str = "tool My {
@@ -22,7 +22,7 @@ const TOOL: &str = "tool My {
 }
 ";
 
-const PROGRAM: &str =
+pub(super) const PROGRAM: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
 
 /// Returns the examples at the end of a help text, without their explanations.

@@ -1,6 +1,7 @@
 //! From a tool library to a program that is checked with its tools.
 
-use crate::bench::{Bench, stderr, stdout, touchoff};
+use crate::bench::{Bench, rows, stderr, stdout, touchoff};
+use crate::help::{PROGRAM, parsed};
 use serde_json::Value;
 
 /// A ball end mill in a nut, and a drill without a holder.
@@ -69,4 +70,54 @@ fn importing_again_changes_nothing() {
     assert_eq!(refused.status.code(), Some(1));
     assert!(stderr(&refused).contains("other content"), "{}", stderr(&refused));
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "mine");
+}
+
+/// The commands of docs/import.md lead from a library to a checked program.
+#[test]
+fn the_commands_of_the_page_work() {
+    let bench = Bench::new();
+    let block = bench.folder.path().join("block.stl");
+    std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
+    bench.write("library.json", LIBRARY);
+    bench.write("program.apt", PROGRAM);
+    let page = include_str!("../../../docs/import.md");
+    let (_, block) = page.split_once("```sh\n").expect("a block of commands");
+    let (block, _) = block.split_once("```").expect("its end");
+    let mut count = 0;
+    for line in block.lines() {
+        let command = line.split_once(" #").map_or(line, |(command, _)| command).trim_end();
+        let words: Vec<&str> = command.split(' ').skip(1).collect();
+        let output = parsed(&bench, words, false);
+        assert_eq!(output.status.code(), Some(0), "{command}: {}", stderr(&output));
+        count += 1;
+    }
+    assert!((1..=10).contains(&count), "{count} commands");
+    for file in
+        ["tools/cutters/d4_ball.tool", "tools/holders/er16_nut.tool", "d4_ball.svg", "changed.json"]
+    {
+        assert!(bench.folder.path().join(file).is_file(), "{file} is missing");
+    }
+}
+
+/// The table of a library has its sizes and its proofs, and an exported tool has the same.
+#[test]
+fn exported_tools_are_listed_as_before() {
+    let bench = Bench::new();
+    let library = bench.write("library.json", LIBRARY);
+    let exported = bench.folder.path().join("exported.json").display().to_string();
+    let tools = ["--tools", &library, "T3", "T4", "-o", &exported];
+    let output = touchoff(&[&["export", "--json"][..], &tools].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(rows(&output)[0]["type"], "ball end mill");
+    assert!(rows(&output)[0]["gaps"][0].as_str().is_some_and(|gap| gap.contains("length")));
+    let table = |file: &str| rows(&touchoff(&["tools", file, "--json"]));
+    let (before, after) = (table(&library), table(&exported));
+    for key in ["type", "title", "unit", "diameter", "flute_length", "stickout", "proved"] {
+        for k in 0..2 {
+            assert_eq!(before[k][key], after[k][key], "{key} of tool {k}");
+        }
+    }
+    let wrong = touchoff(&["export", "D2Ball", "-o", "tool.step"]);
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(stderr(&wrong).contains("tool.json"), "{}", stderr(&wrong));
 }

@@ -11,40 +11,57 @@ use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
 use crate::unit::Unit;
 
-/// Reads the cutters of a program, each with the tool number that follows it.
+/// The fields of `CUTTER`, `TLDATA/MILL` and `TLDATA/DRILL,MILL`.
+const CUTTER: [&str; 7] = [
+    "diameter",
+    "corner radius",
+    "radius of the corner's centre",
+    "height of the corner's centre",
+    "angle of the end",
+    "angle of the side",
+    "height",
+];
+const MILL: [&str; 5] =
+    ["diameter", "corner radius", "length", "angle of the side", "angle of the end"];
+const DRILL: [&str; 5] = ["diameter", "corner radius", "length", "point angle", "flute length"];
+
+/// Reads the cutters of a program, each with its tool number.
 pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
     let mut unit = None;
-    let mut found: Vec<(usize, Vec<f64>, Statement, Option<u32>)> = Vec::new();
-    let mut number = None;
-    // NX also writes `TLDATA` into comments for controls that do not know it.
+    let mut found: Vec<Statement<'_>> = Vec::new();
+    // A number that stands before its cutter.
+    let mut pending = None;
     for (index, line) in text.lines().enumerate() {
+        // NX also writes `TLDATA` into comments, for controls that do not know it.
         let code = line.split_once("$$").map_or(line, |(code, _)| code).trim();
         let Some((word, rest)) = code.split_once('/') else { continue };
-        let word = word.trim().to_ascii_uppercase();
-        let mut list = rest.split(',').map(str::trim);
-        match word.as_str() {
+        let at_line = |what: &str| format!("line {}: {what}", index + 1);
+        match word.trim().to_ascii_uppercase().as_str() {
             "UNITS" => {
                 unit = Some(match rest.trim().to_ascii_uppercase().as_str() {
                     "MM" => Unit::Millimetre,
                     "INCHES" | "INCH" => Unit::Inch,
-                    other => return Err(format!("line {}: unit `{other}`", index + 1)),
+                    other => return Err(at_line(&format!("unit `{other}`"))),
                 });
             }
             "LOADTL" | "TOOLNO" => {
-                number = list.next().and_then(|first| first.parse::<f64>().ok()).map(|n| n as u32);
-                if let Some(last) = found.last_mut() {
-                    last.3 = last.3.or(number);
+                let first = rest.split(',').next().unwrap_or("").trim();
+                let number = first.trim_end_matches('.').parse::<u32>();
+                let number = number.map_err(|_| at_line(&format!("tool number `{first}`")))?;
+                match found.last_mut().filter(|last| last.number.is_none()) {
+                    Some(last) => last.number = Some(number),
+                    None => pending = Some(number),
                 }
             }
-            "CUTTER" | "TLDATA" => {
-                let statement = match (word.as_str(), rest.split(',').next().map(str::trim)) {
-                    ("CUTTER", _) => Statement::Cutter,
-                    (_, Some("MILL")) => Statement::Mill,
-                    (_, Some("DRILL")) => Statement::Drill,
-                    (_, kind) => Statement::Other(kind.unwrap_or("").to_owned()),
-                };
-                let numbers = list.filter_map(|part| part.parse::<f64>().ok()).collect();
-                found.push((index + 1, numbers, statement, number));
+            word @ ("CUTTER" | "TLDATA") => {
+                let mut fields: Vec<&str> = rest.split(',').map(str::trim).collect();
+                let keyword = if word == "TLDATA" { fields.remove(0) } else { "" };
+                let is_drill = keyword == "DRILL" && fields.first() == Some(&"MILL");
+                if is_drill {
+                    fields.remove(0);
+                }
+                let number = pending.take();
+                found.push(Statement { line: index + 1, keyword, fields, unit, number });
             }
             _ => {}
         }
@@ -52,76 +69,100 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
     if found.is_empty() {
         return Err("it states no cutter, by `CUTTER/` or `TLDATA/`".to_owned());
     }
-    Ok(found.into_iter().map(|found| tool(found, unit)).collect())
+    // The unit may be stated below the first cutter.
+    Ok(found.iter().map(|statement| statement.tool(statement.unit.or(unit))).collect())
 }
 
-/// The statement that describes a cutter.
-enum Statement {
-    Cutter,
-    Mill,
-    Drill,
-    Other(String),
-}
-
-fn tool(
-    (line, numbers, statement, number): (usize, Vec<f64>, Statement, Option<u32>),
+/// A statement that describes a cutter.
+struct Statement<'a> {
+    line: usize,
+    /// The first word of a `TLDATA`; empty for a `CUTTER`.
+    keyword: &'a str,
+    fields: Vec<&'a str>,
     unit: Option<Unit>,
-) -> Found {
-    let label = format!("cutter of line {line}");
-    let problem = |reason: &str| Problem::new(&label, reason);
-    let unit = unit.ok_or_else(|| {
-        problem("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")
-    })?;
-    let at = |k: usize| numbers.get(k).copied().filter(|value| value.is_finite());
-    let need =
-        |k: usize, what: &str| at(k).ok_or_else(|| problem(&format!("its {what} is not stated")));
-    let diameter = need(0, "diameter")?;
-    let corner = at(1).unwrap_or(0.0);
-    let mut notes =
-        vec![Note::Unstated("shank and the holder", "the tool ends with its flutes".to_owned())];
-    let (shape, flute_length, length) = match statement {
-        Statement::Other(kind) => {
-            return Err(problem(&format!("`TLDATA/{kind}` cannot be read yet")));
-        }
-        Statement::Drill => {
-            let length = need(2, "length")?;
-            let point_angle = need(3, "point angle")?;
-            (Shape::Drill { tip_diameter: 0.0, point_angle }, at(4).unwrap_or(length), length)
-        }
-        Statement::Mill => {
-            let length = need(2, "length")?;
-            let [side, end] = [3, 4].map(|k| at(k).unwrap_or(0.0));
-            let centre = (diameter / 2.0 - corner, corner);
-            (general(diameter, corner, centre, [end, side]), length, length)
-        }
-        Statement::Cutter => {
-            let length = match at(6) {
-                Some(length) => length,
-                None => {
-                    return Err(problem("its height, the last of seven numbers, is not stated"));
-                }
+    number: Option<u32>,
+}
+
+impl Statement<'_> {
+    fn tool(&self, unit: Option<Unit>) -> Found {
+        let read = || -> Result<Entry, String> {
+            let unit =
+                unit.ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
+            let names: &[&str] = match self.keyword {
+                "" => &CUTTER,
+                "MILL" => &MILL,
+                "DRILL" => &DRILL,
+                kind => return Err(format!("`TLDATA/{kind}` cannot be read yet")),
             };
-            let centre = (at(2).unwrap_or(diameter / 2.0 - corner), at(3).unwrap_or(corner));
-            let [end, side] = [4, 5].map(|k| at(k).unwrap_or(0.0));
-            (general(diameter, corner, centre, [end, side]), length, length)
-        }
-    };
-    if flute_length < length {
-        notes.clear();
-        notes.push(Note::Unstated("holder", "the tool ends at its length".to_owned()));
+            self.entry(unit, &self.numbers(names)?)
+        };
+        read().map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
     }
-    let mut entry = Entry::new(unit, "cutter", "", vec![("line", line.to_string())]);
-    entry.number = number;
-    entry.notes = notes;
-    entry.cutter = Some(Cutter {
-        shape,
-        diameter,
-        flute_length,
-        length,
-        shoulder: None,
-        shank_diameter: None,
-    });
-    Ok(entry)
+
+    /// Returns the value of each field, `None` for one that is left empty.
+    fn numbers(&self, names: &[&str]) -> Result<Vec<Option<f64>>, String> {
+        if self.fields.len() > names.len() {
+            return Err(format!("it has {} fields, not {}", self.fields.len(), names.len()));
+        }
+        let number = |(field, name): (&&str, &&str)| {
+            if field.is_empty() {
+                return Ok(None);
+            }
+            let value: Option<f64> = field.parse().ok();
+            let value = value.filter(|value| value.is_finite());
+            value.map(Some).ok_or_else(|| format!("its {name} is `{field}`, which is no number"))
+        };
+        let mut numbers =
+            self.fields.iter().zip(names).map(number).collect::<Result<Vec<_>, _>>()?;
+        numbers.resize(names.len(), None);
+        Ok(numbers)
+    }
+
+    fn entry(&self, unit: Unit, numbers: &[Option<f64>]) -> Result<Entry, String> {
+        let need = |k: usize, what: &str| numbers[k].ok_or_else(|| format!("it states no {what}"));
+        let diameter = need(0, "diameter")?;
+        let corner = numbers[1].unwrap_or(0.0);
+        let (shape, flute_length, length) = match self.keyword {
+            "DRILL" => {
+                let (length, point_angle) = (need(2, "length")?, need(3, "point angle")?);
+                if corner != 0.0 {
+                    return Err(format!("it is a drill with a corner radius, {corner}"));
+                }
+                let shape = Shape::Drill { tip_diameter: 0.0, point_angle };
+                (shape, numbers[4].unwrap_or(length), length)
+            }
+            "MILL" => {
+                let length = need(2, "length")?;
+                let [side, end] = [3, 4].map(|k| numbers[k].unwrap_or(0.0));
+                let centre = (diameter / 2.0 - corner, corner);
+                (general(diameter, corner, centre, [end, side]), length, length)
+            }
+            _ => {
+                let length = need(6, "height, the last of seven numbers")?;
+                let centre =
+                    (numbers[2].unwrap_or(diameter / 2.0 - corner), numbers[3].unwrap_or(corner));
+                let [end, side] = [4, 5].map(|k| numbers[k].unwrap_or(0.0));
+                (general(diameter, corner, centre, [end, side]), length, length)
+            }
+        };
+        let note = if flute_length < length {
+            Note::Unstated("holder", "the tool ends at its length".to_owned())
+        } else {
+            Note::Unstated("shank and the holder", "the tool ends with its flutes".to_owned())
+        };
+        let mut entry = Entry::new(unit, "cutter", "", vec![("line", self.line.to_string())]);
+        entry.number = self.number;
+        entry.notes = vec![note];
+        entry.cutter = Some(Cutter {
+            shape,
+            diameter,
+            flute_length,
+            length,
+            shoulder: None,
+            shank_diameter: None,
+        });
+        Ok(entry)
+    }
 }
 
 /// Returns the shape of APT's general cutter. The simple ones keep their simple names.

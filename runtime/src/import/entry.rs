@@ -104,6 +104,19 @@ pub enum Note {
     },
 }
 
+impl Note {
+    /// Adds the note that a default was taken for a dimension, and returns it.
+    pub(super) fn default_taken(notes: &mut Vec<Note>, name: &'static str, default: f64) -> f64 {
+        notes.push(Note::Unstated(name, format!("taken: {}", decimal(default))));
+        default
+    }
+
+    pub(super) fn no_shank_diameter() -> Note {
+        let drawn = "the shank is as wide as the cutter below it".to_owned();
+        Note::Unstated("shank diameter", drawn)
+    }
+}
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -178,6 +191,26 @@ impl Entry {
     /// Returns what to call the tool: its description, or its type.
     pub fn label(&self) -> &str {
         if self.title.is_empty() { &self.kind } else { &self.title }
+    }
+
+    /// Returns the diameter, as the library states it for the type; `None` for a holder.
+    pub fn diameter(&self) -> Option<f64> {
+        self.cutter.as_ref().map(|cutter| cutter.diameter)
+    }
+
+    /// Returns the length of the flutes; `None` for a holder.
+    pub fn flute_length(&self) -> Option<f64> {
+        self.cutter.as_ref().map(|cutter| cutter.flute_length)
+    }
+
+    /// Returns the overall length; `None` for a holder.
+    pub fn length(&self) -> Option<f64> {
+        self.cutter.as_ref().map(|cutter| cutter.length)
+    }
+
+    /// Returns the holder's description, if the tool has a holder.
+    pub fn holder(&self) -> Option<&str> {
+        self.holder.as_ref().map(|holder| &*holder.title)
     }
 
     /// Adds the notes that follow from the dimensions, whatever the format.

@@ -46,9 +46,19 @@ fn corner(value: &Value) -> Result<Corner, String> {
             _ => Err(format!("a segment of its profile has no point `{key}`")),
         }
     };
-    let is_arc = value.get("arc").and_then(Value::as_bool).unwrap_or(false);
-    let ccw = value.get("ccw").and_then(Value::as_bool).unwrap_or(false);
-    let arc = if is_arc { Some((point("center")?, ccw)) } else { None };
+    let flag = |key: &str| match value.get(key) {
+        None => Ok(None),
+        Some(Value::Bool(flag)) => Ok(Some(*flag)),
+        Some(_) => Err(format!("`{key}` of a segment of its profile is neither true nor false")),
+    };
+    let arc = match (flag("arc")?, flag("ccw")?) {
+        (Some(true), Some(ccw)) => Some((point("center")?, ccw)),
+        (Some(true), None) => return Err("an arc of its profile has no `ccw`".to_owned()),
+        (None, _) if value.get("center").is_some() => {
+            return Err("a segment of its profile has a `center`, but no `arc`".to_owned());
+        }
+        _ => None,
+    };
     Ok(Corner { end: point("end")?, arc })
 }
 

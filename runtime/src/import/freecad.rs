@@ -113,7 +113,11 @@ fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {
 
 fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cutter, String> {
     let length = of.length("Length")?;
-    let mut shank_diameter = of.optional_length("ShankDiameter")?;
+    let shank = if shape == "probe" { "ShaftDiameter" } else { "ShankDiameter" };
+    let shank_diameter = of.optional_length(shank)?;
+    if shank_diameter.is_none() {
+        notes.push(Note::no_shank_diameter());
+    }
     let mut shoulder = None;
     let flutes = || of.length("CuttingEdgeHeight");
     let mut diameter = of.length("Diameter")?;
@@ -122,7 +126,7 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
         "ballend" => (Shape::Ball, flutes()?),
         "bullnose" => (Shape::Flat { corner: corner(of, diameter)? }, flutes()?),
         "chamfer" => {
-            let tip_diameter = of.optional_length("TipDiameter")?.unwrap_or(0.0);
+            let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let half_angle = of.angle("CuttingEdgeAngle")? / 2.0;
             let wide = tip_diameter + 2.0 * flutes()? * half_angle.to_radians().tan();
             if (wide - diameter).abs() > 0.01 * diameter {
@@ -135,7 +139,7 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             (Shape::Cone { tip_diameter, half_angle }, flutes()?)
         }
         "v-bit" => {
-            let tip_diameter = of.optional_length("TipDiameter")?.unwrap_or(0.0);
+            let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
             let flute_length = super::term::rounded(cone + flutes()?);
@@ -159,7 +163,8 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
         }
         "taperedballnose" => {
             let half_angle = of.angle("TaperAngle")? / 2.0;
-            let cone_to = of.optional_length("TaperDiameter")?.unwrap_or(0.0);
+            let cone_to =
+                of.length_or("TaperDiameter", "largest diameter of the cone", 0.0, notes)?;
             (Shape::TaperedBall { radius: diameter / 2.0, half_angle, cone_to }, flutes()?)
         }
         "radius" => {
@@ -167,12 +172,12 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             (Shape::Radius { corner: of.length("CuttingRadius")?, max_diameter }, flutes()?)
         }
         "slittingsaw" => {
-            let cap_height = of.optional_length("CapHeight")?.unwrap_or(0.0);
+            let cap_height = of.length_or("CapHeight", "height of the cap", 0.0, notes)?;
             let thickness = of.length("BladeThickness")?;
             if cap_height > 0.0 {
                 notes.push(Note::Origin(cap_height));
             }
-            let cap_diameter = of.optional_length("CapDiameter")?.unwrap_or(0.0);
+            let cap_diameter = of.length_or("CapDiameter", "diameter of the cap", 0.0, notes)?;
             let saw = Shape::Saw { thickness, cap_diameter, cap_height };
             // The length begins at the blade, the cap below it.
             return Ok(Cutter {
@@ -184,14 +189,11 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
                 shank_diameter,
             });
         }
-        "probe" => {
-            shank_diameter = of.optional_length("ShaftDiameter")?;
-            (Shape::Probe, diameter / 2.0)
-        }
+        "probe" => (Shape::Probe, diameter / 2.0),
         "thread-mill" | "threadmill" => {
             let neck_diameter = of.length("NeckDiameter")?;
             shoulder = Some((of.length("NeckLength")?, Some(neck_diameter)));
-            let crest = of.optional_length("Crest")?.unwrap_or(0.0);
+            let crest = of.length_or("Crest", "width of the crest", 0.0, notes)?;
             let angle = of.angle("cuttingAngle")?;
             (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
         }
@@ -231,6 +233,18 @@ impl Parameters<'_> {
             "um" | "µm" | "μm" => Some(1e-3),
             _ => None,
         })
+    }
+
+    /// Returns a length in mm, or a default with a note.
+    fn length_or(
+        &self,
+        key: &str,
+        name: &'static str,
+        default: f64,
+        notes: &mut Vec<Note>,
+    ) -> Result<f64, String> {
+        let length = self.optional_length(key)?;
+        Ok(length.unwrap_or_else(|| Note::default_taken(notes, name, default)))
     }
 
     /// Returns an angle in degrees.

@@ -12,18 +12,7 @@ use serde_json::{Map, Value};
 
 type Object = Map<String, Value>;
 
-/// Reads the tools of a library.
-pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
-    let tools = match &value {
-        Value::Object(library) => library.get("data").and_then(Value::as_array),
-        Value::Array(tools) => Some(tools),
-        _ => None,
-    };
-    let tools = tools.ok_or("there is no list `data` of tools")?;
-    Ok(tools.iter().map(tool).collect())
-}
-
+/// Reads a tool.
 pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
@@ -45,12 +34,12 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         return Ok(entry);
     }
     let empty = Object::new();
-    let geometry = Geometry(tool.get("geometry").and_then(Value::as_object).unwrap_or(&empty));
+    let geometry = Geometry(object(tool, "geometry")?.unwrap_or(&empty));
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
-    if let Some(shaft) = tool.get("shaft").and_then(Value::as_object) {
-        entry.shaft = sections(shaft)?;
+    if let Some(shaft) = object(tool, "shaft")? {
+        entry.shaft = sections(shaft).map_err(|error| format!("its shaft: {error}"))?;
     }
-    if let (Some(last), Some(shank)) = (entry.shaft.last(), geometry.get("SFDM"))
+    if let (Some(last), Some(shank)) = (entry.shaft.last(), geometry.get("SFDM")?)
         && shank > 0.0
         && last.upper_diameter != shank
     {
@@ -60,11 +49,11 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
             taken: "shaft's segments",
         });
     }
-    if let Some(value) = tool.get("holder").and_then(Value::as_object) {
+    if let Some(value) = object(tool, "holder")? {
         let holder = holder(value)?;
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
         let gauge = number_of(value, "gaugeLength");
-        let stated = geometry.get("assemblyGaugeLength");
+        let stated = geometry.get("assemblyGaugeLength")?;
         if let (Some(stickout), Some(gauge), Some(stated)) = (entry.stickout, gauge, stated) {
             let sum = stickout + gauge * holder.unit.factor_to(unit);
             if stated > 0.0 && (sum - stated).abs() > 1e-4 * sum.abs() {
@@ -95,7 +84,7 @@ fn cutter(
         "flat end mill" => Shape::Flat { corner: 0.0 },
         "bull nose end mill" => Shape::Flat { corner: geometry.require("RE", "corner radius")? },
         "ball end mill" => {
-            let (radius, diameter) = (geometry.get("RE").unwrap_or(0.0), diameter()?);
+            let (radius, diameter) = (geometry.get("RE")?.unwrap_or(0.0), diameter()?);
             if radius > 0.0 && (2.0 * radius - diameter).abs() > 1e-6 * diameter {
                 notes.push(Note::Contradiction {
                     first: ("corner radius", radius),
@@ -106,32 +95,33 @@ fn cutter(
             Shape::Ball
         }
         "tapered mill" => {
-            let corner = geometry.get("RE").unwrap_or(0.0);
+            let corner = geometry.or("RE", "corner radius", 0.0, notes)?;
             let half_angle = geometry.require("TA", "taper angle")?;
             match text(tool, "tapered-type") {
                 "tapered_ball" => Shape::TaperedBall { radius: corner, half_angle, cone_to: 0.0 },
-                _ => Shape::Tapered { corner, half_angle },
+                "" | "tapered_bull_nose" => Shape::Tapered { corner, half_angle },
+                other => return Err(format!("the taper `{other}` cannot be read yet")),
             }
         }
         "chamfer mill" => Shape::Chamfer {
-            tip_diameter: geometry.get("tip-diameter").unwrap_or(0.0),
+            tip_diameter: geometry.or("tip-diameter", "tip diameter", 0.0, notes)?,
             half_angle: geometry.require("TA", "taper angle")?,
         },
         "dovetail mill" => Shape::Dovetail {
-            corner: geometry.get("RE").unwrap_or(0.0),
+            corner: geometry.or("RE", "corner radius", 0.0, notes)?,
             half_angle: geometry.require("TA", "taper angle")?,
         },
         "lollipop mill" => Shape::Lollipop,
-        "slot mill" => Shape::Slot { corner: geometry.get("RE").unwrap_or(0.0) },
+        "slot mill" => Shape::Slot { corner: geometry.or("RE", "corner radius", 0.0, notes)? },
         "radius mill" => Shape::Radius {
             corner: geometry.require("RE", "corner radius")?,
             max_diameter: f64::INFINITY,
         },
         "face mill" => Shape::Face {
-            corner: geometry.get("RE").unwrap_or(0.0),
-            upper: geometry.get("upper-radius").unwrap_or(0.0),
-            half_angle: geometry.get("TA").unwrap_or(0.0),
-            max_diameter: geometry.get("DCX").unwrap_or(0.0),
+            corner: geometry.or("RE", "corner radius", 0.0, notes)?,
+            upper: geometry.or("upper-radius", "upper radius", 0.0, notes)?,
+            half_angle: geometry.or("TA", "taper angle", 0.0, notes)?,
+            max_diameter: geometry.or("DCX", "largest diameter", 0.0, notes)?,
         },
         "corner chamfer end mill" => Shape::CornerChamfer {
             width: geometry.require("chamfer-width", "chamfer width")?,
@@ -140,8 +130,8 @@ fn cutter(
         "circle segment barrel" => Shape::Barrel {
             flank: geometry.require("profile-radius", "profile radius")?,
             waist: geometry.require("axial-distance", "axial distance")?,
-            lower: geometry.get("lower-radius").unwrap_or(0.0),
-            upper: geometry.get("upper-radius").unwrap_or(0.0),
+            lower: geometry.or("lower-radius", "lower radius", 0.0, notes)?,
+            upper: geometry.or("upper-radius", "upper radius", 0.0, notes)?,
         },
         "circle segment lens" => Shape::Lens {
             face: geometry.require("lower-radius", "lower radius")?,
@@ -166,15 +156,15 @@ fn cutter(
             }
             Shape::Thread {
                 pitch: geometry.require("TP", "thread pitch")?,
-                angle: geometry.get("thread-profile-angle").unwrap_or(60.0),
-                teeth: geometry.get("NT").map_or(1, |teeth| teeth.clamp(1.0, 1e6) as u32),
+                angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+                teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
             }
         }
         "drill" => {
             Shape::Drill { tip_diameter: 0.0, point_angle: geometry.require("SIG", "point angle")? }
         }
         "spot drill" | "counter sink" => Shape::Drill {
-            tip_diameter: geometry.get("tip-diameter").unwrap_or(0.0),
+            tip_diameter: geometry.or("tip-diameter", "tip diameter", 0.0, notes)?,
             point_angle: geometry.require("SIG", "point angle")?,
         },
         "center drill" => Shape::CenterDrill {
@@ -183,7 +173,7 @@ fn cutter(
             point_angle: geometry.require("SIG", "point angle")?,
             body_angle: geometry.require("TA", "body angle")?,
         },
-        "reamer" | "counter bore" | "boring bar" | "block drill" => flat_or_point(geometry),
+        "reamer" | "counter bore" | "boring bar" | "block drill" => flat_or_point(geometry, notes)?,
         "tap left hand" | "tap right hand" | "form tap left hand" | "form tap right hand" => {
             notes
                 .push(Note::Unstated("chamfer of the tap", "it is drawn as a cylinder".to_owned()));
@@ -199,28 +189,30 @@ fn cutter(
         other => return Err(format!("the type `{other}` cannot be read yet")),
     };
     let diameter = diameter()?;
-    let shoulder = geometry.get("shoulder-length").map(|length| {
-        let diameter = geometry.get("shoulder-diameter").filter(|diameter| *diameter > 0.0);
-        (length, diameter)
-    });
+    let shoulder_diameter = geometry.get("shoulder-diameter")?.filter(|diameter| *diameter > 0.0);
+    let shoulder = geometry.get("shoulder-length")?.map(|length| (length, shoulder_diameter));
+    let shank_diameter = geometry.get("SFDM")?;
+    if shank_diameter.is_none() {
+        notes.push(Note::no_shank_diameter());
+    }
     Ok(Cutter {
         shape,
         diameter,
         flute_length: geometry.require("LCF", "flute length")?,
         length: geometry.require("OAL", "overall length")?,
         shoulder,
-        shank_diameter: geometry.get("SFDM").filter(|shank| *shank > 0.0),
+        shank_diameter: shank_diameter.filter(|shank| *shank > 0.0),
     })
 }
 
-/// Returns the shape of a tool whose point is flat unless it states an angle.
-fn flat_or_point(geometry: &Geometry<'_>) -> Shape {
-    match geometry.get("SIG") {
-        Some(point_angle) if point_angle > 0.0 && point_angle < 180.0 => {
+/// Returns the shape of a tool whose end is flat if the angle of its point is 0 or 180.
+fn flat_or_point(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<Shape, String> {
+    Ok(match geometry.or("SIG", "point angle", 180.0, notes)? {
+        point_angle if point_angle > 0.0 && point_angle < 180.0 => {
             Shape::Drill { tip_diameter: 0.0, point_angle }
         }
-        _ => Shape::Flat { corner: geometry.get("RE").unwrap_or(0.0) },
-    }
+        _ => Shape::Flat { corner: geometry.or("RE", "corner radius", 0.0, notes)? },
+    })
 }
 
 fn holder(value: &Object) -> Result<Holder, String> {
@@ -237,7 +229,7 @@ fn holder(value: &Object) -> Result<Holder, String> {
 }
 
 fn sections(value: &Object) -> Result<Vec<Section>, String> {
-    let list = value.get("segments").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let list = value.get("segments").and_then(Value::as_array).ok_or("it has no `segments`")?;
     let length = |segment: &Value, key: &str| {
         segment.get(key).and_then(Value::as_f64).ok_or_else(|| format!("a segment has no `{key}`"))
     };
@@ -256,12 +248,39 @@ fn sections(value: &Object) -> Result<Vec<Section>, String> {
 struct Geometry<'a>(&'a Object);
 
 impl Geometry<'_> {
-    fn get(&self, key: &str) -> Option<f64> {
-        number_of(self.0, key)
+    /// Returns a dimension, if it is stated.
+    fn get(&self, key: &str) -> Result<Option<f64>, String> {
+        match self.0.get(key) {
+            None | Some(Value::Null) => Ok(None),
+            Some(value) => match value.as_f64().filter(|value| value.is_finite()) {
+                Some(value) => Ok(Some(value)),
+                None => Err(format!("its `{key}` is {value}, no number")),
+            },
+        }
+    }
+
+    /// Returns a dimension, or a default with a note.
+    fn or(
+        &self,
+        key: &str,
+        name: &'static str,
+        default: f64,
+        notes: &mut Vec<Note>,
+    ) -> Result<f64, String> {
+        Ok(self.get(key)?.unwrap_or_else(|| Note::default_taken(notes, name, default)))
     }
 
     fn require(&self, key: &str, name: &'static str) -> Result<f64, String> {
-        self.get(key).ok_or_else(|| super::entry::reason(&ShapeError::Unstated(name)))
+        self.get(key)?.ok_or_else(|| super::entry::reason(&ShapeError::Unstated(name)))
+    }
+}
+
+/// Returns the object of a key, if there is one.
+fn object<'a>(value: &'a Object, key: &str) -> Result<Option<&'a Object>, String> {
+    match value.get(key) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::Object(object)) => Ok(Some(object)),
+        Some(_) => Err(format!("its `{key}` is no object")),
     }
 }
 
@@ -270,11 +289,13 @@ pub(super) fn tool_number(value: &Value) -> Option<u32> {
     value.as_u64().and_then(|number| u32::try_from(number).ok())
 }
 
-fn number_of(object: &Object, key: &str) -> Option<f64> {
+/// Returns a finite number of an object.
+pub(super) fn number_of(object: &Object, key: &str) -> Option<f64> {
     object.get(key).and_then(Value::as_f64).filter(|value| value.is_finite())
 }
 
-fn text<'a>(object: &'a Object, key: &str) -> &'a str {
+/// Returns a text of an object without blanks around it; empty if there is none.
+pub(super) fn text<'a>(object: &'a Object, key: &str) -> &'a str {
     object.get(key).and_then(Value::as_str).unwrap_or("").trim()
 }
 

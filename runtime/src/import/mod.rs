@@ -19,6 +19,7 @@
 //! ```
 
 mod apt;
+mod camotics;
 mod entry;
 mod error;
 mod files;
@@ -26,6 +27,7 @@ mod form;
 mod freecad;
 mod fusion;
 mod hsm;
+mod kiri;
 mod linuxcnc;
 mod name;
 mod outline;
@@ -37,10 +39,12 @@ mod tests;
 pub use entry::{Entry, Note, Skipped};
 pub use error::ImportError;
 pub use files::ToolFile;
+pub(crate) use term::rounded;
 
 use crate::tool::Interpreted;
 use entry::reason;
 use files::Writer;
+use serde_json::Value;
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -102,10 +106,11 @@ impl Library {
         let ending = file.extension().map(|ending| ending.to_ascii_lowercase());
         let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or("");
         let (format, found) = match ending {
-            "json" => ("a Fusion 360 tool library", text(content).and_then(|t| fusion::read(&t))),
-            "tools" => {
-                ("a Fusion 360 tool library", unzipped(content).and_then(|t| fusion::read(&t)))
-            }
+            "json" => (
+                "a tool library of Fusion 360, Kiri:Moto or CAMotics",
+                text(content).and_then(|t| json(&t)),
+            ),
+            "tools" => ("a Fusion 360 tool library", unzipped(content).and_then(|t| json(&t))),
             "fctb" => ("a FreeCAD tool bit", text(content).and_then(|t| freecad::bit(&t))),
             "fctl" => {
                 ("a FreeCAD tool library", text(content).and_then(|t| freecad::library(&t, file)))
@@ -239,6 +244,25 @@ fn text(content: &[u8]) -> Result<String, String> {
         .decode_without_bom_handling_and_without_replacement(&content[mark..])
         .map(String::from)
         .ok_or_else(|| format!("its text is not {}", encoding.name()))
+}
+
+/// Reads the tools of a JSON text; their keys tell which program wrote it.
+fn json(text: &str) -> Result<Vec<Found>, String> {
+    let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    if kiri::is_tool(&value) {
+        return Ok(vec![kiri::tool(&value)]);
+    }
+    let table = value.get("tools").unwrap_or(&value);
+    if let Some(table) = table.as_object().filter(|table| camotics::is_table(table)) {
+        return Ok(camotics::read(table));
+    }
+    let tools = match &value {
+        Value::Array(tools) => Some(tools),
+        _ => value.get("data").or_else(|| value.get("tools")).and_then(Value::as_array),
+    };
+    let tools = tools.ok_or("there is no list of tools, neither `data` nor `tools`")?;
+    let tool = |tool| if kiri::is_tool(tool) { kiri::tool(tool) } else { fusion::tool(tool) };
+    Ok(tools.iter().map(tool).collect())
 }
 
 /// Returns the JSON file of an archive.

@@ -144,6 +144,6 @@ pub(super) fn decimal(value: f64) -> String {
 }
 
 /// Returns a sum of decimals without the rounding of doubles: 1e-9 is finer than any tool library states a length.
-pub(super) fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     if value.abs() < 1e6 { (value * 1e9).round() / 1e9 } else { value }
 }

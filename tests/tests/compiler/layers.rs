@@ -45,6 +45,7 @@ const RUNTIME: &[&str] = &[
     "motion",
     "tool",
     "import",
+    "export",
     "bvh",
     "cloud",
     "point_bvh",

@@ -1,8 +1,9 @@
-//! The runtime: evaluators, queries, scenes and the haptic loop.
+//! The runtime: evaluators, queries, scenes, imported tools and the haptic loop.
 
 mod closed_forms;
 mod evaluators;
 mod haptic;
+mod import;
 mod levels;
 mod query;
 mod scene;

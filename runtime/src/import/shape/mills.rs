@@ -89,6 +89,20 @@ impl Cutter {
         Ok(())
     }
 
+    /// Draws a cone from a tip up to the diameter at the end of the flutes.
+    pub(super) fn truncated_cone(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        tip_diameter: f64,
+    ) -> Result<(), ShapeError> {
+        self.check_tip(tip_diameter)?;
+        flat_tip(outline, tip_diameter);
+        let flute = self.flute_param(outline)?;
+        outline.line(radius, &flute, cutting("cone"));
+        Ok(())
+    }
+
     /// Draws a cone from a tip and, if the neck is narrower, the same cone back to it.
     pub(super) fn chamfer(
         &self,

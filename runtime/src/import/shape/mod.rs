@@ -47,6 +47,10 @@ pub(super) enum Shape {
         tip_diameter: f64,
         half_angle: f64,
     },
+    /// A cone from a tip up to the diameter at the end of the flutes.
+    TruncatedCone {
+        tip_diameter: f64,
+    },
     /// A cone from a tip, with half its angle, that narrows to the neck in the same way.
     Chamfer {
         tip_diameter: f64,
@@ -189,6 +193,9 @@ impl Cutter {
             }
             Shape::Cone { tip_diameter, half_angle } => {
                 self.cone_from_tip(outline, tip_diameter, half_angle)
+            }
+            Shape::TruncatedCone { tip_diameter } => {
+                self.truncated_cone(outline, radius, tip_diameter)
             }
             Shape::TaperedBall { radius: ball, half_angle, cone_to } => {
                 self.tapered_ball(outline, ball, half_angle, cone_to)

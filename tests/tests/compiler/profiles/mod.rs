@@ -11,9 +11,9 @@ mod rounded;
 mod smooth;
 mod valid;
 
-use std::ffi::OsStr;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
+use touchoff_tests::count::case_count;
 
 /// Returns the tool of a text, or its diagnostics.
 fn tool(text: &str) -> Result<Box<CheckedTool>, String> {
@@ -43,29 +43,7 @@ fn said(text: &str) -> Vec<(String, String)> {
     said
 }
 
-/// Returns the number of random profiles to test: the variable `PROFILES`, or 60 without it.
-///
-/// # Panics
-/// If the variable is no whole number above 0: a typing error must not pass for a long run.
+/// Returns the number of random profiles to test.
 fn profiles() -> usize {
-    match count(std::env::var_os("PROFILES").as_deref()) {
-        Ok(count) => count,
-        Err(text) => panic!("PROFILES is `{text}`: give a whole number above 0"),
-    }
-}
-
-/// Returns the number that a variable holds, or its text where it is none.
-fn count(value: Option<&OsStr>) -> Result<usize, String> {
-    let Some(value) = value else { return Ok(60) };
-    let number = value.to_str().and_then(|text| text.parse().ok());
-    number.filter(|count| *count > 0).ok_or_else(|| value.to_string_lossy().into_owned())
-}
-
-#[test]
-fn a_count_that_is_no_number_is_refused() {
-    let counted = |text: &str| count(Some(OsStr::new(text)));
-    assert_eq!((count(None), counted("1000")), (Ok(60), Ok(1000)));
-    for wrong in ["", "0", "-1", "6O", "1e3", "60 ", "1_000", "99999999999999999999999"] {
-        assert_eq!(counted(wrong), Err(wrong.to_owned()));
-    }
+    case_count("PROFILES", 60)
 }

@@ -1,0 +1,50 @@
+//! Measures the import of tool libraries: reading, compiling and proving.
+
+use rayon::prelude::*;
+use std::error::Error;
+use std::time::Instant;
+use tool_dsl::compile;
+use tool_dsl::prove::Certificate;
+use tool_dsl::source::Source;
+use touchoff::import::{ImportedTool, Library};
+use touchoff_bench::page::Section;
+use touchoff_tests::libraries::fusion_library;
+
+/// Number of tools of the library, and the limit on the time of their import, in s.
+const TOOLS: usize = 1_000;
+const LIMIT: f64 = 10.0;
+
+/// Returns the section about one large library.
+pub(super) fn section() -> Result<Section, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let text = fusion_library(TOOLS);
+    let start = Instant::now();
+    let library = Library::parse("library.json".as_ref(), text.as_bytes())?;
+    let read = start.elapsed().as_secs_f64();
+    let proofs = library.tools().par_iter().map(|tool| prove(tool, folder.path()));
+    let proofs: Vec<Option<bool>> = proofs.collect::<Result<_, _>>()?;
+    let all = start.elapsed().as_secs_f64();
+    let proved = proofs.iter().filter(|proof| **proof == Some(true)).count();
+    let body = format!(
+        "A library of Fusion 360 with {TOOLS} tools: {} are imported, {} left out. All are read in {read:.2} s, and written, \
+         compiled and proved on {} threads in {all:.2} s. Depth is proved to be the distance for {proved} of them, {} do not \
+         compile. Limit: {LIMIT} s.\n",
+        library.tools().len(),
+        library.skipped().len(),
+        rayon::current_num_threads(),
+        proofs.iter().filter(|proof| proof.is_none()).count(),
+    );
+    let missed_limits = if all > LIMIT {
+        vec![format!("the import of {TOOLS} tools takes {all:.1} s")]
+    } else {
+        Vec::new()
+    };
+    Ok(Section { title: "Imported", body, missed_limits })
+}
+
+/// Writes, compiles and proves a tool: true if depth is the distance, `None` if it does not compile.
+fn prove(tool: &ImportedTool, folder: &std::path::Path) -> Result<Option<bool>, String> {
+    let file = tool.write_to(folder).map_err(|error| error.to_string())?;
+    let source = Source::read(&file).map_err(|error| error.to_string())?;
+    Ok(compile(&source).tool().map(|tool| Certificate::prove(tool).is_exact()))
+}

@@ -1,0 +1,73 @@
+//! Tool bits of FreeCAD, without a holder.
+
+use super::cutter::{Type, recognise};
+use super::section::{HalfSection, tidy};
+use super::{Written, description, is_same};
+use crate::tool::ToolInfo;
+use serde_json::{Map, json};
+
+/// Writes a tool as one of FreeCAD's shapes.
+pub(super) fn write(
+    tool: &ToolInfo,
+    section: &HalfSection,
+    number: usize,
+) -> Result<Written<String>, String> {
+    if number > 1 {
+        return Err("a FreeCAD bit is one tool: export each to a file of its own".to_owned());
+    }
+    let mm = |value: f64| format!("{} mm", tidy(value));
+    let deg = |value: f64| format!("{} \u{b0}", tidy(value));
+    let flutes = section.cutting_end()[1];
+    let refused = || "no shape of FreeCAD has its outline".to_owned();
+    let (shape, own) = match recognise(&section.cutting).ok_or_else(refused)? {
+        Type::End { diameter, corner: 0.0 } => ("endmill", vec![("Diameter", mm(diameter))]),
+        Type::End { diameter, corner } => {
+            ("bullnose", vec![("Diameter", mm(diameter)), ("CornerRadius", mm(corner))])
+        }
+        Type::Ball { diameter } => ("ballend", vec![("Diameter", mm(diameter))]),
+        Type::Point { diameter, tip_diameter, angle } => {
+            // The height of the edge counts from the end of the point.
+            let cone = (diameter - tip_diameter) / 2.0 / (angle / 2.0).to_radians().tan();
+            let own = vec![
+                ("Diameter", mm(diameter)),
+                ("TipDiameter", mm(tip_diameter)),
+                ("CuttingEdgeAngle", deg(angle)),
+                ("CuttingEdgeHeight", mm(flutes - cone)),
+            ];
+            ("v-bit", own)
+        }
+        Type::TaperedBall { radius, half_angle } => {
+            let end = 2.0 * section.cutting_end()[0];
+            let own = vec![
+                ("Diameter", mm(2.0 * radius)),
+                ("TaperAngle", deg(2.0 * half_angle)),
+                ("TaperDiameter", mm(end)),
+            ];
+            ("taperedballnose", own)
+        }
+        Type::Taper { .. } => return Err(refused()),
+    };
+    let body = section.body.as_ref().map_err(Clone::clone)?;
+    let shank = body.last().map_or(section.cutting_end()[0], |cone| cone.high[0]);
+    let mut parameters = Map::new();
+    let common = [
+        ("CuttingEdgeHeight", mm(flutes)),
+        ("Length", mm(section.end)),
+        ("ShankDiameter", mm(2.0 * shank)),
+        ("Units", "Metric".to_owned()),
+    ];
+    for (name, value) in common.into_iter().chain(own) {
+        parameters.insert(name.to_owned(), json!(value));
+    }
+    let bit = json!({ "version": 2, "name": description(tool), "shape": format!("{shape}.fcstd"),
+        "parameter": parameters, "attribute": {} });
+    let text = format!("{bit:#}\n");
+    if !is_same("tool.fctb", &text, &section.closed_below_holder()) {
+        return Err(refused());
+    }
+    let mut gaps = Vec::new();
+    if !matches!(&section.holder, Ok(holder) if holder.is_empty()) {
+        gaps.push("a bit has no holder; the tool ends where it begins".to_owned());
+    }
+    Ok(Written { entry: text, kind: shape.to_owned(), gaps })
+}

@@ -1,0 +1,205 @@
+//! The half section of a tool, divided into the parts that libraries know: cutter, shaft and holder.
+
+use crate::import::rounded;
+use crate::tool::{Circle, ProfileSegment, ToolInfo};
+use crate::unit::Unit;
+
+/// Lengths nearer than this part of the size are the same.
+const SAME: f64 = 1e-9;
+
+/// A conical piece, from the tip's side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cone {
+    pub(super) low: [f64; 2],
+    pub(super) high: [f64; 2],
+}
+
+/// A tool's outline in parts, in the tool's frame.
+pub(super) struct HalfSection {
+    /// The unit of all lengths.
+    pub(super) unit: Unit,
+    /// The whole outline, with one segment per line and circle.
+    pub(super) outline: Vec<ProfileSegment>,
+    /// The cutting part: from the tip to the end of the last cutting segment.
+    pub(super) cutting: Vec<ProfileSegment>,
+    /// The conical pieces above it, up to the holder or the end; `Err` if one is round or runs back toward the tip.
+    pub(super) body: Result<Vec<Cone>, String>,
+    /// The holder's conical pieces; empty without a holder.
+    pub(super) holder: Result<Vec<Cone>, String>,
+    /// The height at which the holder begins, or the tool ends.
+    pub(super) end: f64,
+    /// The length by which points may differ.
+    pub(super) tolerance: f64,
+}
+
+impl HalfSection {
+    /// Divides the outline of a tool, in a unit.
+    ///
+    /// # Errors
+    /// If the tool has no profile, or no cutting segment.
+    pub(super) fn of(tool: &ToolInfo, unit: Unit) -> Result<HalfSection, String> {
+        let factor = tool.unit.factor_to(unit);
+        let outline: Vec<ProfileSegment> =
+            tool.outline.iter().map(|segment| scaled(segment, factor)).collect();
+        if outline.is_empty() {
+            return Err("it has no profile: its regions are written by hand".to_owned());
+        }
+        let tolerance = SAME * size(&outline);
+        let part = |segment: &ProfileSegment| {
+            let name = &*tool.surface(segment.surface).name;
+            name.split_once('.').map_or("", |(part, _)| part)
+        };
+        let is_cutting = |segment: &ProfileSegment| tool.surface(segment.surface).cutting;
+        let first = part(&outline[0]);
+        // The parts of an assembly: the cutter, its shaft, and what holds them.
+        let is_holder =
+            |segment: &ProfileSegment| part(segment) != first && part(segment) != "shaft";
+        let holder_from = outline.iter().position(is_holder).unwrap_or(outline.len());
+        let (lower, upper) = outline.split_at(holder_from);
+        // The plane that closes the outline at its end does not cut, whatever its surface.
+        let open = match lower.split_last() {
+            Some((last, rest))
+                if last.to[0] == 0.0 && last.circle.is_none() && !rest.is_empty() =>
+            {
+                rest
+            }
+            _ => lower,
+        };
+        let last_cutting = open.iter().rposition(is_cutting);
+        let cutting = &lower[..last_cutting.ok_or("none of its surfaces is `cutting`")? + 1];
+        if upper.iter().any(is_cutting) {
+            return Err("a surface of its holder is `cutting`".to_owned());
+        }
+        let end = match upper.first() {
+            // A step inward begins on the earlier file's side.
+            Some(first) => first.from[1],
+            None => lower.last().map_or(0.0, |last| last.to[1]),
+        };
+        Ok(HalfSection {
+            unit,
+            cutting: merged(cutting, tolerance),
+            body: cones(&lower[cutting.len()..], tolerance),
+            holder: cones(upper, tolerance),
+            end,
+            tolerance,
+            outline,
+        })
+    }
+
+    /// Returns the end of the cutting part.
+    pub(super) fn cutting_end(&self) -> [f64; 2] {
+        self.cutting.last().map_or([0.0; 2], |last| last.to)
+    }
+
+    /// Returns the cutting part as a solid, closed by a plane across the axis.
+    pub(super) fn closed_cutting_part(&self) -> Vec<ProfileSegment> {
+        let mut outline = self.cutting.clone();
+        if let Some(last) = self.cutting.last() {
+            outline.push(ProfileSegment {
+                from: last.to,
+                to: [0.0, last.to[1]],
+                circle: None,
+                surface: last.surface,
+            });
+        }
+        outline
+    }
+
+    /// Returns what lies below the holder as a solid, closed by a plane across the axis.
+    pub(super) fn closed_below_holder(&self) -> Vec<ProfileSegment> {
+        let is_below = |segment: &&ProfileSegment| {
+            segment.from[1].max(segment.to[1]) <= self.end + self.tolerance
+        };
+        let mut outline: Vec<ProfileSegment> =
+            self.outline.iter().take_while(is_below).copied().collect();
+        if let Some(last) = outline.last().copied().filter(|last| last.to[0] > self.tolerance) {
+            let to = [0.0, last.to[1]];
+            outline.push(ProfileSegment { from: last.to, to, circle: None, surface: last.surface });
+        }
+        outline
+    }
+}
+
+/// Returns the round number that a computed one stands for: the nearest multiple of 1e-9, if only rounding errors are
+/// between them.
+pub(super) fn tidy(value: f64) -> f64 {
+    let round = rounded(value);
+    if (round - value).abs() <= 8.0 * f64::EPSILON * value.abs() { round } else { value }
+}
+
+/// Returns true if two outlines are the same curve.
+pub(super) fn same(a: &[ProfileSegment], b: &[ProfileSegment]) -> bool {
+    let tolerance = SAME * size(a).max(size(b));
+    let [a, b] = [a, b].map(|outline| merged(outline, tolerance));
+    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= tolerance;
+    let same_circle = |a: Option<Circle>, b: Option<Circle>| match (a, b) {
+        (None, None) => true,
+        // The centre of a shallow arc moves more than the arc.
+        (Some(a), Some(b)) => {
+            a.convex == b.convex && (a.radius - b.radius).abs() <= 1e-6 * a.radius
+        }
+        _ => false,
+    };
+    a.len() == b.len()
+        && a.iter().zip(&b).all(|(a, b)| near(a.to, b.to) && same_circle(a.circle, b.circle))
+}
+
+fn scaled(segment: &ProfileSegment, factor: f64) -> ProfileSegment {
+    let point = |p: [f64; 2]| p.map(|coordinate| coordinate * factor);
+    ProfileSegment {
+        from: point(segment.from),
+        to: point(segment.to),
+        circle: segment.circle.map(|circle| Circle {
+            centre: point(circle.centre),
+            radius: circle.radius * factor,
+            convex: circle.convex,
+        }),
+        surface: segment.surface,
+    }
+}
+
+/// Returns the largest coordinate of an outline.
+fn size(outline: &[ProfileSegment]) -> f64 {
+    outline.iter().flat_map(|segment| segment.to).map(f64::abs).fold(0.0, f64::max)
+}
+
+/// Joins segments that continue each other: lines in one direction, arcs of one circle up to half a turn.
+fn merged(outline: &[ProfileSegment], tolerance: f64) -> Vec<ProfileSegment> {
+    let mut merged: Vec<ProfileSegment> = Vec::new();
+    for segment in outline {
+        let continues = |last: &ProfileSegment| match (last.circle, segment.circle) {
+            (None, None) => {
+                let [a, b] = [last, segment].map(|s| [s.to[0] - s.from[0], s.to[1] - s.from[1]]);
+                let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+                dot > 0.0 && cross.abs() <= tolerance * a[0].hypot(a[1]).max(b[0].hypot(b[1]))
+            }
+            (Some(a), Some(b)) => {
+                let apart = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]);
+                a.convex == b.convex && apart.max((a.radius - b.radius).abs()) <= tolerance
+            }
+            _ => false,
+        };
+        match merged.last_mut().filter(|last| continues(last)) {
+            Some(last) => last.to = segment.to,
+            None => merged.push(*segment),
+        }
+    }
+    merged
+}
+
+/// Returns straight segments as conical pieces; steps across the axis lie between them.
+fn cones(segments: &[ProfileSegment], tolerance: f64) -> Result<Vec<Cone>, String> {
+    let mut cones = Vec::new();
+    for segment in merged(segments, tolerance) {
+        let rise = segment.to[1] - segment.from[1];
+        match segment.circle {
+            Some(_) => return Err("its shaft or holder is rounded".to_owned()),
+            None if rise > tolerance => cones.push(Cone { low: segment.from, high: segment.to }),
+            None if rise < -tolerance => {
+                return Err("its shaft or holder runs back toward the tip".to_owned());
+            }
+            None => {}
+        }
+    }
+    Ok(cones)
+}

@@ -1,0 +1,7 @@
+//! Imported tool libraries: files with errors, files that leave something out, one tool in all notations, and
+//! exported tools.
+
+mod exported;
+mod mutated;
+mod notations;
+mod omitted;
