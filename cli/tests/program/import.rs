@@ -33,6 +33,10 @@ fn an_imported_tool_checks_a_program() {
     let tool = place("tools/d4_ball.tool");
     let checked = touchoff(&["check", &tool]);
     assert!(checked.status.success(), "{}", stderr(&checked));
+    // The flutes end at 10.
+    let clamped = touchoff(&["check", &tool, "--set", "stickout=8"]);
+    assert_eq!(clamped.status.code(), Some(3));
+    assert!(stderr(&clamped).contains("cuts up to z = 10"), "{}", stderr(&clamped));
     let text = std::fs::read_to_string(&tool).expect("the tool's file");
     assert!(text.contains("mount \"holders/er16_nut.tool\" as holder at z = stickout;"), "{text}");
     let formatted = touchoff(&["fmt", "--check", &tool, &place("tools/cutters/d4_ball.tool")]);

@@ -52,10 +52,14 @@ pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
                 Type::TaperedBall { radius, half_angle: half_angle(edge, end) }
             })
         }
-        [tip] => {
-            let (_, _, radius) = arc(tip)?;
-            Some(Type::Ball { diameter: 2.0 * radius })
-        }
+        [tip] => match arc(tip) {
+            Some((_, _, radius)) => Some(Type::Ball { diameter: 2.0 * radius }),
+            None => {
+                let edge = line(tip).filter(|edge| edge[1] > 0.0)?;
+                let angle = 2.0 * half_angle([0.0; 2], edge);
+                Some(Type::Point { diameter: 2.0 * edge[0], tip_diameter: 0.0, angle })
+            }
+        },
         [face, flute] => {
             let (edge, end) = (line(face)?, line(flute)?);
             Some(if edge[1] > 0.0 {

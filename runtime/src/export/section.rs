@@ -141,7 +141,9 @@ pub(super) fn same(a: &[ProfileSegment], b: &[ProfileSegment]) -> bool {
         _ => false,
     };
     a.len() == b.len()
-        && a.iter().zip(&b).all(|(a, b)| near(a.to, b.to) && same_circle(a.circle, b.circle))
+        && a.iter().zip(&b).all(|(a, b)| {
+            near(a.from, b.from) && near(a.to, b.to) && same_circle(a.circle, b.circle)
+        })
 }
 
 fn scaled(segment: &ProfileSegment, factor: f64) -> ProfileSegment {

@@ -92,6 +92,10 @@ impl Writer {
         }
         if let (Some(holder), Some(_)) = (&entry.holder, stickout) {
             let path = self.holder(holder, source, &mut files)?;
+            let height: f64 = holder.sections.iter().map(|section| section.height).sum();
+            let height = rounded(height * holder.unit.factor_to(entry.unit));
+            let _ =
+                writeln!(assembly, "    // The gauge length is stickout + {}.", decimal(height));
             let _ = writeln!(assembly, "    mount \"{path}\" as holder at z = stickout;");
         }
         assembly.push_str("}\n");

@@ -124,4 +124,9 @@ kinds! {
         message "the first segment of `{file}` is not a flat face"
         help "begin the mounted profile with a line perpendicular to the axis"
         explain "Two mounted tools are joined at a plane across the axis, on which the upper one stands with a flat face.";
+    warning T0522 ClampedEdge { name: String, z: FormattedNumber, surface: String, end: FormattedNumber }
+        "holder that clamps a cutting surface"
+        message "`{name}` begins at z = {z}, but `{surface}` cuts up to z = {end}"
+        help "mount `{name}` at z = {end} or above, or shorten `{surface}`"
+        explain "What lies above the plane of a mount is inside the mounted tool. A collet that clamps flutes is damaged, and so are the flutes.";
 }

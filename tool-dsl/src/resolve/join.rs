@@ -90,6 +90,21 @@ pub(super) fn join(
     Ok(joined)
 }
 
+/// Returns the surface that rises highest above a plane, and the height of its end, among those for which `counts` holds.
+pub(super) fn highest_above(
+    outline: &[Segment],
+    plane: &Number,
+    counts: impl Fn(usize) -> bool,
+) -> Option<(usize, f64)> {
+    let slack = ROUNDING * size(outline);
+    outline
+        .iter()
+        .filter(|segment| counts(segment.surface))
+        .map(|segment| (segment.surface, segment.ends()[1][1]))
+        .filter(|(_, end)| *end > plane.to_f64() + slack)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
 fn size(outline: &[Segment]) -> f64 {
     let ends = outline.iter().flat_map(|segment| segment.ends());
     ends.flatten().fold(0.0, |size, part| size.max(part.abs()))

@@ -1,7 +1,7 @@
 //! Joins several files into one profile.
 
 use super::arguments::{self, Argument};
-use super::join::{JoinError, TIP_TOLERANCE_FRACTION, join, transformed_outline};
+use super::join::{JoinError, TIP_TOLERANCE_FRACTION, highest_above, join, transformed_outline};
 use super::law::Laws;
 use super::lower::{Allowed, Lowering};
 use super::region::{Niceness, quantity};
@@ -151,6 +151,7 @@ impl Mounting<'_> {
             Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
+            self.diagnostics.extend(assembly.clamped_edge((mount, &at), &part));
             assembly
                 .join_part((last, &height), (mount, &at), part)
                 .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
@@ -369,6 +370,26 @@ impl MountedPart {
         for scope in &mut self.scopes {
             scope.lowering.transform(scale, by);
         }
+    }
+
+    /// Returns a warning if a part that does not cut begins below the end of a cutting surface.
+    fn clamped_edge(
+        &self,
+        (mount, at): (&Mount, &Number),
+        part: &MountedPart,
+    ) -> Option<Diagnostic> {
+        if part.surfaces.iter().any(|surface| surface.cutting) {
+            return None;
+        }
+        let cuts = |surface: usize| self.surfaces[surface].cutting;
+        let (surface, end) = highest_above(&self.outline, at, cuts)?;
+        let kind = MountKind::ClampedEdge {
+            name: mount.name.text.clone(),
+            z: FormattedNumber(at.to_f64()),
+            surface: self.surfaces[surface].name.clone(),
+            end: FormattedNumber(end),
+        };
+        Some(Diagnostic::new(mount.position.as_ref().map_or(mount.span, |at| at.span), kind))
     }
 
     /// Joins another part onto this one at a plane.
