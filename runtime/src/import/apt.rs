@@ -28,12 +28,19 @@ const DRILL: [&str; 5] = ["diameter", "corner radius", "length", "point angle", 
 /// Reads the cutters of a program, each with its tool number.
 pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
     let mut unit = None;
-    let mut found: Vec<Statement<'_>> = Vec::new();
+    let mut found: Vec<Statement> = Vec::new();
     // A number that stands before its cutter.
     let mut pending = None;
+    // A `$` at the end continues a statement in the next line.
+    let mut continued = String::new();
     for (index, line) in text.lines().enumerate() {
         // NX also writes `TLDATA` into comments, for controls that do not know it.
         let code = line.split_once("$$").map_or(line, |(code, _)| code).trim();
+        if let Some(part) = code.strip_suffix('$') {
+            continued.push_str(part);
+            continue;
+        }
+        let code = std::mem::take(&mut continued) + code;
         let Some((word, rest)) = code.split_once('/') else { continue };
         let at_line = |what: &str| format!("line {}: {what}", index + 1);
         match word.trim().to_ascii_uppercase().as_str() {
@@ -45,19 +52,25 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                 });
             }
             "LOADTL" | "TOOLNO" => {
-                let first = rest.split(',').next().unwrap_or("").trim();
-                let number = first.trim_end_matches('.').parse::<u32>();
-                let number = number.map_err(|_| at_line(&format!("tool number `{first}`")))?;
+                // Some programs call tools by name.
+                let number: Option<f64> =
+                    rest.split(',').next().and_then(|first| first.trim().parse().ok());
+                let number = number.filter(|n| n.fract() == 0.0 && (0.0..1e9).contains(n));
+                let number = number.map(|number| number as u32);
                 match found.last_mut().filter(|last| last.number.is_none()) {
-                    Some(last) => last.number = Some(number),
-                    None => pending = Some(number),
+                    Some(last) => last.number = number,
+                    None => pending = number,
                 }
             }
             word @ ("CUTTER" | "TLDATA") => {
-                let mut fields: Vec<&str> = rest.split(',').map(str::trim).collect();
-                let keyword = if word == "TLDATA" { fields.remove(0) } else { "" };
-                let is_drill = keyword == "DRILL" && fields.first() == Some(&"MILL");
-                if is_drill {
+                let mut fields: Vec<String> =
+                    rest.split(',').map(|field| field.trim().to_owned()).collect();
+                let keyword = if word == "TLDATA" {
+                    fields.remove(0).to_ascii_uppercase()
+                } else {
+                    String::new()
+                };
+                if keyword == "DRILL" && fields.first().is_some_and(|first| first == "MILL") {
                     fields.remove(0);
                 }
                 let number = pending.take();
@@ -74,21 +87,21 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
 }
 
 /// A statement that describes a cutter.
-struct Statement<'a> {
+struct Statement {
     line: usize,
     /// The first word of a `TLDATA`; empty for a `CUTTER`.
-    keyword: &'a str,
-    fields: Vec<&'a str>,
+    keyword: String,
+    fields: Vec<String>,
     unit: Option<Unit>,
     number: Option<u32>,
 }
 
-impl Statement<'_> {
+impl Statement {
     fn tool(&self, unit: Option<Unit>) -> Found {
         let read = || -> Result<Entry, String> {
             let unit =
                 unit.ok_or("the program states no `UNITS/`: add `UNITS/MM` or `UNITS/INCHES`")?;
-            let names: &[&str] = match self.keyword {
+            let names: &[&str] = match self.keyword.as_str() {
                 "" => &CUTTER,
                 "MILL" => &MILL,
                 "DRILL" => &DRILL,
@@ -104,7 +117,7 @@ impl Statement<'_> {
         if self.fields.len() > names.len() {
             return Err(format!("it has {} fields, not {}", self.fields.len(), names.len()));
         }
-        let number = |(field, name): (&&str, &&str)| {
+        let number = |(field, name): (&String, &&str)| {
             if field.is_empty() {
                 return Ok(None);
             }
@@ -122,7 +135,7 @@ impl Statement<'_> {
         let need = |k: usize, what: &str| numbers[k].ok_or_else(|| format!("it states no {what}"));
         let diameter = need(0, "diameter")?;
         let corner = numbers[1].unwrap_or(0.0);
-        let (shape, flute_length, length) = match self.keyword {
+        let (shape, flute_length, length) = match self.keyword.as_str() {
             "DRILL" => {
                 let (length, point_angle) = (need(2, "length")?, need(3, "point angle")?);
                 if corner != 0.0 {

@@ -92,7 +92,8 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
 fn read_bit(bit: &Object, number: Option<u32>) -> Found {
     let title = string(bit, "name");
     let read = || -> Result<Entry, String> {
-        let shape = string(bit, "shape").trim_end_matches(".fcstd").trim_end_matches(".FCStd");
+        let shape = string(bit, "shape").rsplit(['/', '\\']).next().unwrap_or("").to_lowercase();
+        let shape = shape.trim_end_matches(".fcstd");
         let mut entry = entry(Unit::Millimetre, shape, title, bit);
         entry.number = number;
         let empty = Object::new();
@@ -138,7 +139,7 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             }
             (Shape::Cone { tip_diameter, half_angle }, flutes()?)
         }
-        "v-bit" => {
+        "v-bit" | "vbit" => {
             let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
@@ -194,7 +195,9 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             let neck_diameter = of.length("NeckDiameter")?;
             shoulder = Some((of.length("NeckLength")?, Some(neck_diameter)));
             let crest = of.length_or("Crest", "width of the crest", 0.0, notes)?;
-            let angle = of.angle("cuttingAngle")?;
+            let key =
+                if of.0.contains_key("CuttingAngle") { "CuttingAngle" } else { "cuttingAngle" };
+            let angle = of.angle(key)?;
             (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
         }
         other => return Err(format!("the shape `{other}` is none of FreeCAD's own")),

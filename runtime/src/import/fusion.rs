@@ -38,6 +38,10 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
     if let Some(shaft) = object(tool, "shaft")? {
         entry.shaft = sections(shaft).map_err(|error| format!("its shaft: {error}"))?;
+        if !shaft.get("segments").is_some_and(Value::is_array) {
+            let drawn = "the shank is drawn as a cylinder".to_owned();
+            entry.notes.push(Note::Unstated("segments of the shaft", drawn));
+        }
     }
     if let (Some(last), Some(shank)) = (entry.shaft.last(), geometry.get("SFDM")?)
         && shank > 0.0
@@ -50,6 +54,11 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         });
     }
     if let Some(value) = object(tool, "holder")? {
+        if sections(value).is_ok_and(|sections| sections.is_empty()) {
+            let drawn = "the tool is drawn without its holder".to_owned();
+            entry.notes.push(Note::Unstated("segments of the holder", drawn));
+            return Ok(entry);
+        }
         let holder = holder(value)?;
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
         let gauge = number_of(value, "gaugeLength");
@@ -229,7 +238,11 @@ fn holder(value: &Object) -> Result<Holder, String> {
 }
 
 fn sections(value: &Object) -> Result<Vec<Section>, String> {
-    let list = value.get("segments").and_then(Value::as_array).ok_or("it has no `segments`")?;
+    let list = match value.get("segments") {
+        None | Some(Value::Null) => &[][..],
+        Some(Value::Array(list)) => list,
+        Some(_) => return Err("its `segments` are no list".to_owned()),
+    };
     let length = |segment: &Value, key: &str| {
         segment.get(key).and_then(Value::as_f64).ok_or_else(|| format!("a segment has no `{key}`"))
     };

@@ -234,3 +234,28 @@ fn notations_agree() {
     assert_eq!(outline(&apt), [[5.0, 5.0], [5.0, 50.0], [0.0, 50.0]]);
     assert_eq!(apt.tools()[0].entry.number, Some(3));
 }
+
+/// Tool numbers stand before or after the cutter, statements go on after `$`, and a field that is no number is refused.
+#[test]
+fn cutters_of_programs_keep_their_numbers() {
+    let read = |text: &str| Library::parse("p.apt".as_ref(), text.as_bytes()).expect("a program");
+    let numbers = |text: &str| -> Vec<Option<u32>> {
+        read(text).tools().iter().map(|tool| tool.entry.number).collect()
+    };
+    let cutter = "CUTTER/6,0,3,0,0,0,30\n";
+    let after = format!("UNITS/MM\n{cutter}LOADTL/1\n{cutter}LOADTL / 2.0, OSETNO, 2\nFINI\n");
+    assert_eq!(numbers(&after), [Some(1), Some(2)]);
+    let before = format!("UNITS/MM\nLOADTL/1\n{cutter}LOADTL/2\n{cutter}FINI\n");
+    assert_eq!(numbers(&before), [Some(1), Some(2)]);
+    let named = format!("UNITS/MM\n{cutter}LOADTL/DRILL\n{cutter}LOADTL/3\n");
+    assert_eq!(numbers(&named), [None, Some(3)]);
+    let continued = "UNITS/MM\nCUTTER / 6., 1.,  $\n 2., 1., 0., 0., 30.\nFINI\n";
+    let library = read(continued);
+    assert_eq!(library.tools()[0].entry.diameter(), Some(6.0));
+    assert_eq!(library.tools()[0].entry.length(), Some(30.0));
+    let wrong = read("UNITS/MM\nCUTTER/6,x,3,0,0,0,30\n");
+    assert!(wrong.skipped()[0].reason.contains("corner radius is `x`"), "{:?}", wrong.skipped());
+    let units = read(&format!("UNITS/MM\n{cutter}UNITS/INCHES\n{cutter}"));
+    let units: Vec<&str> = units.tools().iter().map(|tool| tool.entry.unit.symbol()).collect();
+    assert_eq!(units, ["mm", "inch"]);
+}
