@@ -9,7 +9,8 @@ const REGION_FILLS: [&str; 9] = [
     "#aaaa00",
 ];
 const CUTTING_STROKES: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
-const NON_CUTTING_STROKES: [&str; 5] = ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5"];
+const NON_CUTTING_STROKES: [&str; 8] =
+    ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5", "#0e8a93", "#8a7a00", "#7f8794"];
 
 /// Returns a colour for each region, different for neighbours as far as the palette allows.
 pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {

@@ -1,0 +1,255 @@
+//! Solids, which have no axis: three sections through the middle, perpendicular to y, x and z.
+//!
+//! They are arranged in third-angle projection: the view from the front (from −y), to its right the view from the right
+//! (from +x), and above it the view from above (from +z).
+
+use super::borders::Border;
+use super::colours;
+use super::contour::tidy;
+use super::curves::{Curves, Plane};
+use super::legend::{self, Entry, Sign};
+use super::marks::head;
+use super::regions::name;
+use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
+use super::view::{View, is_outline};
+use super::{Content, Picture, paint, trace};
+use crate::checked::CheckedTool;
+use crate::expr::interval::Interval;
+use crate::geometry::outline::Point;
+
+/// The axes, and those perpendicular to the front view, the side view and the top view.
+const AXES: [&str; 3] = ["x", "y", "z"];
+const NORMALS: [usize; 3] = [1, 0, 2];
+/// The largest width and height of two views together, in sheet units.
+const MAX_EXTENT: f64 = 460.0;
+/// Distances between views, and from a section to its dimension lines, in sheet units.
+const VIEW_DISTANCE: f64 = 36.0;
+const DIMENSION_DISTANCE: f64 = 24.0;
+/// The height of capitals in dimensions and in the names of sections, in sheet units.
+const DIMENSION_SIZE: f64 = 7.5;
+const NAME_SIZE: f64 = 9.0;
+
+/// Draws the three sections and their legend.
+pub(super) fn draw(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
+    let sections = sections(tool, content);
+    let mut known = Vec::new();
+    let [front, side, top] = sections.each_ref().map(|section| {
+        let mut part = sheet.part();
+        section.draw(&sections, &mut part);
+        section.draw_dimensions(&mut known, &mut part);
+        section.draw_name(&mut part);
+        part
+    });
+    let [[_, upper], [right, _]] = front.frame();
+    sheet.place(&front, [0.0, 0.0]);
+    sheet.place(&side, [right + VIEW_DISTANCE - side.frame()[0][0], 0.0]);
+    sheet.place(&top, [0.0, upper - VIEW_DISTANCE - top.frame()[1][1]]);
+    let regions = match content {
+        Content::Outline => Vec::new(),
+        Content::Regions => regions(&sections),
+    };
+    legend::draw(&[legend::surfaces(&tool.model), regions], sheet);
+}
+
+/// The section in the plane perpendicular to an axis at a coordinate.
+pub(super) struct Section<'m> {
+    normal: usize,
+    pub(super) at: f64,
+    pub(super) picture: Picture<'m>,
+}
+
+/// The dimension of a section along an axis: the coordinates of its ends.
+type Dimension = (usize, [f64; 2]);
+
+/// Returns the three sections through the middle, in the order of `NORMALS` and to one scale.
+pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<'m>; 3] {
+    let proved = tool.extent.cell().sides;
+    // Proved extents may be a few percent too wide, so the middle is that of the sections through their middle.
+    let rough = traced(tool, proved.map(Interval::middle));
+    let size = proved.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
+    let middle = extents(&rough, proved).map(|side| match side.middle() {
+        middle if middle.abs() < 1e-6 * size => 0.0,
+        middle => middle,
+    });
+    let borders = traced(tool, middle);
+    let sides = extents(&borders, proved);
+    let [x, y, z] = sides.map(|side| side.high - side.low);
+    let scale = MAX_EXTENT / (x + y).max(z + y);
+    let fills = colours::areas(tool.model.regions.len(), &borders.concat());
+    let mut borders = borders.into_iter();
+    NORMALS.map(|normal| {
+        let [u, v] = axes(normal).map(|axis| sides[axis]);
+        let view = View::framed([[u.low, v.low], [u.high, v.high]], scale);
+        let borders = borders.next().unwrap_or_default();
+        let picture = Picture::of(&tool.model, content, (borders, size), view, fills.clone());
+        Section { normal, at: middle[normal], picture }
+    })
+}
+
+/// Returns the borders in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
+fn traced(tool: &CheckedTool, at: [f64; 3]) -> [Vec<Border>; 3] {
+    let sides = tool.extent.cell().sides;
+    let [x, y, z] = sides.map(|side| side.high - side.low);
+    let size = x.max(y).max(z);
+    let unit = (x + y).max(z + y) / (1.1 * MAX_EXTENT);
+    NORMALS.map(|normal| {
+        let plane = Plane::Across { axis: normal, at: at[normal] };
+        let mut curves = Curves::new(&tool.model, &tool.extent, plane);
+        // Odd shares, so that no side of a cell runs along a curve.
+        let [low, high] = [(0, -0.0213), (1, 0.0197)].map(|(end, share)| {
+            axes(normal).map(|axis| {
+                let side = sides[axis];
+                [side.low, side.high][end] + share * (side.high - side.low)
+            })
+        });
+        trace(&mut curves, tool, [low, high], [unit, size])
+    })
+}
+
+/// Returns the axes to the right and up in the view of a section.
+fn axes(normal: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][normal]
+}
+
+/// Returns the box around three sections; `proved` where there is none.
+fn extents(sections: &[Vec<Border>; 3], proved: [Interval; 3]) -> [Interval; 3] {
+    let mut sides: [Option<Interval>; 3] = [None; 3];
+    for (normal, borders) in NORMALS.into_iter().zip(sections) {
+        let Some(bounds) = bounds(borders) else { continue };
+        for (axis, side) in axes(normal).into_iter().zip(bounds) {
+            sides[axis] = Some(sides[axis].map_or(side, |known| known.hull(side)));
+        }
+    }
+    [0, 1, 2].map(|axis| sides[axis].unwrap_or(proved[axis]))
+}
+
+/// Returns the extent of a section along its two coordinates, unless it is empty.
+fn bounds(borders: &[Border]) -> Option<[Interval; 2]> {
+    let outline = borders.iter().filter(|border| is_outline(border));
+    outline
+        .flat_map(|border| &border.strokes)
+        .map(|stroke| [stroke.breadth(), stroke.span()].map(|[low, high]| Interval::new(low, high)))
+        .reduce(|[a, b], [c, d]| [a.hull(c), b.hull(d)])
+}
+
+impl Section<'_> {
+    /// Draws areas, surfaces and the names of regions, and the planes of the other sections as lines.
+    fn draw(&self, all: &[Section<'_>; 3], sheet: &mut Sheet) {
+        let picture = &self.picture;
+        let view = &picture.view;
+        paint::whole(picture, sheet);
+        if picture.content == Content::Regions {
+            paint::splits(picture, sheet);
+            self.draw_names(sheet);
+        }
+        paint::outline(picture, false, sheet);
+        let others = axes(self.normal).map(|axis| {
+            all.iter().find(|section| section.normal == axis).map_or(0.0, |section| section.at)
+        });
+        let [u, v] = view.to_sheet(others);
+        let rows =
+            [[[u, 8.0], [u, -view.height - 8.0]], [[-view.half - 8.0, v], [view.half + 8.0, v]]];
+        let look =
+            "fill=\"none\" stroke=\"#22272e\" stroke-width=\".6\" stroke-dasharray=\"12 3 2 3\"";
+        sheet.path(look, &lines(rows));
+        rows.into_iter().flatten().for_each(|p| sheet.reach(p));
+    }
+
+    /// Draws the names of regions that have room for them; the legend names all.
+    fn draw_names(&self, sheet: &mut Sheet) {
+        for (region, shape) in self.picture.shapes.iter().enumerate() {
+            let name =
+                if shape.is_empty() { None } else { name(&self.picture, region, shape, &[]) };
+            if let Some(name) = name {
+                let look = Look { halo: true, ..Look::plain(name.size, Anchor::Middle) };
+                sheet.text(&self.picture.model.regions[region].name, name.at, look);
+            }
+        }
+    }
+
+    /// Draws the dimensions of the section except those that are `known` from other views.
+    fn draw_dimensions(&self, known: &mut Vec<Dimension>, sheet: &mut Sheet) {
+        let Picture { borders, view, size, model, .. } = &self.picture;
+        let Some(bounds) = bounds(borders) else { return };
+        // Points of the contour on the sheet.
+        let points: Vec<Point> = borders
+            .iter()
+            .filter(|border| is_outline(border))
+            .flat_map(|border| &border.strokes)
+            .flat_map(|stroke| view.stroke(stroke).points(0.05))
+            .collect();
+        let low = view.to_sheet(bounds.map(|side| side.low));
+        let high = view.to_sheet(bounds.map(|side| side.high));
+        for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
+            let ends = [side.low, side.high];
+            let same = |(other, known): &Dimension| {
+                *other == axis && (0..2).all(|end| (known[end] - ends[end]).abs() < 1e-6 * size)
+            };
+            if known.iter().any(same) {
+                continue;
+            }
+            known.push((axis, ends));
+            // The dimension line is below or on the left; positions are along it and across it.
+            let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
+            let position =
+                |along: f64, across: f64| if k == 0 { [along, across] } else { [across, along] };
+            let outward = line.signum();
+            let nearest = |end: f64| {
+                let at_end = points.iter().filter(|p| (p[k] - end).abs() < 0.5);
+                at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0) * outward
+            };
+            let mut thin = vec![[position(low[k], line), position(high[k], line)]];
+            for end in [low[k], high[k]] {
+                thin.push([
+                    position(end, nearest(end) + 3.0 * outward),
+                    position(end, line + 4.0 * outward),
+                ]);
+            }
+            let heads = [[low[k], high[k]], [high[k], low[k]]].map(|[from, to]| {
+                let [a, b, c] = head([position(from, line), position(to, line)], 6.0);
+                [a, b, c, a]
+            });
+            sheet.path(
+                &format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\""),
+                &lines(thin),
+            );
+            sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(heads));
+            let [from, to] = ends.map(|end| self.figure(end));
+            let length = tidy(ends[1] - ends[0], model.unit);
+            let text = format!("{} {length} ({from} to {to})", AXES[axis]);
+            let middle = low[k] / 2.0 + high[k] / 2.0;
+            let (at, anchor) = if k == 0 {
+                ([middle, line + 13.0], Anchor::Middle)
+            } else {
+                ([line - 8.0, middle], Anchor::Right)
+            };
+            sheet.text(&text, at, Look::plain(DIMENSION_SIZE, anchor));
+        }
+    }
+
+    /// Draws the name of the section above everything drawn so far.
+    fn draw_name(&self, sheet: &mut Sheet) {
+        let [[_, upper], _] = sheet.frame();
+        let name = format!("section {} = {}", AXES[self.normal], self.figure(self.at));
+        sheet.text(&name, [0.0, upper - 14.0], Look::plain(NAME_SIZE, Anchor::Middle));
+    }
+
+    /// Formats a coordinate. Values that are 0 except for rounding are 0.
+    fn figure(&self, value: f64) -> String {
+        let value = if value.abs() < 1e-9 * self.picture.size { 0.0 } else { value };
+        tidy(value, self.picture.model.unit)
+    }
+}
+
+/// Returns the legend's entries of the regions that appear in a section.
+fn regions(sections: &[Section<'_>; 3]) -> Vec<Entry> {
+    let [Section { picture, .. }, ..] = sections;
+    let appears = |region: usize| sections.iter().any(|s| !s.picture.shapes[region].is_empty());
+    (0..picture.shapes.len())
+        .filter(|region| appears(*region))
+        .map(|region| {
+            let colour = picture.fills[region];
+            (Sign::Region { colour }, picture.model.regions[region].name.clone())
+        })
+        .collect()
+}
