@@ -78,7 +78,7 @@ pub fn svg(tool: &CheckedTool, content: Content, text: TextRendering) -> String 
 fn revolved(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
     let mut picture = Picture::new(tool, content);
     let detail = Detail::new(tool, &picture);
-    picture.part = detail.as_ref().map_or(Part::Whole, |detail| Part::AboveDetail(detail.top));
+    picture.part = detail.as_ref().map_or(Part::Whole, |detail| Part::OutsideDetail(detail.corner));
     let mut marks = picture.draw(sheet);
     if let Some(detail) = detail {
         detail.mark(&picture, sheet);
@@ -106,10 +106,10 @@ struct Picture<'m> {
 enum Part {
     /// All of it.
     Whole,
-    /// What is not in the detail, which ends at this height.
-    AboveDetail(f64),
-    /// A detail that ends at this height.
-    Detail(f64),
+    /// What the detail does not show, which ends at this distance from the axis and at this height.
+    OutsideDetail(Point),
+    /// A detail that ends at this distance from the axis and at this height.
+    Detail(Point),
 }
 
 /// Traces the borders in a window of a section. `unit` is a lower bound on one unit of the sheet and `size` the section's
@@ -176,22 +176,20 @@ impl<'m> Picture<'m> {
         marks
     }
 
-    /// Returns whether something is named and measured in this view, by its largest height.
-    fn describes(&self, high: f64) -> bool {
+    /// Returns whether something is named and measured in this view, by its largest coordinates.
+    fn describes(&self, [d, z]: Point) -> bool {
         let near = 1e-6 * self.size;
         match self.part {
             Part::Whole => true,
-            Part::AboveDetail(top) => high > top + near,
-            Part::Detail(top) => high < top - near,
+            Part::OutsideDetail([radius, top]) => d > radius + near || z > top + near,
+            Part::Detail([radius, top]) => d < radius - near && z < top - near,
         }
     }
 
-    /// Returns whether a region with this shape is named in this view. A detail names all its regions.
-    fn names(&self, shape: &Shape) -> bool {
-        match self.part {
-            Part::AboveDetail(_) => self.describes(self.view.point(shape.frame()[0])[1]),
-            _ => true,
-        }
+    /// Returns whether a region is named in this view, by a point in the middle of it on the sheet. A detail names all
+    /// its regions.
+    fn names(&self, middle: Point) -> bool {
+        matches!(self.part, Part::Detail(_)) || self.describes(self.view.point(middle))
     }
 }
 

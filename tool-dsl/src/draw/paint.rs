@@ -117,7 +117,7 @@ pub(super) fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
 pub(super) fn upper_edge(picture: &Picture<'_>, sheet: &mut Sheet) {
     // The whole wave lies in the material.
     let edge = wave(picture, WAVE_HEIGHT - picture.view.height);
-    let above = wave(picture, -WAVE_HEIGHT - picture.view.height);
+    let above = wave(picture, -2.0 * WAVE_HEIGHT - picture.view.height);
     broken(&above, &edge, &[&edge], sheet);
 }
 

@@ -78,14 +78,17 @@ fn describe(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         .collect();
     let (mut arrows, mut unnamed) = (Vec::new(), Vec::new());
     for (region, shape) in picture.shapes.iter().enumerate() {
-        if shape.is_empty() || !picture.names(shape) {
+        if shape.is_empty() {
+            continue;
+        }
+        let (mut place, _) = shape.pole(1.0);
+        if !picture.names(place) {
             continue;
         }
         let mut draw = |around_frames: &[Frame]| {
             let taken: Vec<Frame> = rings.iter().chain(around_frames).copied().collect();
             directions.arrows(region, shape, view, &taken)
         };
-        let (mut place, _) = shape.pole(1.0);
         let dot = [[place[0] - 2.0, place[1] - 2.0], [place[0] + 2.0, place[1] + 2.0]];
         // A name that leaves no room for an arrow is written outside, if that helps.
         let name = name(picture, region, shape, &rings);
@@ -177,7 +180,7 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
         else {
             continue;
         };
-        if !picture.describes(focus[1]) {
+        if !picture.describes(focus) {
             continue;
         }
         let p = picture.view.to_sheet(focus);

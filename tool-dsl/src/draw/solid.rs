@@ -75,7 +75,7 @@ pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<
     let sides = extents(&borders, proved);
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let scale = MAX_EXTENT / (x + y).max(z + y);
-    let fills = colours::areas(tool.model.regions.len(), &borders.concat());
+    let fills = colours::distinct_areas(tool.model.regions.len());
     let mut borders = borders.into_iter();
     NORMALS.map(|normal| {
         let [u, v] = axes(normal).map(|axis| sides[axis]);
@@ -133,7 +133,7 @@ fn bounds(borders: &[Border]) -> Option<[Interval; 2]> {
 }
 
 impl Section<'_> {
-    /// Draws areas, surfaces and the names of regions, and the planes of the other sections as lines.
+    /// Draws areas, surfaces and the names of regions, and beside them the ends of the other sections' planes.
     fn draw(&self, all: &[Section<'_>; 3], sheet: &mut Sheet) {
         let picture = &self.picture;
         let view = &picture.view;
@@ -147,11 +147,14 @@ impl Section<'_> {
             all.iter().find(|section| section.normal == axis).map_or(0.0, |section| section.at)
         });
         let [u, v] = view.to_sheet(others);
-        let rows =
-            [[[u, 8.0], [u, -view.height - 8.0]], [[-view.half - 8.0, v], [view.half + 8.0, v]]];
-        let look =
-            "fill=\"none\" stroke=\"#22272e\" stroke-width=\".6\" stroke-dasharray=\"12 3 2 3\"";
-        sheet.path(look, &lines(rows));
+        let (near, far) = (3.0, 15.0);
+        let rows = [
+            [[u, near], [u, far]],
+            [[u, -view.height - near], [u, -view.height - far]],
+            [[-view.half - near, v], [-view.half - far, v]],
+            [[view.half + near, v], [view.half + far, v]],
+        ];
+        sheet.path("fill=\"none\" stroke=\"#22272e\" stroke-width=\".9\"", &lines(rows));
         rows.into_iter().flatten().for_each(|p| sheet.reach(p));
     }
 
@@ -161,8 +164,8 @@ impl Section<'_> {
             let name =
                 if shape.is_empty() { None } else { name(&self.picture, region, shape, &[]) };
             if let Some(name) = name {
-                let look = Look { halo: true, ..Look::plain(name.size, Anchor::Middle) };
-                sheet.text(&self.picture.model.regions[region].name, name.at, look);
+                let text = &self.picture.model.regions[region].name;
+                sheet.text(text, name.at, Look::plain(name.size, Anchor::Middle));
             }
         }
     }

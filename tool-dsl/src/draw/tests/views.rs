@@ -12,7 +12,7 @@ fn profile(segments: &str) -> Box<CheckedTool> {
 
 /// Returns whether the outline of a tool has a detail, and the detail's largest height.
 fn detail_top(tool: &CheckedTool, content: Content) -> Option<f64> {
-    Detail::new(tool, &Picture::new(tool, content)).map(|detail| detail.top)
+    Detail::new(tool, &Picture::new(tool, content)).map(|detail| detail.corner[1])
 }
 
 #[test]
@@ -26,6 +26,14 @@ fn a_small_cutting_part_has_a_detail() {
     assert!((20.0..25.0).contains(&top), "{top}");
     // The regions of a single file are drawn in one view.
     assert_eq!(detail_top(&thin, Content::Regions), None);
+
+    // A shoulder at the end of the cutting part is cut off beside it.
+    let shouldered = profile(
+        "line to (2, 0), (2, 12) as flute cutting; line to (20, 12), (21, 13), (21, 50), (0, 50) as head;",
+    );
+    let whole = Picture::new(&shouldered, Content::Outline);
+    let [radius, _] = Detail::new(&shouldered, &whole).expect("a detail").corner;
+    assert!((2.0..4.0).contains(&radius), "{radius}");
 
     let wide = profile(
         "line to (6, 0) as face cutting; line to (6, 15) as flute cutting; line to (6, 30), (0, 30) as shank;",
@@ -52,13 +60,12 @@ fn assemblies_have_a_detail_with_and_without_regions() {
 fn dimensions_are_divided_between_the_views() {
     let tool = library("ball_er16");
     let mut picture = Picture::new(&tool, Content::Outline);
-    let top = Detail::new(&tool, &picture).expect("a detail").top;
-    let heights = contour::heights(picture.model, &picture.borders, picture.size);
-    for z in heights.into_iter().map(|[_, z]| z) {
-        picture.part = Part::AboveDetail(top);
-        let above = picture.describes(z);
-        picture.part = Part::Detail(top);
-        assert_ne!(above, picture.describes(z), "{z}");
+    let corner = Detail::new(&tool, &picture).expect("a detail").corner;
+    for p in contour::heights(picture.model, &picture.borders, picture.size, |_| true) {
+        picture.part = Part::OutsideDetail(corner);
+        let outside = picture.describes(p);
+        picture.part = Part::Detail(corner);
+        assert_ne!(outside, picture.describes(p), "{p:?}");
     }
     let drawing = svg(&tool, Content::Outline, TextRendering::Page);
     for text in ["cutter.ball R3", "cutter.flute ⌀6", "nut.nut ⌀28"] {
