@@ -173,8 +173,12 @@ fn solids_are_drawn_in_three_sections() {
         well_formed(&drawing);
         let texts = texts(&drawing);
         let figures = [
-            "section y = 0", "section x = 0", "section z = 10", "x 40 (-20 to 20)",
-            "y 30 (-15 to 15)", "z 20 (0 to 20)",
+            "section y = 0",
+            "section x = 0",
+            "section z = 10",
+            "x 40 (-20 to 20)",
+            "y 30 (-15 to 15)",
+            "z 20 (0 to 20)",
         ];
         for text in figures {
             let count = texts.iter().filter(|own| *own == text).count();

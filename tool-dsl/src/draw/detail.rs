@@ -76,7 +76,9 @@ impl<'m> Detail<'m> {
     pub(super) fn mark(&self, whole: &Picture<'_>, sheet: &mut Sheet) {
         let [right, top] = whole.view.to_sheet(self.corner);
         let [outermost, end] = whole.view.to_sheet([self.cutting.radius, self.cutting.high]);
-        let right = right.max(outermost + FRAME_DISTANCE);
+        // The frame leaves room for the letter beside the dimension line.
+        let widest = whole.view.half + FRAME_DISTANCE;
+        let right = right.max(outermost + FRAME_DISTANCE).min(widest);
         let bottom = FRAME_DISTANCE;
         let corners =
             [[-right, top], [right, top], [right, bottom], [-right, bottom], [-right, top]];
@@ -173,5 +175,5 @@ pub(super) fn scale_factor(most: f64) -> Option<f64> {
         return None;
     }
     let power = 10.0_f64.powi(most.log10().floor() as i32);
-    SCALE_FACTORS.into_iter().map(|factor| factor * power).filter(|factor| *factor <= most).last()
+    SCALE_FACTORS.into_iter().map(|factor| factor * power).rfind(|factor| *factor <= most)
 }
