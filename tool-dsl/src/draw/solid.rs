@@ -172,17 +172,8 @@ impl Section<'_> {
 
     /// Draws the dimensions of the section except those that are `known` from other views.
     fn draw_dimensions(&self, known: &mut Vec<Dimension>, sheet: &mut Sheet) {
-        let Picture { borders, view, size, model, .. } = &self.picture;
+        let Picture { borders, size, .. } = &self.picture;
         let Some(bounds) = bounds(borders) else { return };
-        // Points of the contour on the sheet.
-        let points: Vec<Point> = borders
-            .iter()
-            .filter(|border| is_outline(border))
-            .flat_map(|border| &border.strokes)
-            .flat_map(|stroke| view.stroke(stroke).points(0.05))
-            .collect();
-        let low = view.to_sheet(bounds.map(|side| side.low));
-        let high = view.to_sheet(bounds.map(|side| side.high));
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
             let ends = [side.low, side.high];
             let same = |(other, known): &Dimension| {
@@ -192,35 +183,12 @@ impl Section<'_> {
                 continue;
             }
             known.push((axis, ends));
-            // The dimension line is below or on the left; positions are along it and across it.
-            let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
-            let position =
-                |along: f64, across: f64| if k == 0 { [along, across] } else { [across, along] };
-            let outward = line.signum();
-            let nearest = |end: f64| {
-                let at_end = points.iter().filter(|p| (p[k] - end).abs() < 0.5);
-                at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0) * outward
-            };
-            let mut thin = vec![[position(low[k], line), position(high[k], line)]];
-            for end in [low[k], high[k]] {
-                thin.push([
-                    position(end, nearest(end) + 3.0 * outward),
-                    position(end, line + 4.0 * outward),
-                ]);
-            }
-            let heads = [[low[k], high[k]], [high[k], low[k]]].map(|[from, to]| {
-                let [a, b, c] = head([position(from, line), position(to, line)], 6.0);
-                [a, b, c, a]
-            });
-            sheet.path(
-                &format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\""),
-                &lines(thin),
-            );
-            sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(heads));
+            let on_sheet = ends.map(|end| self.picture.view.to_sheet([end, end])[k]);
+            let line = self.draw_dimension_line(k, on_sheet, sheet);
             let [from, to] = ends.map(|end| self.figure(end));
-            let length = tidy(ends[1] - ends[0], model.unit);
+            let length = tidy(ends[1] - ends[0], self.picture.model.unit);
             let text = format!("{} {length} ({from} to {to})", AXES[axis]);
-            let middle = low[k] / 2.0 + high[k] / 2.0;
+            let middle = on_sheet[0] / 2.0 + on_sheet[1] / 2.0;
             let (at, anchor) = if k == 0 {
                 ([middle, line + 13.0], Anchor::Middle)
             } else {
@@ -228,6 +196,36 @@ impl Section<'_> {
             };
             sheet.text(&text, at, Look::plain(DIMENSION_SIZE, anchor));
         }
+    }
+
+    /// Draws a dimension line between two coordinates of the sheet, below the section if they are horizontal, otherwise
+    /// on the left, and lines that extend to it from the contour. Returns the line's other coordinate.
+    fn draw_dimension_line(&self, k: usize, ends: [f64; 2], sheet: &mut Sheet) -> f64 {
+        let Picture { borders, view, .. } = &self.picture;
+        let contour: Vec<Point> = borders
+            .iter()
+            .filter(|border| is_outline(border))
+            .flat_map(|border| &border.strokes)
+            .flat_map(|stroke| view.stroke(stroke).points(0.05))
+            .collect();
+        let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
+        let outward = line.signum();
+        let point =
+            |along: f64, across: f64| if k == 0 { [along, across] } else { [across, along] };
+        let mut thin = vec![ends.map(|end| point(end, line))];
+        for end in ends {
+            let at_end = contour.iter().filter(|p| (p[k] - end).abs() < 0.5);
+            let nearest = at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0);
+            thin.push([point(end, (nearest + 3.0) * outward), point(end, line + 4.0 * outward)]);
+        }
+        let heads = [ends, [ends[1], ends[0]]].map(|row| {
+            let [a, b, c] = head(row.map(|end| point(end, line)), 6.0);
+            [a, b, c, a]
+        });
+        let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
+        sheet.path(&look, &lines(thin));
+        sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(heads));
+        line
     }
 
     /// Draws the name of the section above everything drawn so far.
