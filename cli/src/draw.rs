@@ -1,14 +1,13 @@
 //! `touchoff draw`: a tool's drawing as SVG or PNG.
 
-use crate::arguments::{Draw, ParamArguments};
+use crate::arguments::Draw;
 use crate::failure::Failure;
 use crate::loaded_tool::compile_file;
 use crate::output::{Output, extension, refuse_inputs, write_file};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
-use std::path::Path;
-use tool_dsl::draw::{TextRendering, svg};
+use tool_dsl::draw::{Content, TextRendering, svg};
 
 /// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MAX_PIXELS`.
 const PIXELS: f32 = 2.0;
@@ -16,17 +15,17 @@ const MAX_PIXELS: f32 = 5e7;
 
 /// Draws a file's tool into another file, or on standard output.
 pub(crate) fn draw(arguments: &Draw) -> Result<(), Failure> {
-    let Draw { file, output, params } = arguments;
+    let Draw { file, output, .. } = arguments;
     let Some(output) = output else {
         let mut out = Output::bytes();
-        writeln!(out, "{}", drawing(file, params)?)?;
+        writeln!(out, "{}", drawing(arguments)?)?;
         out.flush()?;
         return Ok(());
     };
     refuse_inputs([&**output], [&**file])?;
     let bytes = match extension(output).as_deref() {
-        Some("svg") => drawing(file, params)?.into_bytes(),
-        Some("png") => png(&drawing(file, params)?)?,
+        Some("svg") => drawing(arguments)?.into_bytes(),
+        Some("png") => png(&drawing(arguments)?)?,
         _ => {
             let better = output.with_extension("svg");
             return Err(Failure::DrawingFormat { file: output.display().to_string(), better });
@@ -36,10 +35,11 @@ pub(crate) fn draw(arguments: &Draw) -> Result<(), Failure> {
 }
 
 /// Returns the drawing of a file's tool as SVG.
-fn drawing(file: &Path, params: &ParamArguments) -> Result<String, Failure> {
-    let tool = compile_file(file, params)?.into_tool();
+fn drawing(arguments: &Draw) -> Result<String, Failure> {
+    let tool = compile_file(&arguments.file, &arguments.params)?.into_tool();
     let tool = tool.ok_or(Failure::Files { wrong: 1, all: 1 })?;
-    svg(&tool, TextRendering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
+    let content = if arguments.regions { Content::Regions } else { Content::Outline };
+    Ok(svg(&tool, content, TextRendering::Strokes))
 }
 
 /// Renders an SVG without text elements as a PNG.

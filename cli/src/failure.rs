@@ -269,11 +269,6 @@ pub(crate) enum Failure {
         /// The tool.
         name: String,
     },
-    /// A solid without an axis has no section that shows it whole.
-    #[error(
-        "`{0}` is a solid without an axis, and only the sections of tools are drawn: give a `tool`"
-    )]
-    NoAxis(String),
     /// A drawing could not be rasterised.
     #[error("the PNG could not be rendered: {0}: write an `.svg`, or another format")]
     Pixels(String),

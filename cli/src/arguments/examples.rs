@@ -128,7 +128,7 @@ Examples:
 
 pub(super) const DRAW: &str = "\
 Examples:
-  Draw a tool as SVG:
-    touchoff draw my.tool -o my.svg
-  Draw it with a diameter of 6 mm, as PNG:
-    touchoff draw my.tool --set D=6mm -o my.png";
+  Draw the outline of a tool with a diameter of 6 mm, as PNG:
+    touchoff draw my.tool --set D=6mm -o my.png
+  Draw it with its regions, as SVG:
+    touchoff draw my.tool --regions -o my.svg";

@@ -118,7 +118,7 @@ pub(crate) enum Command {
     /// Print the Rust code that a `.tool` file compiles to, or an earlier stage of its compilation.
     #[command(after_help = examples::EXPAND)]
     Expand(Expand),
-    /// Draw a `.tool` file: its section, regions, surfaces and dimensions.
+    /// Draw a `.tool` file: its section with surfaces and dimensions, and its regions if requested.
     #[command(after_help = examples::DRAW)]
     Draw(Draw),
 }

@@ -138,6 +138,9 @@ pub(crate) struct Draw {
     /// `.tool` file to draw.
     #[arg(value_name = "FILE.tool")]
     pub(crate) file: PathBuf,
+    /// Also draw the regions, with the direction to the surface in each.
+    #[arg(long)]
+    pub(crate) regions: bool,
     /// Output file, `.svg` or `.png` [default: SVG on standard output].
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     pub(crate) output: Option<PathBuf>,

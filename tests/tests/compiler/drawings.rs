@@ -1,8 +1,8 @@
-//! Drawings: every region is named, every surface explained, the measures are the file's, and the bytes are the
-//! same every time. One is kept as a snapshot.
+//! Drawings: every surface is explained, the measures are the file's, every region is named if regions are drawn, and
+//! the bytes are the same every time. One is kept as a snapshot.
 
 use std::path::Path;
-use tool_dsl::draw::{TextRendering, svg};
+use tool_dsl::draw::{Content, TextRendering, svg};
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 
@@ -13,7 +13,8 @@ fn tool(name: &str, text: &str) -> Box<CheckedTool> {
 
 fn library(file: &str) -> Box<CheckedTool> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    tool(file, &std::fs::read_to_string(path).expect("the library has the file"))
+    let source = Source::read(path).expect("the library has the file");
+    compile(&source).outcome.unwrap_or_else(|refusal| panic!("{file}: {refusal:?}")).tool
 }
 
 fn profile(segments: &str) -> Box<CheckedTool> {
@@ -23,9 +24,9 @@ fn profile(segments: &str) -> Box<CheckedTool> {
     )
 }
 
-/// Returns the drawing of a tool as SVG.
-fn drawn(tool: &CheckedTool, lettering: TextRendering) -> String {
-    svg(tool, lettering).expect("a tool with an axis")
+/// Returns the drawing of a tool with its regions as SVG.
+fn drawn(tool: &CheckedTool, text: TextRendering) -> String {
+    svg(tool, Content::Regions, text)
 }
 
 fn texts(svg: &str) -> Vec<String> {
@@ -39,14 +40,46 @@ fn texts(svg: &str) -> Vec<String> {
     texts
 }
 
+/// Asserts that every element of an SVG document ends, and ends in the element in which it begins.
+fn well_formed(svg: &str) {
+    let mut open = Vec::new();
+    for tag in svg.split('<').skip(1) {
+        let (tag, _) = tag.split_once('>').unwrap_or_else(|| panic!("`<{tag}` does not end"));
+        assert_eq!(tag.matches('"').count() % 2, 0, "an attribute of `<{tag}>` does not end");
+        match tag.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop(), Some(name)),
+            None if tag.ends_with('/') => {}
+            None => open.push(tag.split(' ').next().unwrap_or(tag)),
+        }
+    }
+    assert!(open.is_empty(), "{open:?} do not end");
+}
+
 fn holds(tool: &CheckedTool) {
     let name = &tool.model.name;
-    let drawing = drawn(tool, TextRendering::Strokes);
-    assert_eq!(drawing, drawn(tool, TextRendering::Strokes), "{name}: other bytes");
-    let texts = texts(&drawing);
-    for region in &tool.model.regions {
-        assert!(texts.contains(&region.name), "{name}: no label {} in {texts:?}", region.name);
+    for content in [Content::Outline, Content::Regions] {
+        let drawing = svg(tool, content, TextRendering::Strokes);
+        assert_eq!(drawing, svg(tool, content, TextRendering::Strokes), "{name}: other bytes");
+        well_formed(&drawing);
+        let texts = texts(&drawing);
+        let surface = |name: &str| tool.model.surfaces.iter().any(|surface| surface.name == name);
+        for region in tool.model.regions.iter().map(|region| &region.name) {
+            let expected = content == Content::Regions;
+            let found = texts.contains(region);
+            // Regions and surfaces may share a name.
+            let is_right = if expected { found } else { !found || surface(region) };
+            assert!(is_right, "{name}, {content:?}: label {region} in {texts:?}");
+        }
+        explains_surfaces(tool, &texts);
+        assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}: {drawing}");
     }
+    let page = drawn(tool, TextRendering::Page);
+    assert!(page.len() < 20_000, "{name}: {} bytes on a page", page.len());
+    assert!(!page.contains('\n'), "{name}: a blank line would end the block in rustdoc");
+}
+
+fn explains_surfaces(tool: &CheckedTool, texts: &[String]) {
+    let name = &tool.model.name;
     for surface in &tool.model.surfaces {
         let words = if surface.cutting {
             format!("{}, cutting", surface.name)
@@ -55,10 +88,6 @@ fn holds(tool: &CheckedTool) {
         };
         assert!(texts.contains(&words), "{name}: no legend for {words} in {texts:?}");
     }
-    assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}: {drawing}");
-    let page = drawn(tool, TextRendering::Page);
-    assert!(page.len() < 20_000, "{name}: {} bytes on a page", page.len());
-    assert!(!page.contains('\n'), "{name}: a blank line would end the block in rustdoc");
 }
 
 #[test]
@@ -119,6 +148,44 @@ fn long_tools_are_shortened() {
     let texts = texts(&drawn(&needle, TextRendering::Strokes));
     assert!(texts.iter().any(|text| text == "shortened"), "{texts:?}");
     assert!(texts.iter().any(|text| text == "60 mm"), "{texts:?}");
+}
+
+/// The dimensions of the cutter stand in the detail, and those of the holder in the whole view.
+#[test]
+fn assemblies_have_a_detail() {
+    let tool = library("ball_er16.tool");
+    for content in [Content::Outline, Content::Regions] {
+        let drawing = svg(&tool, content, TextRendering::Strokes);
+        well_formed(&drawing);
+        let texts = texts(&drawing);
+        for text in ["A", "A (2 : 1)", "cutter.ball R3", "18 mm", "nut.nut ⌀28", "47.5 mm"] {
+            assert!(texts.iter().any(|own| own == text), "{content:?}: no {text} in {texts:?}");
+        }
+    }
+}
+
+/// Each section has its own overall dimensions, unless another view has them already.
+#[test]
+fn solids_are_drawn_in_three_sections() {
+    let tool = library("block.tool");
+    for content in [Content::Outline, Content::Regions] {
+        let drawing = svg(&tool, content, TextRendering::Strokes);
+        well_formed(&drawing);
+        let texts = texts(&drawing);
+        let figures = [
+            "section y = 0",
+            "section x = 0",
+            "section z = 10",
+            "x 40 (-20 to 20)",
+            "y 30 (-15 to 15)",
+            "z 20 (0 to 20)",
+        ];
+        for text in figures {
+            let count = texts.iter().filter(|own| *own == text).count();
+            assert_eq!(count, 1, "{content:?}: {text} in {texts:?}");
+        }
+        explains_surfaces(&tool, &texts);
+    }
 }
 
 #[test]

@@ -18,6 +18,8 @@ pub(super) enum Side {
     Outside,
     /// The mirror image, across the axis.
     Axis,
+    /// The rest of the section, beyond the divided window.
+    Beyond,
 }
 
 /// A line between two joints of the map, with the same owners on both sides all along.

@@ -122,8 +122,13 @@ fn are_equal(a: Measure, b: Measure, size: f64) -> bool {
 }
 
 /// Returns the heights at which the surface has a corner, a tangent joint of two faces, or an end, from bottom to top.
-/// Each is given with its outermost point.
-pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point> {
+/// Each is given with its outermost point. Except for the lowest, only points that are `described` count.
+pub(super) fn heights(
+    model: &Model,
+    borders: &[Border],
+    size: f64,
+    described: impl Fn(Point) -> bool,
+) -> Vec<Point> {
     let outline: Vec<&Border> = borders.iter().filter(|border| is_outline(border)).collect();
     let surface = |border: &Border| match border.sides[0] {
         Side::Region(region) => model.regions[region].surface,
@@ -155,6 +160,9 @@ pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point
     steps.sort_by(|a, b| a[1].total_cmp(&b[1]));
     let mut levels: Vec<Point> = Vec::new();
     for step in steps {
+        if !levels.is_empty() && !described(step) {
+            continue;
+        }
         match levels.last_mut() {
             Some(level) if step[1] - level[1] < LENGTH_TOLERANCE_FRACTION * size => {
                 level[0] = level[0].max(step[0]);

@@ -1,16 +1,85 @@
-//! Evaluates the splitting curves for the drawing, each prepared when it is first used.
+//! Evaluates the splitting curves in the plane of a section, each prepared when it is first used.
 
 use crate::bound::Extent;
 use crate::expr::interval::{Cell, Encloser, Interval};
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{Monomial, Polynomial};
 use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
 
+/// The plane of a section, which has two coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Plane {
+    /// The half plane of a tool: the distance from the axis, and z.
+    Meridian,
+    /// The plane of space perpendicular to an axis (0, 1, 2 for x, y, z) at a coordinate: the other two coordinates, in
+    /// alphabetical order.
+    Across { axis: usize, at: f64 },
+}
+
+impl Plane {
+    fn point(self, [u, v]: Point) -> EvaluationPoint {
+        match self {
+            Plane::Meridian => EvaluationPoint::on_meridian(u, v),
+            Plane::Across { axis, at } => {
+                let [x, y, z] = inserted([u, v], axis, at);
+                EvaluationPoint::new(x, y, z)
+            }
+        }
+    }
+
+    fn cell(self, low: Point, high: Point) -> Cell {
+        let [u, v] = [0, 1].map(|k| Interval::new(low[k], high[k]));
+        match self {
+            Plane::Meridian => Cell::half_plane(u, v),
+            Plane::Across { axis, at } => {
+                Cell { sides: inserted([u, v], axis, Interval::new(at, at)) }
+            }
+        }
+    }
+
+    /// Returns the place of a monomial of degree at most 1 in `a u + b v + c`, as the index of its coefficient, and the
+    /// value by which it is multiplied there.
+    fn linear_term(self, monomial: Monomial) -> Option<(usize, f64)> {
+        match (self, monomial) {
+            (_, [0, 0, 0, 0]) => Some((2, 1.0)),
+            (Plane::Meridian, [1, 0, 0, 0]) => Some((0, 1.0)),
+            (Plane::Meridian, [0, 0, 0, 1]) => Some((1, 1.0)),
+            (Plane::Across { axis, at }, [0, exponents @ ..]) => {
+                let [x, y, z] = inserted([(0, 1.0), (1, 1.0)], axis, (2, at));
+                match exponents {
+                    [1, 0, 0] => Some(x),
+                    [0, 1, 0] => Some(y),
+                    [0, 0, 1] => Some(z),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the least first coordinate: the axis of a tool is a mirror.
+    fn leftmost(self) -> f64 {
+        match self {
+            Plane::Meridian => 0.0,
+            Plane::Across { .. } => f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// Returns the two values with a third one inserted at an index.
+fn inserted<T: Copy>([u, v]: [T; 2], index: usize, third: T) -> [T; 3] {
+    match index {
+        0 => [third, u, v],
+        1 => [u, third, v],
+        _ => [u, v, third],
+    }
+}
+
 /// A curve prepared for evaluation at a point and for its signs in a box.
 enum CurveEvaluator<'m> {
-    /// The line `a d + b z + c`.
+    /// The line `a u + b v + c` in the coordinates of the plane.
     Line([f64; 3]),
     /// Any other curve.
     Bent(Box<(Evaluator<'m>, Encloser<'m>)>),
@@ -19,20 +88,22 @@ enum CurveEvaluator<'m> {
 /// All curves of a tool. A curve is prepared when it is first used.
 pub(super) struct Curves<'m> {
     model: &'m Model,
+    plane: Plane,
     evaluators: Vec<Option<CurveEvaluator<'m>>>,
     /// The step of the finite differences, in the tool's unit.
     step: f64,
 }
 
 impl<'m> Curves<'m> {
-    pub(super) fn new(model: &'m Model, extent: &Extent) -> Curves<'m> {
+    pub(super) fn new(model: &'m Model, extent: &Extent, plane: Plane) -> Curves<'m> {
         let evaluators = model.curves.iter().map(|_| None).collect();
-        Curves { model, evaluators, step: 1e-6 * (extent.high - extent.low).max(extent.radius) }
+        let step = 1e-6 * (extent.high - extent.low).max(extent.radius);
+        Curves { model, plane, evaluators, step }
     }
 
     fn evaluator(&mut self, curve: CurveIndex) -> &mut CurveEvaluator<'m> {
-        let (model, value) = (self.model, self.model.curves[curve].value);
-        self.evaluators[curve].get_or_insert_with(|| match line(model, curve) {
+        let (model, plane, value) = (self.model, self.plane, self.model.curves[curve].value);
+        self.evaluators[curve].get_or_insert_with(|| match line(model, curve, plane) {
             Some(line) => CurveEvaluator::Line(line),
             None => CurveEvaluator::Bent(Box::new((
                 Evaluator::new(&model.graph, [value]),
@@ -47,12 +118,12 @@ impl<'m> Curves<'m> {
     }
 
     /// Returns a curve's value at a point; +∞ where it is undefined.
-    pub(super) fn value(&mut self, curve: CurveIndex, [d, z]: Point) -> f64 {
-        let id = self.model.curves[curve].value;
+    pub(super) fn value(&mut self, curve: CurveIndex, p: Point) -> f64 {
+        let (id, plane) = (self.model.curves[curve].value, self.plane);
         let value = match self.evaluator(curve) {
-            CurveEvaluator::Line([a, b, c]) => *a * d + *b * z + *c,
+            CurveEvaluator::Line([a, b, c]) => *a * p[0] + *b * p[1] + *c,
             CurveEvaluator::Bent(bent) => {
-                bent.0.evaluate(EvaluationPoint::on_meridian(d, z));
+                bent.0.evaluate(plane.point(p));
                 bent.0.get(id)
             }
         };
@@ -61,7 +132,7 @@ impl<'m> Curves<'m> {
 
     /// Returns the signs that a curve can have in a box.
     pub(super) fn signs(&mut self, curve: CurveIndex, low: Point, high: Point) -> Signs {
-        let id = self.model.curves[curve].value;
+        let (id, plane) = (self.model.curves[curve].value, self.plane);
         let range = match self.evaluator(curve) {
             CurveEvaluator::Line([a, b, c]) => {
                 let of = |factor: f64, low: f64, high: f64| {
@@ -75,8 +146,7 @@ impl<'m> Curves<'m> {
                 Interval::new(d.0 + z.0 + *c, d.1 + z.1 + *c)
             }
             CurveEvaluator::Bent(bent) => {
-                let side = |k: usize| Interval::new(low[k], high[k]);
-                bent.1.set(Cell::half_plane(side(0), side(1)));
+                bent.1.set(plane.cell(low, high));
                 bent.1.get(id)
             }
         };
@@ -94,15 +164,14 @@ impl<'m> Curves<'m> {
     }
 
     /// Returns a curve's gradient at a point, by finite differences.
-    fn slope(&mut self, curve: CurveIndex, [d, z]: Point) -> Point {
+    fn slope(&mut self, curve: CurveIndex, [u, v]: Point) -> Point {
         let h = self.step;
         if let CurveEvaluator::Line([a, b, _]) = self.evaluator(curve) {
             return [*a, *b];
         }
-        // The axis is a mirror: negative d is not sampled.
-        let low = (d - h).max(0.0);
-        let along = (self.value(curve, [d + h, z]) - self.value(curve, [low, z])) / (d + h - low);
-        let up = (self.value(curve, [d, z + h]) - self.value(curve, [d, z - h])) / (2.0 * h);
+        let low = (u - h).max(self.plane.leftmost());
+        let along = (self.value(curve, [u + h, v]) - self.value(curve, [low, v])) / (u + h - low);
+        let up = (self.value(curve, [u, v + h]) - self.value(curve, [u, v - h])) / (2.0 * h);
         [along, up]
     }
 
@@ -145,24 +214,19 @@ impl<'m> Curves<'m> {
                 return None;
             }
             p = [p[0] - (u * gv[1] - v * gu[1]) / sine, p[1] - (v * gu[0] - u * gv[0]) / sine];
-            p[0] = p[0].max(0.0);
+            p[0] = p[0].max(self.plane.leftmost());
         }
         (norm(minus(p, from)) <= reach).then_some((square, p))
     }
 }
 
-/// Returns the coefficients of a curve that is a straight line.
-fn line(model: &Model, curve: CurveIndex) -> Option<[f64; 3]> {
+/// Returns the coefficients of a curve that is a straight line in a plane.
+fn line(model: &Model, curve: CurveIndex, plane: Plane) -> Option<[f64; 3]> {
     let polynomial = Polynomial::from_expression(&model.graph, model.curves[curve].value)?;
     let mut line = [0.0; 3];
     for (monomial, factor) in polynomial.terms() {
-        let index = match monomial {
-            [1, 0, 0, 0] => 0,
-            [0, 0, 0, 1] => 1,
-            [0, 0, 0, 0] => 2,
-            _ => return None,
-        };
-        line[index] = factor.to_f64();
+        let (index, multiplier) = plane.linear_term(monomial)?;
+        line[index] += multiplier * factor.to_f64();
     }
     Some(line)
 }

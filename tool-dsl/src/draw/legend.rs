@@ -1,12 +1,13 @@
-//! The legend below the section, which explains its lines and symbols.
+//! The legend below the views, which explains their lines, areas and symbols.
 
-use super::Picture;
+use super::Content;
 use super::colours;
 use super::lettering::width;
 use super::marks::head;
 use super::regions::Marks;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use crate::geometry::outline::Point;
+use crate::model::Model;
 
 /// The height of capitals; `LINE_HEIGHT` is the height of a line. Sheet units.
 const TEXT_SIZE: f64 = 7.5;
@@ -15,8 +16,9 @@ const LINE_HEIGHT: f64 = 16.0;
 const SAMPLE_LENGTH: f64 = 24.0;
 
 /// A symbol that the legend explains.
-enum Sign {
+pub(super) enum Sign {
     Surface { colour: &'static str, cutting: bool },
+    Region { colour: &'static str },
     Split,
     Singular,
     Arrow,
@@ -24,20 +26,23 @@ enum Sign {
     Break,
 }
 
-/// Draws the legend below everything drawn so far.
-pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
+/// An entry of the legend: a symbol and its meaning.
+pub(super) type Entry = (Sign, String);
+
+/// Draws the legend below everything drawn so far. Each group of entries begins a line.
+pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
     let [low, high] = sheet.frame();
     let available_width = (high[0] - low[0]).max(300.0);
     let mut at = [low[0], high[1] + 24.0];
-    for rows in [surfaces(picture), signs(picture, marks)] {
-        for (sign, text) in rows {
-            let wide = SAMPLE_LENGTH + 7.0 + width(&text, TEXT_SIZE);
+    for entries in groups {
+        for (sign, text) in entries {
+            let wide = SAMPLE_LENGTH + 7.0 + width(text, TEXT_SIZE);
             if at[0] > low[0] && at[0] + wide > low[0] + available_width {
                 at = [low[0], at[1] + LINE_HEIGHT];
             }
-            sample(&sign, at, sheet);
+            sample(sign, at, sheet);
             sheet.text(
-                &text,
+                text,
                 [at[0] + SAMPLE_LENGTH + 7.0, at[1]],
                 Look::plain(TEXT_SIZE, Anchor::Left),
             );
@@ -47,9 +52,9 @@ pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
     }
 }
 
-fn surfaces(picture: &Picture<'_>) -> Vec<(Sign, String)> {
-    let colours = colours::surfaces(picture.model);
-    let surfaces = picture.model.surfaces.iter().zip(colours);
+/// Returns the entries of a model's surfaces.
+pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
+    let surfaces = model.surfaces.iter().zip(colours::surfaces(model));
     surfaces
         .map(|(surface, colour)| {
             let cutting = surface.cutting;
@@ -60,17 +65,21 @@ fn surfaces(picture: &Picture<'_>) -> Vec<(Sign, String)> {
         .collect()
 }
 
-fn signs(picture: &Picture<'_>, marks: &Marks) -> Vec<(Sign, String)> {
-    let mut signs = vec![(Sign::Arrow, "direction to the surface")];
-    if marks.splits {
-        signs.push((Sign::Split, "border of regions"));
+/// Returns the entries of the symbols in a tool's section.
+pub(super) fn signs(content: Content, marks: &Marks) -> Vec<Entry> {
+    let mut signs = Vec::new();
+    if content == Content::Regions {
+        signs.push((Sign::Arrow, "direction to the surface"));
+        if marks.splits {
+            signs.push((Sign::Split, "border of regions"));
+        }
+        if !marks.singular.is_empty() {
+            signs.push((Sign::Singular, "no direction here"));
+        }
+        let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
+        signs.push((Sign::Axis, axis));
     }
-    if !marks.singular.is_empty() {
-        signs.push((Sign::Singular, "no direction here"));
-    }
-    let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
-    signs.push((Sign::Axis, axis));
-    if !picture.view.seams().is_empty() {
+    if marks.shortened {
         signs.push((Sign::Break, "shortened"));
     }
     signs.into_iter().map(|(sign, text)| (sign, text.to_owned())).collect()
@@ -85,6 +94,12 @@ fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
         Sign::Surface { colour, cutting } => {
             let wide = if *cutting { 3.0 } else { 2.0 };
             line(sheet, &format!("stroke=\"{colour}\" stroke-width=\"{wide}\""));
+        }
+        Sign::Region { colour } => {
+            let [low, high] = [[x, y - 4.5], [x + SAMPLE_LENGTH, y + 4.5]];
+            let corners = [low, [high[0], low[1]], high, [low[0], high[1]], low];
+            let look = "stroke=\"#3f4650\" stroke-width=\".6\" fill-opacity=\".62\"";
+            sheet.path(&format!("fill=\"{colour}\" {look}"), &lines([&corners]));
         }
         Sign::Split => {
             line(sheet, "stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"");

@@ -42,11 +42,12 @@ pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>)
         }
         let on_axis = ends.iter().all(|end| points[*end][0] == 0.0);
         let side = |half: Option<Half>| match half.map(|(piece, _)| owners[piece]) {
-            Some(Some(region)) => Some(Side::Region(region)),
-            Some(None) => Some(Side::Outside),
-            None => on_axis.then_some(Side::Axis),
+            Some(Some(region)) => Side::Region(region),
+            Some(None) => Side::Outside,
+            None if on_axis => Side::Axis,
+            None => Side::Beyond,
         };
-        let (Some(left), Some(right)) = (side(pair[0]), side(pair[1])) else { continue };
+        let (left, right) = (side(pair[0]), side(pair[1]));
         let inside = matches!(left, Side::Region(_)) || matches!(right, Side::Region(_));
         if inside {
             let curve = pair.iter().find_map(|half| half.and_then(|(_, curve)| curve));

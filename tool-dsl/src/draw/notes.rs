@@ -85,7 +85,9 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
     let unit = picture.model.unit;
     let all = faces(picture.model, &picture.borders, picture.size);
     let mut chosen: Vec<Face> = Vec::new();
-    for face in &all {
+    let described =
+        |face: &&Face| picture.describes([face.longest.widest(), face.longest.span()[1]]);
+    for face in all.iter().filter(described) {
         let same =
             |other: &Face| other.surface == face.surface && other.figure(unit) == face.figure(unit);
         match chosen.iter_mut().find(|other| same(other)) {
@@ -214,9 +216,11 @@ fn sheet_height(y: f64, levels: &[f64]) -> f64 {
     }
 }
 
-/// Returns the heights to note. If there are too many, the most crowded ones are left out.
+/// Returns the heights to note, of which the first is the tip. If there are too many, the most crowded ones are left
+/// out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
-    let mut steps = heights(picture.model, &picture.borders, picture.size);
+    let described = |p: Point| picture.describes(p);
+    let mut steps = heights(picture.model, &picture.borders, picture.size, described);
     let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
     while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];

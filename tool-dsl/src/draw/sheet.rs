@@ -44,6 +44,27 @@ impl Sheet {
         Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), low: None, high: None }
     }
 
+    /// Returns an empty sheet for a part of this one.
+    pub(super) fn part(&self) -> Sheet {
+        Sheet::new(self.lettering)
+    }
+
+    /// Adds a part, whose origin is placed at a point of this sheet.
+    pub(super) fn place(&mut self, part: &Sheet, [x, y]: Point) {
+        let open = format!("<g transform=\"translate({} {})\">", short(x), short(y));
+        let layers = [
+            (&mut self.drawn, &part.drawn),
+            (&mut self.halos, &part.halos),
+            (&mut self.texts, &part.texts),
+        ];
+        for (layer, more) in layers.into_iter().filter(|(_, more)| !more.is_empty()) {
+            let _ = write!(layer, "{open}{more}</g>");
+        }
+        for corner in part.frame() {
+            self.reach([corner[0] + x, corner[1] + y]);
+        }
+    }
+
     /// Draws shapes that share attributes. Writes nothing if there are no shapes.
     pub(super) fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Sheet)) {
         let open = format!("<g {attributes}>");

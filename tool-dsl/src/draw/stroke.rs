@@ -76,12 +76,17 @@ impl Stroke {
         span
     }
 
-    /// Returns the largest first coordinate.
-    pub(super) fn widest(&self) -> f64 {
+    /// Returns the lowest and highest first coordinate.
+    pub(super) fn breadth(&self) -> [f64; 2] {
         let turned = |[d, z]: Point| [-z, d];
         let circle = self.circle.map(|(centre, radius)| (turned(centre), radius));
         let turned = Stroke { from: turned(self.from), to: turned(self.to), circle };
-        turned.span()[1]
+        turned.span()
+    }
+
+    /// Returns the largest first coordinate.
+    pub(super) fn widest(&self) -> f64 {
+        self.breadth()[1]
     }
 }
 

@@ -1,12 +1,10 @@
-//! The map from the section to the sheet. On the sheet the axis is x = 0, the lowest point is at y = 0, and the spindle
+//! The map from a section to the sheet. On the sheet the axis is x = 0, the lowest point is at y = 0, and the spindle
 //! is above. Long plain cylinders are shortened, as in technical drawings, so that thin tools stay readable.
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use crate::geometry::outline::Point;
 
-/// The largest extent of the section on the sheet: full width and height, in sheet units.
-const MAX_SECTION_EXTENT: [f64; 2] = [330.0, 500.0];
 /// The height of a shortened section, as a multiple of its width.
 const MAX_ASPECT_RATIO: f64 = 4.8;
 /// The minimum length of a shortened cylinder, as a multiple of the section's width.
@@ -24,7 +22,8 @@ pub(super) struct Cut {
 pub(super) struct View {
     /// Sheet units per unit of length of the tool.
     pub(super) scale: f64,
-    low: f64,
+    /// The point of the section at the sheet's origin.
+    origin: Point,
     cuts: Vec<Cut>,
     /// Half the section's width on the sheet; `height` is its height there.
     pub(super) half: f64,
@@ -32,7 +31,8 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn new(borders: &[Border]) -> View {
+    /// Returns the view of a tool's section, as large as fits in a width and a height of the sheet.
+    pub(super) fn new(borders: &[Border], [wide, tall]: [f64; 2]) -> View {
         let strokes = || borders.iter().flat_map(|border| &border.strokes);
         let radius = strokes().map(Stroke::widest).fold(0.0, f64::max);
         let mut levels: Vec<f64> = strokes().flat_map(Stroke::span).collect();
@@ -58,25 +58,38 @@ impl View {
             .collect();
         let cuts = cuts(&plain, length, 2.0 * radius);
         let remaining = length - cuts.iter().map(|cut| cut.high - cut.low).sum::<f64>();
-        let scale = (MAX_SECTION_EXTENT[0] / (2.0 * radius)).min(MAX_SECTION_EXTENT[1] / remaining);
-        View { scale, low, cuts, half: radius * scale, height: remaining * scale }
+        let scale = (wide / (2.0 * radius)).min(tall / remaining);
+        View { scale, origin: [0.0, low], cuts, half: radius * scale, height: remaining * scale }
+    }
+
+    /// Returns the view of a box of a plane, symmetric on the sheet.
+    pub(super) fn framed([low, high]: [Point; 2], scale: f64) -> View {
+        let [wide, tall] = [0, 1].map(|k| (high[k] - low[k]) * scale);
+        let origin = [low[0] / 2.0 + high[0] / 2.0, low[1]];
+        View { scale, origin, cuts: Vec::new(), half: wide / 2.0, height: tall }
+    }
+
+    /// Returns the view at another scale.
+    pub(super) fn rescaled(self, scale: f64) -> View {
+        let factor = scale / self.scale;
+        View { scale, half: self.half * factor, height: self.height * factor, ..self }
     }
 
     /// Maps a point of the section to the right half of the sheet.
     pub(super) fn to_sheet(&self, [d, z]: Point) -> Point {
         let gone: f64 = self.cuts.iter().map(|cut| (z.min(cut.high) - cut.low).max(0.0)).sum();
-        [d * self.scale, -(z - self.low - gone) * self.scale]
+        [(d - self.origin[0]) * self.scale, -(z - self.origin[1] - gone) * self.scale]
     }
 
     /// Maps a point of the sheet back to the section.
     pub(super) fn point(&self, [x, y]: Point) -> Point {
-        let mut z = self.low - y / self.scale;
+        let mut z = self.origin[1] - y / self.scale;
         for cut in &self.cuts {
             if z > cut.low {
                 z += cut.high - cut.low;
             }
         }
-        [x / self.scale, z]
+        [self.origin[0] + x / self.scale, z]
     }
 
     /// Maps a stroke to the sheet.

@@ -16,7 +16,7 @@ use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::digest;
 use crate::domain::Domain;
-use crate::draw::{self, TextRendering};
+use crate::draw::{self, Content, TextRendering};
 use crate::expr::Id;
 use crate::model::RegionOutputs;
 use crate::plan::Tree;
@@ -35,8 +35,8 @@ pub fn emit(tool: &CheckedTool) -> TokenStream {
 /// The same with the tool's drawing on the type's page, for rustdoc.
 pub fn with_drawing(tool: &CheckedTool) -> TokenStream {
     // One line inside a block element, so that nothing in it is parsed as Markdown.
-    let drawing = draw::svg(tool, TextRendering::Page).map(|svg| format!("<div>{svg}</div>"));
-    code(tool, &drawing.map(|drawing| quote! { #[doc = ""] #[doc = #drawing] }).unwrap_or_default())
+    let drawing = format!("<div>{}</div>", draw::svg(tool, Content::Regions, TextRendering::Page));
+    code(tool, &quote! { #[doc = ""] #[doc = #drawing] })
 }
 
 fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {

@@ -1,0 +1,256 @@
+//! Solids, which have no axis: three sections through the middle, perpendicular to y, x and z.
+//!
+//! They are arranged in third-angle projection: the view from the front (from −y), to its right the view from the right
+//! (from +x), and above it the view from above (from +z).
+
+use super::borders::Border;
+use super::colours;
+use super::contour::tidy;
+use super::curves::{Curves, Plane};
+use super::legend::{self, Entry, Sign};
+use super::marks::head;
+use super::regions::name;
+use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
+use super::view::{View, is_outline};
+use super::{Content, Picture, paint, trace};
+use crate::checked::CheckedTool;
+use crate::expr::interval::Interval;
+use crate::geometry::outline::Point;
+
+/// The axes, and those perpendicular to the front view, the side view and the top view.
+const AXES: [&str; 3] = ["x", "y", "z"];
+const NORMALS: [usize; 3] = [1, 0, 2];
+/// The largest width and height of two views together, in sheet units.
+const MAX_EXTENT: f64 = 460.0;
+/// Distances between views, and from a section to its dimension lines, in sheet units.
+const VIEW_DISTANCE: f64 = 36.0;
+const DIMENSION_DISTANCE: f64 = 24.0;
+/// The height of capitals in dimensions and in the names of sections, in sheet units.
+const DIMENSION_SIZE: f64 = 7.5;
+const NAME_SIZE: f64 = 9.0;
+
+/// Draws the three sections and their legend.
+pub(super) fn draw(tool: &CheckedTool, content: Content, sheet: &mut Sheet) {
+    let sections = sections(tool, content);
+    let mut known = Vec::new();
+    let [front, side, top] = sections.each_ref().map(|section| {
+        let mut part = sheet.part();
+        section.draw(&sections, &mut part);
+        section.draw_dimensions(&mut known, &mut part);
+        section.draw_name(&mut part);
+        part
+    });
+    let [[_, upper], [right, _]] = front.frame();
+    sheet.place(&front, [0.0, 0.0]);
+    sheet.place(&side, [right + VIEW_DISTANCE - side.frame()[0][0], 0.0]);
+    sheet.place(&top, [0.0, upper - VIEW_DISTANCE - top.frame()[1][1]]);
+    let regions = match content {
+        Content::Outline => Vec::new(),
+        Content::Regions => regions(&sections),
+    };
+    legend::draw(&[legend::surfaces(&tool.model), regions], sheet);
+}
+
+/// The section in the plane perpendicular to an axis at a coordinate.
+pub(super) struct Section<'m> {
+    normal: usize,
+    pub(super) at: f64,
+    pub(super) picture: Picture<'m>,
+}
+
+/// The dimension of a section along an axis: the coordinates of its ends.
+type Dimension = (usize, [f64; 2]);
+
+/// Returns the three sections through the middle, in the order of `NORMALS` and to one scale.
+pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<'m>; 3] {
+    let proved = tool.extent.cell().sides;
+    // Proved extents may be a few percent too wide, so the middle is that of the sections through their middle.
+    let rough = traced(tool, proved.map(Interval::middle));
+    let size = proved.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
+    let middle = extents(&rough, proved).map(|side| match side.middle() {
+        middle if middle.abs() < 1e-6 * size => 0.0,
+        middle => middle,
+    });
+    let borders = traced(tool, middle);
+    let sides = extents(&borders, proved);
+    let [x, y, z] = sides.map(|side| side.high - side.low);
+    let scale = MAX_EXTENT / (x + y).max(z + y);
+    let fills = colours::distinct_areas(tool.model.regions.len());
+    let mut borders = borders.into_iter();
+    NORMALS.map(|normal| {
+        let [u, v] = axes(normal).map(|axis| sides[axis]);
+        let view = View::framed([[u.low, v.low], [u.high, v.high]], scale);
+        let borders = borders.next().unwrap_or_default();
+        let picture = Picture::of(&tool.model, content, (borders, size), view, fills.clone());
+        Section { normal, at: middle[normal], picture }
+    })
+}
+
+/// Returns the borders in the planes at these coordinates along x, y and z, in the order of `NORMALS`.
+fn traced(tool: &CheckedTool, at: [f64; 3]) -> [Vec<Border>; 3] {
+    let sides = tool.extent.cell().sides;
+    let [x, y, z] = sides.map(|side| side.high - side.low);
+    let size = x.max(y).max(z);
+    let unit = (x + y).max(z + y) / (1.1 * MAX_EXTENT);
+    NORMALS.map(|normal| {
+        let plane = Plane::Across { axis: normal, at: at[normal] };
+        let mut curves = Curves::new(&tool.model, &tool.extent, plane);
+        // Odd shares, so that no side of a cell runs along a curve.
+        let [low, high] = [(0, -0.0213), (1, 0.0197)].map(|(end, share)| {
+            axes(normal).map(|axis| {
+                let side = sides[axis];
+                [side.low, side.high][end] + share * (side.high - side.low)
+            })
+        });
+        trace(&mut curves, tool, [low, high], [unit, size])
+    })
+}
+
+/// Returns the axes to the right and up in the view of a section.
+fn axes(normal: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][normal]
+}
+
+/// Returns the box around three sections; `proved` where there is none.
+fn extents(sections: &[Vec<Border>; 3], proved: [Interval; 3]) -> [Interval; 3] {
+    let mut sides: [Option<Interval>; 3] = [None; 3];
+    for (normal, borders) in NORMALS.into_iter().zip(sections) {
+        let Some(bounds) = bounds(borders) else { continue };
+        for (axis, side) in axes(normal).into_iter().zip(bounds) {
+            sides[axis] = Some(sides[axis].map_or(side, |known| known.hull(side)));
+        }
+    }
+    [0, 1, 2].map(|axis| sides[axis].unwrap_or(proved[axis]))
+}
+
+/// Returns the extent of a section along its two coordinates, unless it is empty.
+fn bounds(borders: &[Border]) -> Option<[Interval; 2]> {
+    let outline = borders.iter().filter(|border| is_outline(border));
+    outline
+        .flat_map(|border| &border.strokes)
+        .map(|stroke| [stroke.breadth(), stroke.span()].map(|[low, high]| Interval::new(low, high)))
+        .reduce(|[a, b], [c, d]| [a.hull(c), b.hull(d)])
+}
+
+impl Section<'_> {
+    /// Draws areas, surfaces and the names of regions, and beside them the ends of the other sections' planes.
+    fn draw(&self, all: &[Section<'_>; 3], sheet: &mut Sheet) {
+        let picture = &self.picture;
+        let view = &picture.view;
+        paint::whole(picture, sheet);
+        if picture.content == Content::Regions {
+            paint::splits(picture, sheet);
+            self.draw_names(sheet);
+        }
+        paint::outline(picture, false, sheet);
+        let others = axes(self.normal).map(|axis| {
+            all.iter().find(|section| section.normal == axis).map_or(0.0, |section| section.at)
+        });
+        let [u, v] = view.to_sheet(others);
+        let (near, far) = (3.0, 15.0);
+        let rows = [
+            [[u, near], [u, far]],
+            [[u, -view.height - near], [u, -view.height - far]],
+            [[-view.half - near, v], [-view.half - far, v]],
+            [[view.half + near, v], [view.half + far, v]],
+        ];
+        sheet.path("fill=\"none\" stroke=\"#22272e\" stroke-width=\".9\"", &lines(rows));
+        rows.into_iter().flatten().for_each(|p| sheet.reach(p));
+    }
+
+    /// Draws the names of regions that have room for them; the legend names all.
+    fn draw_names(&self, sheet: &mut Sheet) {
+        for (region, shape) in self.picture.shapes.iter().enumerate() {
+            let name =
+                if shape.is_empty() { None } else { name(&self.picture, region, shape, &[]) };
+            if let Some(name) = name {
+                let text = &self.picture.model.regions[region].name;
+                sheet.text(text, name.at, Look::plain(name.size, Anchor::Middle));
+            }
+        }
+    }
+
+    /// Draws the dimensions of the section except those that are `known` from other views.
+    fn draw_dimensions(&self, known: &mut Vec<Dimension>, sheet: &mut Sheet) {
+        let Picture { borders, size, .. } = &self.picture;
+        let Some(bounds) = bounds(borders) else { return };
+        for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
+            let ends = [side.low, side.high];
+            let same = |(other, known): &Dimension| {
+                *other == axis && (0..2).all(|end| (known[end] - ends[end]).abs() < 1e-6 * size)
+            };
+            if known.iter().any(same) {
+                continue;
+            }
+            known.push((axis, ends));
+            let on_sheet = ends.map(|end| self.picture.view.to_sheet([end, end])[k]);
+            let line = self.draw_dimension_line(k, on_sheet, sheet);
+            let [from, to] = ends.map(|end| self.figure(end));
+            let length = tidy(ends[1] - ends[0], self.picture.model.unit);
+            let text = format!("{} {length} ({from} to {to})", AXES[axis]);
+            let middle = on_sheet[0] / 2.0 + on_sheet[1] / 2.0;
+            let (at, anchor) = if k == 0 {
+                ([middle, line + 13.0], Anchor::Middle)
+            } else {
+                ([line - 8.0, middle], Anchor::Right)
+            };
+            sheet.text(&text, at, Look::plain(DIMENSION_SIZE, anchor));
+        }
+    }
+
+    /// Draws a dimension line between two coordinates of the sheet, below the section if they are horizontal, otherwise
+    /// on the left, and lines that extend to it from the contour. Returns the line's other coordinate.
+    fn draw_dimension_line(&self, k: usize, ends: [f64; 2], sheet: &mut Sheet) -> f64 {
+        let Picture { borders, view, .. } = &self.picture;
+        let contour: Vec<Point> = borders
+            .iter()
+            .filter(|border| is_outline(border))
+            .flat_map(|border| &border.strokes)
+            .flat_map(|stroke| view.stroke(stroke).points(0.05))
+            .collect();
+        let line = [DIMENSION_DISTANCE, -view.half - DIMENSION_DISTANCE][k];
+        let outward = line.signum();
+        let point =
+            |along: f64, across: f64| if k == 0 { [along, across] } else { [across, along] };
+        let mut thin = vec![ends.map(|end| point(end, line))];
+        for end in ends {
+            let at_end = contour.iter().filter(|p| (p[k] - end).abs() < 0.5);
+            let nearest = at_end.map(|p| p[1 - k] * outward).reduce(f64::max).unwrap_or(0.0);
+            thin.push([point(end, (nearest + 3.0) * outward), point(end, line + 4.0 * outward)]);
+        }
+        let heads = [ends, [ends[1], ends[0]]].map(|row| {
+            let [a, b, c] = head(row.map(|end| point(end, line)), 6.0);
+            [a, b, c, a]
+        });
+        let look = format!("fill=\"none\" stroke=\"{SECONDARY_COLOUR}\" stroke-width=\".7\"");
+        sheet.path(&look, &lines(thin));
+        sheet.path(&format!("fill=\"{SECONDARY_COLOUR}\""), &lines(heads));
+        line
+    }
+
+    /// Draws the name of the section above everything drawn so far.
+    fn draw_name(&self, sheet: &mut Sheet) {
+        let [[_, upper], _] = sheet.frame();
+        let name = format!("section {} = {}", AXES[self.normal], self.figure(self.at));
+        sheet.text(&name, [0.0, upper - 14.0], Look::plain(NAME_SIZE, Anchor::Middle));
+    }
+
+    /// Formats a coordinate. Values that are 0 except for rounding are 0.
+    fn figure(&self, value: f64) -> String {
+        let value = if value.abs() < 1e-9 * self.picture.size { 0.0 } else { value };
+        tidy(value, self.picture.model.unit)
+    }
+}
+
+/// Returns the legend's entries of the regions that appear in a section.
+fn regions(sections: &[Section<'_>; 3]) -> Vec<Entry> {
+    let [Section { picture, .. }, ..] = sections;
+    let appears = |region: usize| sections.iter().any(|s| !s.picture.shapes[region].is_empty());
+    (0..picture.shapes.len())
+        .filter(|region| appears(*region))
+        .map(|region| {
+            let colour = picture.fills[region];
+            (Sign::Region { colour }, picture.model.regions[region].name.clone())
+        })
+        .collect()
+}
