@@ -36,6 +36,9 @@ impl Accuracy {
             title: "Rounding of the compiled tools",
             covers: &[
                 "tool-dsl/src",
+                ":!tool-dsl/src/diagnostic",
+                ":!tool-dsl/src/draw",
+                ":!tool-dsl/src/format",
                 ":!tool-dsl/src/prove",
                 "tools-library/tools",
                 "runtime/src/tool",

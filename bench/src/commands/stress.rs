@@ -59,6 +59,9 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
                 "runtime/src/probe",
                 "runtime/src/tool",
                 "tool-dsl/src",
+                ":!tool-dsl/src/diagnostic",
+                ":!tool-dsl/src/draw",
+                ":!tool-dsl/src/format",
                 "tools-library/tools",
             ],
             sections: vec![Section {
