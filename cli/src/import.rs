@@ -202,7 +202,7 @@ impl Run<'_> {
     }
 }
 
-/// The head of the table, in the order of [`line`].
+/// The head of the table, in the order of [`line()`].
 const HEAD: [&str; 10] =
     ["number", "type", "diameter", "flutes", "length", "stick-out", "", "depth", "file", "holder"];
 
