@@ -50,14 +50,17 @@ const FILES: [(&str, &str); 21] = [
 ];
 
 /// Command lines, without `touchoff`. `PART` stands for `--part part.stl --unit mm`.
-const MISTAKES: [&str; 78] = [
+const MISTAKES: [&str; 81] = [
     // The command and its options.
     "verfy PART",
     "run --part part.stl --tool D2Ball --program program.apt",
     "run PART --tool D2Ball --path program.apt",
     "verify PART --tool D2Ball --program program.apt --tolerence 0.1",
     "run PART --tool D2Ball",
-    "tools my.tool",
+    "tools my.tool list",
+    "tools part.stl",
+    "export D2Ball -o tool.step",
+    "export Fig73 -o tool.json",
     "bench --part part.stl",
     "haptic PART --tool D2Ball --device glove",
     "haptic PART --tool D2Ball --device playback",

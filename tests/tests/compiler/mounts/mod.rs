@@ -27,11 +27,11 @@ fn said(compiled: &Compiled) -> String {
     all.join("\n")
 }
 
-/// Returns the tool of a text that must have no diagnostics.
+/// Returns the tool of a text that must have no diagnostics, except that a mount may clamp a cutting surface.
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
-    let said = said(&compiled);
-    assert_eq!(said, "", "{text}");
+    let is_expected = compiled.diagnostics().iter().all(|report| report.code() == "T0522");
+    assert!(is_expected, "{text}\n{}", said(&compiled));
     compiled.into_tool().expect("a tool without errors")
 }
 
