@@ -81,7 +81,7 @@ struct Run<'a> {
     json: bool,
 }
 
-/// What becomes of the tools.
+/// The destination of the tools.
 enum Target {
     List { prove: bool },
     Folder(PathBuf),

@@ -15,7 +15,7 @@ use crate::model::Model;
 const MAX_EXTENT: [f64; 2] = [240.0, 500.0];
 /// The cutting part is small if its height or its radius on the sheet is less than this fraction of the tool's.
 const SMALL_FRACTION: f64 = 0.4;
-/// What is shown above the cutting part, as fractions of its height and of its radius, whichever is more; and beside it,
+/// The margin above the cutting part, as fractions of its height and of its radius, whichever is more; and beside it,
 /// as a fraction of its radius. Odd shares, so that no edge of the detail runs along a curve.
 const MARGIN_ABOVE: [f64; 2] = [0.1527, 0.4519];
 const MARGIN_BESIDE: f64 = 0.2537;

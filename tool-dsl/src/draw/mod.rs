@@ -106,7 +106,7 @@ struct Picture<'m> {
 enum Part {
     /// All of it.
     Whole,
-    /// What the detail does not show, which ends at this distance from the axis and at this height.
+    /// The part outside the detail, which ends at this distance from the axis and at this height.
     OutsideDetail(Point),
     /// A detail that ends at this distance from the axis and at this height.
     Detail(Point),

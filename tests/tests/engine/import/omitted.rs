@@ -9,7 +9,7 @@ use touchoff_tests::libraries;
 const OPTIONAL: [&str; 5] =
     ["shoulder-length", "shoulder-diameter", "shaft", "holder", "post-process"];
 
-/// What a reader made of one tool.
+/// The result of reading one tool.
 #[derive(Debug, PartialEq)]
 enum Outcome {
     Refused,
