@@ -103,7 +103,10 @@ impl Run {
         for skipped in library.skipped() {
             assert!(!skipped.reason.is_empty(), "{name} {index}: left out without a reason");
         }
-        let numbers = numbers(&String::from_utf8_lossy(&text));
+        let mut numbers = numbers(&String::from_utf8_lossy(&text));
+        if name.ends_with("fctb") {
+            add_lengths_in_mm(&mut numbers);
+        }
         for tool in library.tools() {
             self.tools += 1;
             let texts: Vec<String> = tool.files.iter().map(|file| file.text.clone()).collect();
@@ -225,6 +228,15 @@ fn numbers(text: &str) -> Vec<f64> {
     numbers.sort_by(f64::total_cmp);
     numbers.dedup();
     numbers
+}
+
+/// Adds each number as a length in every unit that FreeCAD's texts may have.
+fn add_lengths_in_mm(numbers: &mut Vec<f64>) {
+    let units = [10.0, 1000.0, 25.4, 304.8, 1e-3];
+    let converted: Vec<f64> =
+        numbers.iter().flat_map(|number| units.map(|unit| number * unit)).collect();
+    numbers.extend(converted);
+    numbers.sort_by(f64::total_cmp);
 }
 
 /// Returns the params of a tool's files.
