@@ -136,8 +136,10 @@ fn mutant(text: &[u8], rng: &mut Rng) -> Vec<u8> {
     let mut text = text.to_vec();
     for _ in 0..=(rng.bits() % 6).saturating_sub(3) {
         let tokens = tokens(&text);
-        let numbers: Vec<_> =
-            tokens.iter().filter(|token| text[token.start].is_ascii_digit()).collect();
+        let has_digit = |token: &&std::ops::Range<usize>| {
+            text[token.start..token.end].iter().any(u8::is_ascii_digit)
+        };
+        let numbers: Vec<_> = tokens.iter().filter(has_digit).collect();
         if numbers.is_empty() {
             break;
         }
