@@ -22,7 +22,7 @@ const TOOL: &str = "tool My {
 }
 ";
 
-pub(super) const PROGRAM: &str =
+const PROGRAM: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
 
 /// Returns the examples at the end of a help text, without their explanations.
@@ -43,6 +43,17 @@ pub(super) fn parsed(bench: &Bench, mut arguments: Vec<&str>, partial: bool) -> 
     program.args(arguments).current_dir(&bench.folder).output().expect("the program runs")
 }
 
+/// Returns a bench with the files that help texts and pages name.
+pub(super) fn example_files() -> Bench {
+    let bench = Bench::new();
+    let block = bench.folder.path().join("block.stl");
+    std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
+    bench.write("program.apt", PROGRAM);
+    bench.write("my.tool", TOOL);
+    bench.write("library.json", LIBRARY);
+    bench
+}
+
 #[test]
 fn all_commands_are_listed() {
     let help = stdout(&touchoff(&["--help"]));
@@ -59,12 +70,7 @@ fn all_commands_are_listed() {
 
 #[test]
 fn examples_work_as_they_stand() {
-    let bench = Bench::new();
-    let block = bench.folder.path().join("block.stl");
-    std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
-    bench.write("program.apt", PROGRAM);
-    bench.write("my.tool", TOOL);
-    bench.write("library.json", LIBRARY);
+    let bench = example_files();
     for command in COMMANDS.into_iter().chain(["tools list", "tools show"]) {
         let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
         let help = stdout(&touchoff(&words));

@@ -1,7 +1,7 @@
 //! From a tool library to a program that is checked with its tools.
 
 use crate::bench::{Bench, rows, stderr, stdout, touchoff};
-use crate::help::{PROGRAM, parsed};
+use crate::help::{example_files, parsed};
 use serde_json::Value;
 
 /// A ball end mill in a nut, and a drill without a holder.
@@ -79,11 +79,7 @@ fn importing_again_changes_nothing() {
 /// The commands of docs/import.md lead from a library to a checked program.
 #[test]
 fn the_commands_of_the_page_work() {
-    let bench = Bench::new();
-    let block = bench.folder.path().join("block.stl");
-    std::fs::copy(block, bench.folder.path().join("part.stl")).expect("a writable folder");
-    bench.write("library.json", LIBRARY);
-    bench.write("program.apt", PROGRAM);
+    let bench = example_files();
     let page = include_str!("../../../docs/import.md");
     let (_, block) = page.split_once("```sh\n").expect("a block of commands");
     let (block, _) = block.split_once("```").expect("its end");

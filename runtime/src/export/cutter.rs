@@ -43,6 +43,10 @@ pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
     // The half angle of the cone from one point up to another.
     let half_angle =
         |from: [f64; 2], to: [f64; 2]| ((to[0] - from[0]) / (to[1] - from[1])).atan().to_degrees();
+    let point = |edge: [f64; 2]| {
+        let angle = 2.0 * half_angle([0.0; 2], edge);
+        Type::Point { diameter: 2.0 * edge[0], tip_diameter: 0.0, angle }
+    };
     match cutting {
         [tip, flute] if arc(tip).is_some() => {
             let ((edge, _, radius), end) = (arc(tip)?, line(flute)?);
@@ -54,17 +58,12 @@ pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
         }
         [tip] => match arc(tip) {
             Some((_, _, radius)) => Some(Type::Ball { diameter: 2.0 * radius }),
-            None => {
-                let edge = line(tip).filter(|edge| edge[1] > 0.0)?;
-                let angle = 2.0 * half_angle([0.0; 2], edge);
-                Some(Type::Point { diameter: 2.0 * edge[0], tip_diameter: 0.0, angle })
-            }
+            None => line(tip).filter(|edge| edge[1] > 0.0).map(point),
         },
         [face, flute] => {
             let (edge, end) = (line(face)?, line(flute)?);
             Some(if edge[1] > 0.0 {
-                let angle = 2.0 * half_angle([0.0; 2], edge);
-                Type::Point { diameter: 2.0 * edge[0], tip_diameter: 0.0, angle }
+                point(edge)
             } else if is_straight(edge, end) {
                 Type::End { diameter: 2.0 * edge[0], corner: 0.0 }
             } else {

@@ -93,16 +93,7 @@ impl HalfSection {
 
     /// Returns the cutting part as a solid, closed by a plane across the axis.
     pub(super) fn closed_cutting_part(&self) -> Vec<ProfileSegment> {
-        let mut outline = self.cutting.clone();
-        if let Some(last) = self.cutting.last() {
-            outline.push(ProfileSegment {
-                from: last.to,
-                to: [0.0, last.to[1]],
-                circle: None,
-                surface: last.surface,
-            });
-        }
-        outline
+        closed(self.cutting.clone(), self.tolerance)
     }
 
     /// Returns what lies below the holder as a solid, closed by a plane across the axis.
@@ -110,14 +101,17 @@ impl HalfSection {
         let is_below = |segment: &&ProfileSegment| {
             segment.from[1].max(segment.to[1]) <= self.end + self.tolerance
         };
-        let mut outline: Vec<ProfileSegment> =
-            self.outline.iter().take_while(is_below).copied().collect();
-        if let Some(last) = outline.last().copied().filter(|last| last.to[0] > self.tolerance) {
-            let to = [0.0, last.to[1]];
-            outline.push(ProfileSegment { from: last.to, to, circle: None, surface: last.surface });
-        }
-        outline
+        closed(self.outline.iter().take_while(is_below).copied().collect(), self.tolerance)
     }
+}
+
+/// Closes an outline by a plane across the axis, unless it ends on the axis.
+fn closed(mut outline: Vec<ProfileSegment>, tolerance: f64) -> Vec<ProfileSegment> {
+    if let Some(last) = outline.last().copied().filter(|last| last.to[0] > tolerance) {
+        let to = [0.0, last.to[1]];
+        outline.push(ProfileSegment { from: last.to, to, circle: None, surface: last.surface });
+    }
+    outline
 }
 
 /// Returns the round number that a computed one stands for: the nearest multiple of 1e-9, if only rounding errors are

@@ -30,7 +30,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     entry.number =
         tool.get("post-process").and_then(|post| post.get("number")).and_then(tool_number);
     if kind == "holder" {
-        entry.holder = Some(holder(tool)?);
+        entry.holder = Some(holder(tool)?.ok_or("its holder has no segments")?);
         return Ok(entry);
     }
     let empty = Object::new();
@@ -54,12 +54,11 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         });
     }
     if let Some(value) = object(tool, "holder")? {
-        if sections(value).is_ok_and(|sections| sections.is_empty()) {
+        let Some(holder) = holder(value)? else {
             let drawn = "the tool is drawn without its holder".to_owned();
             entry.notes.push(Note::Unstated("segments of the holder", drawn));
             return Ok(entry);
-        }
-        let holder = holder(value)?;
+        };
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
         let gauge = number_of(value, "gaugeLength");
         let stated = geometry.get("assemblyGaugeLength")?;
@@ -224,17 +223,18 @@ fn flat_or_point(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<Shape
     })
 }
 
-fn holder(value: &Object) -> Result<Holder, String> {
+/// Returns the holder; `None` if its segments are not stated.
+fn holder(value: &Object) -> Result<Option<Holder>, String> {
     let sections = sections(value).map_err(|error| format!("its holder: {error}"))?;
     if sections.is_empty() {
-        return Err("its holder has no segments".to_owned());
+        return Ok(None);
     }
-    Ok(Holder {
+    Ok(Some(Holder {
         title: text(value, "description").to_owned(),
         origin: origin(value),
         unit: unit(value).map_err(|error| format!("its holder: {error}"))?,
         sections,
-    })
+    }))
 }
 
 fn sections(value: &Object) -> Result<Vec<Section>, String> {
