@@ -1,6 +1,6 @@
 //! The tools of a library, in one form for all formats.
 
-use super::shape::{Cutter, ShapeError};
+use super::shape::{Cutter, Shape, ShapeError};
 use super::term::decimal;
 use crate::unit::Unit;
 use std::fmt;
@@ -236,6 +236,16 @@ impl Entry {
             && neck < cutter.diameter / 20.0
         {
             notes.push(Note::ThinNeck { neck, diameter: cutter.diameter });
+        }
+        if let Shape::Thread { pitch, teeth, .. } = cutter.shape
+            && pitch > 0.0
+            && cutter.whole_pitches(pitch) < f64::from(teeth)
+        {
+            notes.push(Note::Contradiction {
+                first: ("number of teeth", f64::from(teeth)),
+                second: ("number of pitches in the flute length", cutter.whole_pitches(pitch)),
+                taken: "teeth that fit",
+            });
         }
         self.notes.extend(notes);
     }
