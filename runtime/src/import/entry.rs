@@ -247,6 +247,22 @@ impl Entry {
                 taken: "teeth that fit",
             });
         }
+        if let Some([wide, narrow]) = cutter.heights_of_diameter()
+            && narrow > wide
+        {
+            let drawn = format!(
+                "taken: its upper end, which gives the widest tool, of full diameter from {wide:.4}; with its lower \
+                 end it would be from {narrow:.4}"
+            );
+            notes.push(Note::Unstated("point of the flank that has the taper angle", drawn));
+        }
+        if let Some(width) = cutter.width_of_short_oval() {
+            notes.push(Note::Contradiction {
+                first: ("diameter", cutter.diameter),
+                second: ("diameter at the end of the flutes", width),
+                taken: "radii and the flute length",
+            });
+        }
         self.notes.extend(notes);
     }
 

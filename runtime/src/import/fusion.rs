@@ -149,6 +149,13 @@ fn cutter(
             ball: geometry.require("lower-radius", "lower radius")?,
             flank: geometry.require("profile-radius", "profile radius")?,
         },
+        "circle segment taper" => Shape::SegmentTaper {
+            tip_diameter: geometry.require("tip-diameter", "tip diameter")?,
+            lower: geometry.require("lower-radius", "lower radius")?,
+            flank: geometry.require("profile-radius", "profile radius")?,
+            upper: geometry.require("upper-radius", "upper radius")?,
+            half_angle: geometry.require("TA", "taper angle")?,
+        },
         "form mill" => {
             notes.push(Note::Unstated(
                 "part of the profile that cuts",

@@ -122,6 +122,15 @@ pub(super) enum Shape {
         ball: f64,
         flank: f64,
     },
+    /// A rounded tip, a flank of radius `flank` that widens upward, and a rounded edge where it ends at the diameter.
+    /// Somewhere on it the flank has the angle `half_angle` from the axis.
+    SegmentTaper {
+        tip_diameter: f64,
+        lower: f64,
+        flank: f64,
+        upper: f64,
+        half_angle: f64,
+    },
     /// An outline drawn by hand.
     Form(Vec<FormSegment>),
     /// A disc with a clamping screw below it.
@@ -237,6 +246,8 @@ impl Cutter {
             }
             Shape::Lens { face, corner } => self.lens(outline, radius, face, corner),
             Shape::Oval { ball, flank } => self.oval(outline, radius, ball, flank),
+            Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } => self
+                .segment_taper(outline, radius, (tip_diameter, half_angle), [lower, flank, upper]),
             Shape::Form(ref segments) => {
                 form(outline, segments);
                 Ok(())
