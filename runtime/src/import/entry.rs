@@ -1,6 +1,6 @@
 //! The tools of a library, in one form for all formats.
 
-use super::shape::{Cutter, ShapeError};
+use super::shape::{Cutter, Shape, ShapeError};
 use super::term::decimal;
 use crate::unit::Unit;
 use std::fmt;
@@ -236,6 +236,32 @@ impl Entry {
             && neck < cutter.diameter / 20.0
         {
             notes.push(Note::ThinNeck { neck, diameter: cutter.diameter });
+        }
+        if let Shape::Thread { pitch, teeth, .. } = cutter.shape
+            && pitch > 0.0
+            && cutter.whole_pitches(pitch) < f64::from(teeth)
+        {
+            notes.push(Note::Contradiction {
+                first: ("number of teeth", f64::from(teeth)),
+                second: ("number of pitches in the flute length", cutter.whole_pitches(pitch)),
+                taken: "teeth that fit",
+            });
+        }
+        if let Some([wide, narrow]) = cutter.heights_of_diameter()
+            && narrow > wide
+        {
+            let drawn = format!(
+                "taken: its upper end, which gives the widest tool, of full diameter from {wide:.4}; with its lower \
+                 end it would be from {narrow:.4}"
+            );
+            notes.push(Note::Unstated("point of the flank that has the taper angle", drawn));
+        }
+        if let Some(width) = cutter.width_of_short_oval() {
+            notes.push(Note::Contradiction {
+                first: ("diameter", cutter.diameter),
+                second: ("diameter at the end of the flutes", width),
+                taken: "radii and the flute length",
+            });
         }
         self.notes.extend(notes);
     }

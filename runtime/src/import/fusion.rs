@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section};
-use super::shape::{Cutter, Shape, ShapeError};
+use super::shape::{Crest, Cutter, Shape, ShapeError};
 use super::{Found, Problem, form};
 use crate::unit::Unit;
 use serde_json::{Map, Value};
@@ -149,6 +149,13 @@ fn cutter(
             ball: geometry.require("lower-radius", "lower radius")?,
             flank: geometry.require("profile-radius", "profile radius")?,
         },
+        "circle segment taper" => Shape::SegmentTaper {
+            tip_diameter: geometry.require("tip-diameter", "tip diameter")?,
+            lower: geometry.require("lower-radius", "lower radius")?,
+            flank: geometry.require("profile-radius", "profile radius")?,
+            upper: geometry.require("upper-radius", "upper radius")?,
+            half_angle: geometry.require("TA", "taper angle")?,
+        },
         "form mill" => {
             notes.push(Note::Unstated(
                 "part of the profile that cuts",
@@ -156,18 +163,12 @@ fn cutter(
             ));
             Shape::Form(form::profile(geometry.0.get("profile"))?)
         }
-        "thread mill" => {
-            let crest = text(geometry.0, "thread-tip-type");
-            if !crest.is_empty() && crest != "point" {
-                let drawn = "teeth are drawn with a point".to_owned();
-                notes.push(Note::Unstated("profile of its crests for every pitch", drawn));
-            }
-            Shape::Thread {
-                pitch: geometry.require("TP", "thread pitch")?,
-                angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
-                teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
-            }
-        }
+        "thread mill" => Shape::Thread {
+            pitch: geometry.require("TP", "thread pitch")?,
+            angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
+            teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
+            crest: crest(geometry, notes)?,
+        },
         "drill" => {
             Shape::Drill { tip_diameter: 0.0, point_angle: geometry.require("SIG", "point angle")? }
         }
@@ -211,6 +212,28 @@ fn cutter(
         shoulder,
         shank_diameter: shank_diameter.filter(|shank| *shank > 0.0),
     })
+}
+
+/// Returns the crests of a thread mill. They are points if their form or its size is not stated. Fusion 360 replaces a
+/// width of 0 by a quarter of the pitch, so 0 states no size.
+fn crest(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<Crest, String> {
+    let width = geometry.get("thread-tip-width")?.filter(|width| *width != 0.0);
+    let radius = geometry.get("thread-tip-radius")?.filter(|radius| *radius != 0.0);
+    let form = text(geometry.0, "thread-tip-type");
+    let unstated = match (form, width, radius) {
+        ("point", ..) | ("", None, None) => return Ok(Crest::Point),
+        ("flat", Some(width), _) => return Ok(Crest::Flat { width }),
+        ("round", _, Some(radius)) => return Ok(Crest::Round { radius }),
+        ("flat", None, _) => "width of the crests",
+        ("round", _, None) => "radius of the crests",
+        _ => "form of the crests",
+    };
+    let drawn = match form {
+        "" | "flat" | "round" => "teeth are drawn with a point".to_owned(),
+        other => format!("teeth are drawn with a point, because `{other}` cannot be read yet"),
+    };
+    notes.push(Note::Unstated(unstated, drawn));
+    Ok(Crest::Point)
 }
 
 /// Returns the shape of a tool whose end is flat if the angle of its point is 0 or 180.

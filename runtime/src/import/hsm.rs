@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 type Object = Map<String, Value>;
 
 /// The names of dimensions in HSM and in Fusion 360.
-const DIMENSIONS: [(&str, &str); 22] = [
+const DIMENSIONS: [(&str, &str); 24] = [
     ("axial-distance", "axial-distance"),
     ("body-length", "LB"),
     ("corner-radius", "RE"),
@@ -29,6 +29,8 @@ const DIMENSIONS: [(&str, &str); 22] = [
     ("taper-angle", "TA"),
     ("thread-pitch", "TP"),
     ("thread-profile-angle", "thread-profile-angle"),
+    ("thread-tip-radius", "thread-tip-radius"),
+    ("thread-tip-width", "thread-tip-width"),
     ("tip-angle", "SIG"),
     ("tip-diameter", "tip-diameter"),
     ("tip-length", "tip-length"),
@@ -144,10 +146,12 @@ impl Tool {
                         text.parse().map_err(|_| format!("`{from}` is `{text}`, no number"))?;
                     self.geometry.insert(to.to_owned(), json!(value));
                 }
-                for key in ["tapered-type", "thread-tip-type"] {
-                    if let Some(value) = attribute(&attributes, key) {
-                        self.object.insert(key.to_owned(), json!(value));
-                    }
+                // Fusion 360 has the first among the tool's keys, and the second among its dimensions.
+                if let Some(value) = attribute(&attributes, "tapered-type") {
+                    self.object.insert("tapered-type".to_owned(), json!(value));
+                }
+                if let Some(value) = attribute(&attributes, "thread-tip-type") {
+                    self.geometry.insert("thread-tip-type".to_owned(), json!(value));
                 }
             }
             "shaft" | "holder" => {

@@ -48,7 +48,7 @@ pub(super) struct Outline {
 
 /// Coordinates nearer than this part of the larger one are equal, since libraries state some six digits: a neck of the
 /// width of the flutes is no step.
-const SAME: f64 = 5e-6;
+pub(super) const SAME: f64 = 5e-6;
 
 impl Outline {
     pub(super) fn new() -> Outline {

@@ -4,6 +4,9 @@ use super::{Entry, ImportError, Library, Note};
 use crate::tool::{Interpreted, Tool};
 use serde_json::{Value, json};
 
+mod segments;
+mod threads;
+
 fn library(tool: &Value) -> Library {
     let text = json!({ "version": 33, "data": [tool] }).to_string();
     Library::parse("library.json".as_ref(), text.as_bytes()).expect("a library")

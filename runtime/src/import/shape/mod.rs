@@ -4,9 +4,12 @@ mod drills;
 mod mills;
 mod other;
 mod segments;
+mod threads;
 
 use super::outline::{Outline, Surface, cutting, plain};
 use super::term::Term;
+use other::form;
+pub(super) use threads::Crest;
 
 /// The dimensions of a cutter, in the unit of its tool. Lengths are from the tip.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,11 +86,12 @@ pub(super) enum Shape {
         corner: f64,
         max_diameter: f64,
     },
-    /// Triangular teeth, at most `teeth` of them.
+    /// Teeth with straight flanks, at most `teeth` of them.
     Thread {
         pitch: f64,
         angle: f64,
         teeth: u32,
+        crest: Crest,
     },
     /// A cylinder whose lower edge has a chamfer of this width, at this angle from the plane across the axis.
     CornerChamfer {
@@ -117,6 +121,15 @@ pub(super) enum Shape {
     Oval {
         ball: f64,
         flank: f64,
+    },
+    /// A rounded tip, a flank of radius `flank` that widens upward, and a rounded edge where it ends at the diameter.
+    /// Somewhere on it the flank has the angle `half_angle` from the axis.
+    SegmentTaper {
+        tip_diameter: f64,
+        lower: f64,
+        flank: f64,
+        upper: f64,
+        half_angle: f64,
     },
     /// An outline drawn by hand.
     Form(Vec<FormSegment>),
@@ -219,8 +232,8 @@ impl Cutter {
             Shape::Tooth { neck_diameter, crest, angle } => {
                 self.tooth(outline, radius, neck_diameter, crest, angle)
             }
-            Shape::Thread { pitch, angle, teeth } => {
-                self.teeth(outline, radius, (pitch, angle, teeth))
+            Shape::Thread { pitch, angle, teeth, crest } => {
+                self.teeth(outline, radius, (pitch, angle, teeth), crest)
             }
             Shape::CornerChamfer { width, angle } => {
                 self.corner_chamfer(outline, radius, width, angle)
@@ -233,21 +246,10 @@ impl Cutter {
             }
             Shape::Lens { face, corner } => self.lens(outline, radius, face, corner),
             Shape::Oval { ball, flank } => self.oval(outline, radius, ball, flank),
+            Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } => self
+                .segment_taper(outline, radius, (tip_diameter, half_angle), [lower, flank, upper]),
             Shape::Form(ref segments) => {
-                for segment in segments {
-                    let [d, z] = segment.to.map(Term::number);
-                    match segment.arc {
-                        None => outline.line(&d, &z, cutting("form")),
-                        Some((radius, concave)) => {
-                            outline.arc_of_radius(
-                                (&d, &z),
-                                &Term::number(radius),
-                                concave,
-                                cutting("form"),
-                            );
-                        }
-                    }
-                }
+                form(outline, segments);
                 Ok(())
             }
             Shape::Saw { thickness, cap_diameter, cap_height } => {

@@ -1,8 +1,8 @@
-//! Saws, probes, and the general cutter of APT.
+//! Saws, probes, outlines drawn by hand, and the general cutter of APT.
 
-use super::super::outline::{Outline, plain};
+use super::super::outline::{Outline, cutting, plain};
 use super::super::term::Term;
-use super::{CORNER, Cutter, FACE, FLUTE, ShapeError, ball_on_neck, positive};
+use super::{CORNER, Cutter, FACE, FLUTE, FormSegment, ShapeError, ball_on_neck, positive};
 
 impl Cutter {
     /// Draws a blade with a clamping screw below.
@@ -98,5 +98,19 @@ impl Cutter {
         outline.arc((&high[0], &high[1]), (&d, &z), CORNER);
         let wide = high[0].plus(&flute.minus(&high[1]).times(&side.tan()));
         self.cone(outline, &wide, &flute)
+    }
+}
+
+/// Draws an outline that was drawn by hand.
+pub(super) fn form(outline: &mut Outline, segments: &[FormSegment]) {
+    for segment in segments {
+        let [d, z] = segment.to.map(Term::number);
+        match segment.arc {
+            None => outline.line(&d, &z, cutting("form")),
+            Some((radius, concave)) => {
+                let radius = Term::number(radius);
+                outline.arc_of_radius((&d, &z), &radius, concave, cutting("form"));
+            }
+        }
     }
 }

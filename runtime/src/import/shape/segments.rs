@@ -1,8 +1,8 @@
 //! Face mills and circle-segment mills.
 
-use super::super::outline::{Outline, cutting};
+use super::super::outline::{Outline, SAME, cutting};
 use super::super::term::Term;
-use super::{CORNER, Cutter, FACE, FLUTE, ShapeError, positive};
+use super::{CORNER, Cutter, FACE, FLUTE, Shape, ShapeError, flat_tip, positive};
 
 impl Cutter {
     /// Draws a face mill. Its cone goes on to the largest diameter, however long the flutes are.
@@ -191,5 +191,120 @@ impl Cutter {
         }
         outline.arc((radius, &centre_z), (&axis, &centre_z), cutting("flank"));
         self.flutes(outline, radius)
+    }
+
+    /// Returns the diameter of an oval at the end of its flutes, if they end below its widest point; else, and for other
+    /// shapes, `None`.
+    pub(in super::super) fn width_of_short_oval(&self) -> Option<f64> {
+        let Shape::Oval { ball, flank } = self.shape else { return None };
+        let back = flank - self.diameter / 2.0;
+        let centre_z = ball + ((flank - ball).powi(2) - back.powi(2)).sqrt();
+        let rest = (centre_z - self.flute_length).max(0.0);
+        let width = 2.0 * ((flank.powi(2) - rest.powi(2)).sqrt() - back);
+        (width > 0.0 && width < self.diameter * (1.0 - SAME)).then_some(width)
+    }
+
+    /// Draws a flank that widens upward from a rounded tip and ends in a rounded edge at the diameter.
+    ///
+    /// Each arc touches the next. The centre of the tip's arc is as far from the axis as the edge of the flat tip, and
+    /// that of the upper edge lies at the height where the diameter is reached. The flank may still turn about the centre
+    /// of the tip's arc, until one of its points has the taper angle. Here this is its upper end: any other point would
+    /// turn the flank toward the axis, so this solid contains those of the other readings.
+    pub(super) fn segment_taper(
+        &self,
+        outline: &mut Outline,
+        radius: &Term,
+        (tip_diameter, half_angle): (f64, f64),
+        [lower, flank, upper]: [f64; 3],
+    ) -> Result<(), ShapeError> {
+        self.check_tip(tip_diameter)?;
+        self.check_angle("taper angle", half_angle)?;
+        for (name, edge) in [("lower radius", lower), ("upper radius", upper)] {
+            if !(edge >= 0.0 && edge.is_finite()) {
+                return Err(ShapeError::OutOfRange(name, edge));
+            }
+            if edge >= flank {
+                return Err(ShapeError::Contradiction(name, edge, "radius of the flank", flank));
+            }
+        }
+        // Lengths below the precision of the library's numbers are none.
+        let is_none = |length: f64| length <= SAME * self.diameter;
+        let one = Term::number(1.0);
+        let tip = flat_tip(outline, if is_none(tip_diameter) { 0.0 } else { tip_diameter });
+        let angle = outline.angle("taper_angle", half_angle);
+        let flank = outline.param("flank_radius", flank);
+        let [lower, upper] =
+            [("lower_radius", lower), ("upper_radius", upper)].map(|(name, edge)| {
+                if is_none(edge) { Term::number(0.0) } else { outline.param(name, edge) }
+            });
+        let below = flank.minus(&lower);
+        let above = flank.minus(&upper);
+        // The cosine of the flank's angle from the axis at its lower end.
+        let cos = tip.minus(radius).plus(&upper).plus(&above.times(&angle.cos())).over(&below);
+        // A flank that begins across the axis and still does not reach the diameter.
+        if cos.value() < 0.0 {
+            return Err(ShapeError::Contradiction(
+                "radius of the flank",
+                flank.value(),
+                "diameter",
+                self.diameter,
+            ));
+        }
+        // A tip that reaches it before the flank begins. Then the cosine may be above 1.
+        let turn = cos.value().min(1.0).acos() - half_angle.to_radians();
+        if flank.value() * turn <= SAME * self.diameter {
+            return Err(ShapeError::Contradiction(
+                "lower radius",
+                lower.value(),
+                "diameter",
+                self.diameter,
+            ));
+        }
+        let cos = outline.define("low_cos", cos);
+        let sin = outline.define("low_sin", one.minus(&cos.squared()).sqrt());
+        let from_d = tip.plus(&lower.times(&cos));
+        let from_z = lower.minus(&lower.times(&sin));
+        outline.arc((&from_d, &from_z), (&tip, &lower), cutting("tip"));
+        let centre_d = outline.define("flank_center", tip.minus(&below.times(&cos)));
+        let centre_z = outline.define("flank_height", lower.plus(&below.times(&sin)));
+        let to_d = centre_d.plus(&flank.times(&angle.cos()));
+        let to_z = centre_z.minus(&flank.times(&angle.sin()));
+        outline.arc((&to_d, &to_z), (&centre_d, &centre_z), cutting("flank"));
+        let edge = radius.minus(&upper);
+        let end = outline.define("high", centre_z.minus(&above.times(&angle.sin())));
+        outline.arc((radius, &end), (&edge, &end), CORNER);
+        if end.value() > self.flute_length * (1.0 + SAME) {
+            return Err(ShapeError::Contradiction(
+                "flute length",
+                self.flute_length,
+                "height of the full diameter",
+                end.value(),
+            ));
+        }
+        self.flutes(outline, radius)
+    }
+
+    /// Returns the heights at which a circle-segment taper reaches its diameter, if its flank has the taper angle at the
+    /// upper end and if it has it at the lower end; `None` for other shapes.
+    ///
+    /// If a flank with that angle at the lower end does not reach the diameter, the second height is that of the flank
+    /// that is parallel to the axis where it reaches it.
+    pub(in super::super) fn heights_of_diameter(&self) -> Option<[f64; 2]> {
+        let Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } = self.shape
+        else {
+            return None;
+        };
+        let (below, above) = (flank - lower, flank - upper);
+        let apart = (self.diameter - tip_diameter) / 2.0 - upper;
+        let cos = half_angle.to_radians().cos();
+        let height = |low_cos: f64, high_cos: f64| {
+            lower + below * (1.0 - low_cos * low_cos).sqrt()
+                - above * (1.0 - high_cos * high_cos).sqrt()
+        };
+        let steepest = ((above - apart) / below).min(cos);
+        Some([
+            height((above * cos - apart) / below, cos),
+            height(steepest, ((apart + below * steepest) / above).min(1.0)),
+        ])
     }
 }
