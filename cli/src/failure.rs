@@ -20,6 +20,12 @@ impl Failure {
             Failure::Usage(_)
             | Failure::IsInput { .. }
             | Failure::Program(_)
+            | Failure::Job { .. }
+            | Failure::NoTool { .. }
+            | Failure::SeveralTools { .. }
+            | Failure::WorkOffset { .. }
+            | Failure::Machine(_)
+            | Failure::MachineProgram(_)
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
@@ -81,6 +87,48 @@ pub(crate) enum Failure {
     /// A tool library could not be imported.
     #[error(transparent)]
     Import(#[from] touchoff::import::ImportError),
+    /// A job file cannot be used.
+    #[error("{file}: {message}")]
+    Job {
+        /// The job file.
+        file: String,
+        /// The reason.
+        message: String,
+    },
+    /// No tool is given for a number of the program.
+    #[error("{}", no_tool(*number))]
+    NoTool {
+        /// The number; `None` for motions before the first tool change.
+        number: Option<u32>,
+    },
+    /// A program changes tools, and one was given.
+    #[error("the program uses T{first} and T{second}: give its tools by number in a job file")]
+    SeveralTools {
+        /// The first tool.
+        first: u32,
+        /// Another tool.
+        second: u32,
+    },
+    /// A work offset of a job has another name, or another number of coordinates.
+    #[error("work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3")]
+    WorkOffset {
+        /// The given name.
+        name: String,
+    },
+    /// A file could not be read.
+    #[error("{file}: cannot be read ({source}): check the path and its permissions")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: std::io::Error,
+    },
+    /// A machine's file is refused, or no machine has that name.
+    #[error(transparent)]
+    Machine(#[from] touchoff::machine::MachineError),
+    /// G-code cannot be checked on its machine.
+    #[error(transparent)]
+    MachineProgram(#[from] touchoff::verify::MachineProgramError),
     /// A tool library has no such tool.
     #[error(
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
@@ -315,5 +363,18 @@ fn near_codes(near: &str) -> String {
     match near {
         "" => "`touchoff explain` lists all codes".to_owned(),
         near => format!("did you mean `{near}`?"),
+    }
+}
+
+/// Returns the message for a number without a tool.
+fn no_tool(number: Option<u32>) -> String {
+    match number {
+        Some(number) => format!(
+            "no tool is given for T{number}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
+             the job"
+        ),
+        None => "the program moves before its first tool change, or names no tool: give one tool in the job, or use \
+                 `--tool`"
+            .to_owned(),
     }
 }

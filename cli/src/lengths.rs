@@ -1,5 +1,6 @@
 //! Lengths as text.
 
+use nalgebra::Point3;
 use touchoff::Unit;
 
 /// Formats a length with its unit.
@@ -15,4 +16,10 @@ pub(crate) fn format_number(value: f64, unit: Unit) -> String {
         Unit::Metre => 7,
     };
     format!("{value:.decimals$}")
+}
+
+/// Formats a point without its unit.
+pub(crate) fn format_point(point: &Point3<f64>, unit: Unit) -> String {
+    let [x, y, z] = [point.x, point.y, point.z].map(|value| format_number(value, unit));
+    format!("({x}, {y}, {z})")
 }

@@ -38,7 +38,7 @@ fn main() -> ExitCode {
     let result = match command.unwrap_or(Command::Demo) {
         Command::Demo => demo::demo(json).map(success),
         Command::Run(arguments) => run::run(&arguments, json).map(success),
-        Command::Verify(arguments) => verify::verify(&arguments, json),
+        Command::Verify(arguments) => verify::verify(*arguments, json),
         Command::Haptic(arguments) => haptic::haptic(&arguments, json).map(success),
         Command::Sweep(arguments) => postures::sweep::sweep(&arguments, json).map(success),
         Command::Map(arguments) => postures::map::map(&arguments, json).map(success),

@@ -1,7 +1,7 @@
 //! Programs: reading, checks against tool and unit, position relative to the part, and ignored words.
 
 use crate::failure::Failure;
-use crate::lengths::{format_length, format_number};
+use crate::lengths::{format_length, format_point};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,6 +15,20 @@ use touchoff::{Program, Unit};
 /// If it cannot be read, or its unit, poses or cutter do not fit.
 pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, Failure> {
     let program = Program::read(path)?;
+    check(&program, info, unit, path)?;
+    Ok(program)
+}
+
+/// Checks that a program is meant for a tool and a part in that unit.
+///
+/// # Errors
+/// If its unit, poses or cutter do not fit.
+pub(crate) fn check(
+    program: &Program,
+    info: &ToolInfo,
+    unit: Unit,
+    path: &Path,
+) -> Result<(), Failure> {
     program.check_unit(unit)?;
     program.check_poses(info)?;
     if let Some(line) = program.check_cutter(info, unit)? {
@@ -24,20 +38,22 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, 
             info.name
         );
     }
-    Ok(program)
+    Ok(())
 }
 
-/// Prints the boxes of part and program, the nearest approach of the tool, and the ignored words.
-pub(crate) fn print(report: &VerifyReport, program: &Program, unit: Unit) {
-    let Approach { part, program: tips, distance, line, diameter, proved_clearance: keeps, .. } =
+/// Prints the boxes of part and program, the travelled length, and the nearest approach of the tool.
+pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
+    let Approach { part, program: tips, travel, distance, line, diameter, proved_clearance, .. } =
         report.approach;
     message!("part: {} in {unit}", extent(part, unit));
     message!(
-        "program: {} cutter locations, tips in {} in {unit}",
-        program.locations.len(),
-        extent(tips, unit)
+        "program: {} positions, tips in {} in {unit}, {} in feed and {} in rapid traverse",
+        report.motions + 1,
+        extent(tips, unit),
+        format_length(travel[0], unit),
+        format_length(travel[1], unit),
     );
-    match (distance, keeps) {
+    match (distance, proved_clearance) {
         (0.0, _) => message!("nearest approach: contact, line {line}"),
         (_, None) => {
             message!("nearest approach: {} or less, line {line}", format_length(distance, unit));
@@ -49,7 +65,6 @@ pub(crate) fn print(report: &VerifyReport, program: &Program, unit: Unit) {
             format_length(diameter, unit),
         ),
     }
-    print_ignored(program);
 }
 
 /// Prints the words that were ignored, and how often each occurs.
@@ -69,9 +84,5 @@ pub(crate) fn print_ignored(program: &Program) {
 
 /// Formats a box by its two corners.
 fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
-    let corner = |p: Point3<f64>| {
-        let [x, y, z] = [p.x, p.y, p.z].map(|part| format_number(part, unit));
-        format!("({x}, {y}, {z})")
-    };
-    format!("{} to {}", corner(low), corner(high))
+    format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
 }

@@ -140,6 +140,7 @@ mod debug;
 mod escape;
 #[cfg(feature = "import")]
 pub mod export;
+pub mod gcode;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 mod id;
@@ -148,6 +149,7 @@ pub mod import;
 mod input;
 mod interval;
 mod keywords;
+pub mod machine;
 pub mod mesh;
 mod motion;
 mod parallel;

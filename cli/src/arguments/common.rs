@@ -20,6 +20,11 @@ pub(crate) struct ParamArguments {
 }
 
 impl ParamArguments {
+    /// Creates the arguments from values as `--set` takes them.
+    pub(crate) fn new(set: Vec<String>) -> ParamArguments {
+        ParamArguments { set, root: None }
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.set.is_empty()
     }

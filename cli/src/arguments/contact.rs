@@ -1,7 +1,7 @@
 //! The arguments of the commands that compute contact: `run`, `verify`, `haptic`, `sample` and `bench`.
 
 use super::values::{allowance, core, count, length, point, positive, rate};
-use super::{MeshFile, PartFile, ToolArguments};
+use super::{PartFile, ToolArguments};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::ffi::OsString;
@@ -52,16 +52,27 @@ pub(crate) struct Run {
 
 #[derive(Args)]
 pub(crate) struct Verify {
-    #[command(flatten)]
-    pub(crate) mesh: MeshFile,
+    /// Job file, which states part, program, machine, tools by number, fixtures and stock, instead of the options.
+    #[arg(value_name = "JOB.toml", conflicts_with_all = ["part", "unit", "tool", "program", "machine", "tolerance", "allow"])]
+    pub(crate) job: Option<PathBuf>,
+    /// Finished part: a mesh in STL, PLY or OBJ.
+    #[arg(long, value_name = "FILE", required_unless_present = "job")]
+    pub(crate) part: Option<PathBuf>,
+    /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
+    #[arg(long, required_unless_present = "job")]
+    pub(crate) unit: Option<Unit>,
     /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
-    #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: OsString,
+    #[arg(long, value_name = "NAME|FILE.tool", required_unless_present = "job")]
+    pub(crate) tool: Option<OsString>,
     #[command(flatten)]
     pub(crate) params: ToolArguments,
-    /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) program: PathBuf,
+    /// Program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, in the part's unit; or G-code.
+    #[arg(long, value_name = "FILE", required_unless_present = "job")]
+    pub(crate) program: Option<PathBuf>,
+    /// Machine of a G-code program: `3-axis`, `A-C trunnion`, `B-C table-table`, `B head + C table`, `A-C fork head`, or a
+    /// file [default: `3-axis`].
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) machine: Option<OsString>,
     /// Largest depth allowed for any surface of the tool in the part, in the part's unit.
     #[arg(long, value_name = "LENGTH", value_parser = length, default_value_t = 0.0)]
     pub(crate) tolerance: f64,
@@ -73,14 +84,17 @@ pub(crate) struct Verify {
     /// [default: 0.001 mm].
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) resolution: Option<f64>,
+    /// Write the findings as SARIF 2.1.0, for services of continuous integration.
+    #[arg(long, value_name = "OUT.sarif")]
+    pub(crate) sarif: Option<PathBuf>,
     /// Check only the part's surface where its mesh leaks or is inside out, as it is then unknown whether the tool
     /// is inside the material. Without this option, such a part ends with status 2.
     #[arg(long)]
     pub(crate) surface_only: bool,
-    /// Accept a program that never comes within the tool's diameter of the part. Without this option, such a
-    /// program ends with status 2.
+    /// Accept an implausible program: one that never comes within the tool's diameter of the part, or that would fit
+    /// the part in another unit. Without this option, such a program ends with status 2.
     #[arg(long)]
-    pub(crate) allow_distant: bool,
+    pub(crate) anyway: bool,
 }
 
 #[derive(Args)]

@@ -7,6 +7,7 @@ mod fmt;
 mod haptic;
 mod help;
 mod import;
+mod job;
 mod keys;
 mod measured;
 mod mistakes;

@@ -385,7 +385,7 @@ fn old_options_are_refused() {
         "path --to a",
         "path --planes 1,0,0",
         "path --step 1",
-        "verify --anyway",
+        "verify --allow-distant",
         "sample --tolerance 1",
         "bench --path a",
     ] {

@@ -116,6 +116,25 @@ impl Program {
         }
     }
 
+    /// Returns the text of a G-code program, or `None` if the file holds positions of the tip, which
+    /// [`Program::read`] reads.
+    ///
+    /// The first line that is neither blank nor a comment decides: `%`, a letter with a number, or the head of a
+    /// Heidenhain program. So does a comment in parentheses.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not text.
+    pub fn gcode(path: impl AsRef<Path>) -> Result<Option<String>, ProgramError> {
+        let file = path.as_ref().display().to_string();
+        let bytes = input::read(path)
+            .map_err(|source| ProgramError::Read { file: file.clone(), source })?;
+        match decode(&bytes) {
+            Ok(text) if is_gcode(text) => Ok(Some(text.to_owned())),
+            Ok(_) => Ok(None),
+            Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
+        }
+    }
+
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
     /// part's unit.
     ///
@@ -173,6 +192,25 @@ struct Tape {
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
     cutters: Vec<(usize, Vec<f64>)>,
+}
+
+/// Returns whether a text is a program of blocks for a control.
+fn is_gcode(text: &str) -> bool {
+    let mut code = lines(text).map(|(_, line)| line).filter(|line| {
+        !line.is_empty() && !line.starts_with([';', '#']) && !line.starts_with("$$")
+    });
+    code.next().is_some_and(|line| {
+        let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
+        let is_word = |line: &str| {
+            let mut characters = line.chars();
+            characters.next().is_some_and(|c| c.is_ascii_alphabetic())
+                && characters
+                    .as_str()
+                    .trim_start()
+                    .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
+        };
+        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || is_word(line)
+    })
 }
 
 /// Decodes bytes as text, and reads its positions.

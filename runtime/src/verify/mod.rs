@@ -2,36 +2,53 @@
 //! part than allowed.
 //!
 //! ```text
-//! program ──two locations──▶ motion ──check_motion──▶ clear
+//! program ──two locations──▶ move ──free space──▶ clear
+//! G-code ──machine──────────▶ move     └─check_motion──▶ clear
 //!                                          └──────▶ each surface ──motion_depth──▶ finding
 //! ```
 //!
-//! Every two consecutive cutter locations form a [`Motion`], which is checked over its whole length, so that a
-//! gouge between two points is found. If a motion is not proved clear, each surface of the tool is queried
-//! separately, so that a flute that gouges does not hide a shank that rubs. There is one finding per motion and
-//! surface.
+//! Every two consecutive positions form a [`Move`], which is checked over its whole length, so that a gouge between
+//! two points is found. A motion that keeps within a region that is known to be free touches nothing. If a motion is
+//! not proved clear, each surface of the tool is queried separately, so that a flute that gouges does not hide a shank
+//! that rubs. There is one finding per motion and surface.
 //!
 //! **Guarantees.** A motion without a finding is nowhere deeper than allowed by more than the
 //! [resolution](Verifier::with_resolution). A finding is deeper than that at the pose it names: its interval
 //! contains the depth there, and its `max_depth` bounds the depth over the whole motion. The depth is that of the
-//! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`] defines them,
-//! rapid ones too.
+//! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`](crate::Motion) defines
+//! them, rapid ones too.
+//!
+//! **Joint motions.** A motion in which a control interpolates the axes of a machine is split until each piece deviates
+//! from a [`Motion`](crate::Motion) by at most a quarter of the resolution, or until nothing is near. Depth changes by
+//! at most the deviation, since its Lipschitz constant is 1, and the allowances are lowered by that. A point within the
+//! deviation of the border between two surfaces may count for either.
 
 mod approach;
+mod checker;
 mod finding;
+mod group;
+mod machine_program;
+mod moves;
+mod remedy;
 
 pub use approach::Approach;
 pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
+pub use group::FindingGroup;
+pub use machine_program::{
+    MachineProgram, MachineProgramError, MachineSummary, StepFault, ToolSelection, ToolUse,
+};
+pub use moves::{JointPath, Move, MovePath};
 
-use crate::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
+use crate::certify::{Certifier, TriangleBvh};
 use crate::debug::debug;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
-use crate::motion::{Motion, MotionError};
 use crate::parallel;
-use crate::pose::Pose;
-use crate::program::{CutterLocation, Program};
-use crate::tool::{Symmetry, Tool, ToolInfo};
+use crate::program::Program;
+use crate::tool::{Tool, ToolInfo};
+use approach::ApproachSearch;
+use checker::Checker;
+use std::iter;
 
 /// Checks programs of a tool against a part.
 ///
@@ -81,7 +98,10 @@ debug!([] Verifier<'_>, "Verifier", |this| {
 const RESOLUTION: f64 = 1e-3;
 
 /// Number of consecutive motions that share certifiers. It makes results independent of the number of cores.
-const LOCATIONS_PER_TASK: usize = 32;
+const MOVES_PER_TASK: usize = 32;
+
+/// Number of motions that are held in memory at once.
+const MOVES_PER_BATCH: usize = 1 << 13;
 
 impl<'a> Verifier<'a> {
     /// Creates a verifier of a tool at a part, with a tolerance of 0.
@@ -180,50 +200,84 @@ impl<'a> Verifier<'a> {
         program.check_poses(self.tool.info())?;
         program.check_cutter(self.tool.info(), self.bvh.unit())?;
         let locations = &program.locations;
+        let before = iter::once(None).chain(locations.iter().map(Some));
+        let symmetry = self.tool.info().symmetry;
+        let moves = before.zip(locations).map(|(from, to)| Move::between(from, to, symmetry));
+        self.check_moves(moves, progress)
+    }
+
+    /// Checks motions, of which only a bounded number is held in memory. The first is that to the first position, from
+    /// that position. `progress` is called as by [`Verifier::check_with_progress`].
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub fn check_moves(
+        &self,
+        moves: impl IntoIterator<Item = Move>,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<VerifyReport, VerifyError> {
+        let max_depths = self.max_depths()?;
+        let mut approach = ApproachSearch::new(self)?;
+        let mut moves = moves.into_iter();
+        let (mut findings, mut count, mut modes) = (Vec::new(), 0, [false, false]);
+        loop {
+            let batch: Vec<Move> = moves.by_ref().take(MOVES_PER_BATCH).collect();
+            if batch.is_empty() {
+                break;
+            }
+            let found = parallel::ranges(batch.len(), MOVES_PER_TASK, |range| {
+                let mut checker = Checker::new(self, &max_depths)?;
+                let done = range.len();
+                let findings =
+                    range.flat_map(|index| checker.check(count + index, &batch[index])).collect();
+                progress(done);
+                Ok::<Vec<Finding>, VerifyError>(findings)
+            });
+            let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
+            let found: Vec<Finding> = found.into_iter().flatten().collect();
+            approach.add(&batch, &found);
+            batch.iter().for_each(|step| modes[usize::from(step.rapid)] = true);
+            findings.extend(found);
+            count += batch.len();
+        }
+        Ok(VerifyReport {
+            motions: count.saturating_sub(1),
+            approach: approach.finish(),
+            findings,
+            inside_known: self.bvh.has_inside(),
+            unrestricted: !self.restricts(modes, &max_depths),
+        })
+    }
+
+    /// Returns the greatest depth that each surface can have.
+    fn max_depths(&self) -> Result<Vec<f64>, VerifyError> {
         let certifier = Certifier::new(self.bvh, self.tool)?;
-        let surfaces = 0..self.allowed.len();
         let max_depth = |surface| {
             let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
             depth.unwrap_or(f64::INFINITY)
         };
-        let max_depths: Vec<f64> = surfaces.map(SurfaceId).map(max_depth).collect();
-        let found = parallel::ranges(locations.len(), LOCATIONS_PER_TASK, |range| {
-            let mut checker = Checker::new(self, &max_depths)?;
-            let count = range.len();
-            let findings = range
-                .flat_map(|index| checker.check_location(locations, index))
-                .collect::<Vec<_>>();
-            progress(count);
-            Ok(findings)
-        });
-        let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
-        let findings: Vec<Finding> = found.into_iter().flatten().collect();
-        Ok(VerifyReport {
-            motions: locations.len().saturating_sub(1),
-            approach: self.approach(locations, &findings)?,
-            findings,
-            inside_known: self.bvh.has_inside(),
-            unrestricted: !self.restricts(locations, &max_depths),
-        })
+        Ok((0..self.allowed.len()).map(SurfaceId).map(max_depth).collect())
     }
 
-    /// Returns whether a surface of the tool could violate its limit or its margin. `max_depths` has the greatest
-    /// possible depth of each surface.
-    fn restricts(&self, locations: &[CutterLocation], max_depths: &[f64]) -> bool {
-        let modes = [false, true]
-            .into_iter()
-            .filter(|mode| locations.iter().any(|location| location.rapid == *mode));
+    /// Returns whether a surface of the tool could violate its limit or its margin in feed or in rapid traverse, as far
+    /// as `modes` has them in this order. `max_depths` has the greatest possible depth of each surface.
+    fn restricts(&self, modes: [bool; 2], max_depths: &[f64]) -> bool {
+        let modes = [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
         modes
             .flat_map(|rapid| self.limits(rapid).into_iter().zip(max_depths))
             .any(|(limit, max_depth)| limit < 0.0 || limit + self.resolution < *max_depth)
     }
 
-    /// Returns the motion from one pose to another, without the spin for a tool of revolution.
-    fn motion(&self, from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
-        match self.tool.info().symmetry {
-            Symmetry::Revolved => Motion::new(from, to),
-            Symmetry::Solid { .. } => Motion::with_spin(from, to),
-        }
+    /// Returns an upper bound on the distance of the tool's points from its tip, in the part's unit.
+    fn reach(&self) -> f64 {
+        let info = self.tool.info();
+        let Interval { low, high } = info.reach();
+        low.abs().max(high.abs()).hypot(info.radius()) * info.unit.factor_to(self.bvh.unit())
+    }
+
+    /// Returns a bound on the change of depth per length. Without a profile it is that of the depth function.
+    fn lipschitz(&self) -> f64 {
+        self.tool.info().depth.lipschitz.unwrap_or(1.0).max(1.0)
     }
 
     /// Returns the depth that each surface is allowed.
@@ -233,119 +287,5 @@ impl<'a> Verifier<'a> {
             if rapid { allowed.min(self.tolerance) } else { allowed }
         };
         self.allowed.iter().map(limit).collect()
-    }
-}
-
-/// Checks motions one after another.
-struct Checker<'a> {
-    verifier: &'a Verifier<'a>,
-    /// The certifiers for feed and for rapid traverse, in this order.
-    modes: [Mode<'a>; 2],
-}
-
-/// A certifier with the allowances of feed or of rapid traverse.
-struct Mode<'a> {
-    certifier: Certifier<'a>,
-    limits: Vec<f64>,
-    /// The greatest possible depth of each surface.
-    max_depths: &'a [f64],
-}
-
-/// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
-const THROUGH_FRACTION: f64 = 0.98;
-
-impl<'a> Checker<'a> {
-    fn new(verifier: &'a Verifier<'a>, max_depths: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
-        let mode = |rapid| {
-            let limits = verifier.limits(rapid);
-            let mut certifier =
-                Certifier::new(verifier.bvh, verifier.tool)?.with_budget(verifier.budget);
-            for (surface, limit) in verifier.tool.info().surfaces.iter().zip(&limits) {
-                certifier = certifier.with_allowance(&surface.name, *limit)?;
-            }
-            Ok::<_, VerifyError>(Mode { certifier, limits, max_depths })
-        };
-        Ok(Checker { verifier, modes: [mode(false)?, mode(true)?] })
-    }
-
-    /// Returns the findings of the motion to a cutter location.
-    fn check_location(&mut self, locations: &[CutterLocation], index: usize) -> Vec<Finding> {
-        let to = locations[index];
-        let before = index.checked_sub(1).map(|before| locations[before]);
-        let from = before.map_or(to.pose, |before| before.pose);
-        let finding = |part: f64, pose: Pose, kind: FindingKind| Finding {
-            location: index,
-            line: to.line,
-            from: before.map(|before| before.line),
-            rapid: to.rapid,
-            time: part,
-            pose,
-            kind,
-        };
-        let mode = &mut self.modes[usize::from(to.rapid)];
-        let mut findings = Vec::new();
-        // Where the motion is ambiguous, check the cutter location itself.
-        let motion = self.verifier.motion(&from, &to.pose).or_else(|error| {
-            findings.push(finding(1.0, to.pose, FindingKind::Ambiguous(error)));
-            self.verifier.motion(&to.pose, &to.pose)
-        });
-        if let Ok(motion) = motion {
-            for (part, kind) in mode.motion(&motion, self.verifier.resolution) {
-                findings.push(finding(part, motion.pose(part), kind));
-            }
-        }
-        findings
-    }
-}
-
-impl Mode<'_> {
-    /// Returns the findings of a motion, each with its time on the motion from 0 to 1.
-    fn motion(&mut self, motion: &Motion, resolution: f64) -> Vec<(f64, FindingKind)> {
-        let swept = self.certifier.check_motion(motion, resolution);
-        if matches!(swept, MotionVerdict::Clear | MotionVerdict::SurfaceOnly) {
-            return Vec::new();
-        }
-        let mut found = Vec::new();
-        let mut inside = Vec::new();
-        for (index, allowed) in self.limits.iter().copied().enumerate() {
-            if allowed == f64::INFINITY {
-                continue;
-            }
-            let surface = SurfaceId(index);
-            let depth = self.certifier.motion_depth(surface, motion, allowed, resolution);
-            match depth.expect("a surface of the tool") {
-                MotionDepth::Within => (),
-                MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, witness }
-                    if low < 0.0 =>
-                {
-                    let [from, to, min_distance] =
-                        [-high, -low, -max_depth].map(|distance| distance.max(0.0));
-                    let (margin, distance) = (-allowed, Interval::new(from, to));
-                    found.push((
-                        at,
-                        FindingKind::Near { surface, margin, distance, min_distance, witness },
-                    ));
-                }
-                MotionDepth::Deeper { at, depth, max_depth, witness } => {
-                    let through = depth.high >= THROUGH_FRACTION * self.max_depths[index];
-                    found.push((
-                        at,
-                        FindingKind::Deep { surface, allowed, depth, max_depth, through, witness },
-                    ));
-                }
-                MotionDepth::Inside => inside.push(surface),
-                MotionDepth::Undecided(at) => found.push((at, FindingKind::Undecided { surface })),
-            }
-        }
-        if let (MotionVerdict::Inside(surface), []) = (swept, &inside[..]) {
-            inside.push(surface);
-        }
-        if !inside.is_empty() && self.certifier.is_buried(&motion.pose(0.0)) == Some(true) {
-            found.push((0.0, FindingKind::Inside { surface: None }));
-        } else {
-            let finding = |surface| (0.0, FindingKind::Inside { surface: Some(surface) });
-            found.extend(inside.into_iter().map(finding));
-        }
-        found
     }
 }

@@ -2,6 +2,7 @@
 //! geometry.
 
 mod cases;
+mod joints;
 mod oracle;
 
 use nalgebra::Point3;

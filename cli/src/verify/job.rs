@@ -1,0 +1,250 @@
+//! What `verify` checks: from options, or from a job file.
+
+use crate::arguments::{ParamArguments, ToolArguments, Verify};
+use crate::failure::Failure;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use touchoff::Unit;
+
+/// The check of a program: lengths are in the part's unit.
+pub(super) struct Job {
+    pub(super) part: PathBuf,
+    pub(super) unit: Unit,
+    pub(super) program: PathBuf,
+    /// Name of a machine that ships, or the file of another.
+    pub(super) machine: Option<OsString>,
+    pub(super) work_offsets: BTreeMap<String, Vec<f64>>,
+    pub(super) block_delete: bool,
+    pub(super) tools: Tools,
+    pub(super) tolerance: f64,
+    pub(super) resolution: Option<f64>,
+    pub(super) allow: Vec<(String, f64)>,
+    pub(super) fixtures: Vec<Fixture>,
+    pub(super) stock: Option<Stock>,
+    pub(super) surface_only: bool,
+    pub(super) anyway: bool,
+}
+
+/// The tools of a program.
+pub(super) enum Tools {
+    /// One tool, whatever number the program gives it.
+    One(OsString, ToolArguments),
+    /// Tools by their numbers, from a library and from files.
+    Numbered { library: Option<PathBuf>, entries: BTreeMap<u32, ToolEntry> },
+}
+
+/// A tool of a job file.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ToolEntry {
+    /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
+    pub(super) tool: Option<String>,
+    /// Values for the params of the file.
+    #[serde(default)]
+    pub(super) set: BTreeMap<String, ParamValue>,
+    /// Distance from the tip to the gauge point of the spindle, in mm.
+    pub(super) length: Option<f64>,
+    /// Allowances of its surfaces, beside those of the job.
+    #[serde(default)]
+    pub(super) allow: BTreeMap<String, f64>,
+}
+
+/// The value of a param: a number in the tool's unit, or an expression of the language.
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub(super) enum ParamValue {
+    Number(f64),
+    Text(String),
+}
+
+/// A mesh that no surface of a tool may touch.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Fixture {
+    pub(super) name: String,
+    pub(super) mesh: PathBuf,
+    /// The axis of the table with which it moves: a letter, or `base` for none; the workpiece's if absent.
+    pub(super) moves_with: Option<String>,
+    /// Distance that every surface has to keep.
+    #[serde(default)]
+    pub(super) margin: f64,
+}
+
+/// The stock: a mesh, or a box by its lowest and highest corner.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Stock {
+    pub(super) mesh: Option<PathBuf>,
+    #[serde(rename = "box")]
+    pub(super) corners: Option<[[f64; 3]; 2]>,
+    /// Distance between neighbouring points of its lattice.
+    pub(super) spacing: f64,
+    /// Depth that non-cutting surfaces may have in it.
+    pub(super) tolerance: Option<f64>,
+    /// Output file for what remains, an STL mesh.
+    pub(super) output: Option<PathBuf>,
+    /// Output file for its deviations from the part: CSV, or PLY.
+    pub(super) map: Option<PathBuf>,
+}
+
+/// The work offsets that a job can state.
+const WORK_OFFSETS: [&str; 9] =
+    ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"];
+
+/// A job file. Paths are relative to its folder.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JobFile {
+    part: PathBuf,
+    unit: String,
+    program: PathBuf,
+    machine: Option<String>,
+    #[serde(default)]
+    work_offsets: BTreeMap<String, Vec<f64>>,
+    #[serde(default)]
+    block_delete: bool,
+    /// Library of the tools, which the program selects by number.
+    tools: Option<PathBuf>,
+    #[serde(default)]
+    tool: BTreeMap<String, ToolEntry>,
+    #[serde(default)]
+    tolerance: f64,
+    resolution: Option<f64>,
+    #[serde(default)]
+    allow: BTreeMap<String, f64>,
+    #[serde(default)]
+    fixture: Vec<Fixture>,
+    stock: Option<Stock>,
+    #[serde(default)]
+    surface_only: bool,
+    #[serde(default)]
+    anyway: bool,
+}
+
+impl Job {
+    /// Returns the job of the options, or of the job file.
+    ///
+    /// # Errors
+    /// If the job file cannot be read.
+    pub(super) fn new(arguments: Verify) -> Result<Job, Failure> {
+        if let Some(file) = &arguments.job {
+            let mut job = Job::read(file)?;
+            job.resolution = arguments.resolution.or(job.resolution);
+            job.surface_only |= arguments.surface_only;
+            job.anyway |= arguments.anyway;
+            return Ok(job);
+        }
+        let missing = Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
+        let (Some(part), Some(unit), Some(tool), Some(program)) =
+            (arguments.part, arguments.unit, arguments.tool, arguments.program)
+        else {
+            return Err(missing);
+        };
+        Ok(Job {
+            part,
+            unit,
+            program,
+            machine: arguments.machine,
+            work_offsets: BTreeMap::new(),
+            block_delete: false,
+            tools: Tools::One(tool, arguments.params),
+            tolerance: arguments.tolerance,
+            resolution: arguments.resolution,
+            allow: arguments.allow,
+            fixtures: Vec::new(),
+            stock: None,
+            surface_only: arguments.surface_only,
+            anyway: arguments.anyway,
+        })
+    }
+
+    /// Returns the origins of G54 to G59.3 in machine coordinates, in mm and degrees.
+    ///
+    /// # Errors
+    /// If a name is not one of these, or has fewer than three numbers or more than six.
+    pub(super) fn work_offsets(&self) -> Result<[Option<[f64; 6]>; 9], Failure> {
+        let mut offsets = [None; 9];
+        for (name, values) in &self.work_offsets {
+            let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
+            let (Some(position), 3..=6) = (position, values.len()) else {
+                return Err(Failure::WorkOffset { name: name.clone() });
+            };
+            let mut origin = [0.0; 6];
+            origin[..values.len()].copy_from_slice(values);
+            offsets[position] = Some(origin);
+        }
+        Ok(offsets)
+    }
+
+    fn read(file: &Path) -> Result<Job, Failure> {
+        let fault = |message: String| Failure::Job { file: file.display().to_string(), message };
+        let text = std::fs::read_to_string(file)
+            .map_err(|error| fault(format!("cannot be read ({error}): check the path")))?;
+        let job: JobFile = toml::from_str(&text).map_err(|error| {
+            let line = error.span().map(|span| text[..span.start].lines().count().max(1));
+            let line = line.map_or(String::new(), |line| format!("line {line}: "));
+            fault(format!("{line}{}", error.message()))
+        })?;
+        let unit = job.unit.parse::<Unit>().map_err(|error| fault(error.to_string()))?;
+        let lengths = [Some(job.tolerance), job.resolution];
+        if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
+            return Err(fault("`tolerance` and `resolution` are lengths of 0 or more".to_owned()));
+        }
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let beside = |path: PathBuf| folder.join(path);
+        let mut entries = BTreeMap::new();
+        for (number, mut entry) in job.tool {
+            let number = number
+                .trim_start_matches(['T', 't'])
+                .parse::<u32>()
+                .map_err(|_| fault(format!("`{number}` is no tool number: write `[tool.3]`")))?;
+            if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
+                *tool = folder.join(&*tool).display().to_string();
+            }
+            entries.insert(number, entry);
+        }
+        let machine = job.machine.map(|machine| {
+            if machine.ends_with(".toml") { folder.join(machine).into() } else { machine.into() }
+        });
+        Ok(Job {
+            part: beside(job.part),
+            unit,
+            program: beside(job.program),
+            machine,
+            work_offsets: job.work_offsets,
+            block_delete: job.block_delete,
+            tools: Tools::Numbered { library: job.tools.map(beside), entries },
+            tolerance: job.tolerance,
+            resolution: job.resolution,
+            allow: job.allow.into_iter().collect(),
+            fixtures: job
+                .fixture
+                .into_iter()
+                .map(|fixture| Fixture { mesh: folder.join(&fixture.mesh), ..fixture })
+                .collect(),
+            stock: job.stock.map(|stock| Stock {
+                mesh: stock.mesh.map(beside),
+                output: stock.output.map(beside),
+                map: stock.map.map(beside),
+                ..stock
+            }),
+            surface_only: job.surface_only,
+            anyway: job.anyway,
+        })
+    }
+}
+
+impl ToolEntry {
+    /// Returns the values of the params as the command line writes them.
+    pub(super) fn params(&self) -> ParamArguments {
+        let value = |value: &ParamValue| match value {
+            ParamValue::Number(number) => number.to_string(),
+            ParamValue::Text(text) => text.clone(),
+        };
+        ParamArguments::new(
+            self.set.iter().map(|(name, given)| format!("{name}={}", value(given))).collect(),
+        )
+    }
+}

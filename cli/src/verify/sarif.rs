@@ -1,0 +1,144 @@
+//! Findings in SARIF 2.1.0, the format in which services of continuous integration take the results of analyses.
+//!
+//! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
+
+use super::text::describe;
+use super::{CheckedPair, rule};
+use serde::Serialize;
+use std::path::Path;
+use touchoff::verify::FindingKind;
+
+#[derive(Serialize)]
+struct Log {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    version: &'static str,
+    runs: [Run; 1],
+}
+
+#[derive(Serialize)]
+struct Run {
+    tool: Tool,
+    results: Vec<Finding>,
+}
+
+#[derive(Serialize)]
+struct Tool {
+    driver: Driver,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Driver {
+    name: &'static str,
+    version: &'static str,
+    rules: Vec<Rule>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Rule {
+    id: &'static str,
+    short_description: Text,
+}
+
+#[derive(Serialize)]
+struct Text {
+    text: String,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Finding {
+    rule_id: &'static str,
+    level: &'static str,
+    message: Text,
+    locations: [Location; 1],
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Location {
+    physical_location: PhysicalLocation,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct PhysicalLocation {
+    artifact_location: Artifact,
+    region: Region,
+}
+
+#[derive(Serialize)]
+struct Artifact {
+    uri: String,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Region {
+    start_line: usize,
+    end_line: usize,
+}
+
+/// The rules, with what each finds.
+const RULES: [(&str, &str); 5] = [
+    ("deep", "A surface of the tool is deeper in the part, a fixture or the machine than allowed."),
+    ("near", "A surface of the tool comes nearer than its margin."),
+    ("inside", "The tool, or a piece of it, is inside the material."),
+    ("undecided", "It is not decided whether a surface exceeds its limit."),
+    ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
+];
+
+/// Returns the findings of all checks as a SARIF log.
+pub(super) fn log(pairs: &[CheckedPair<'_>], program: &Path) -> Result<Vec<u8>, serde_json::Error> {
+    let uri = uri(program);
+    let results = pairs.iter().flat_map(|pair| {
+        pair.groups.iter().zip(&pair.lifts).map(|(group, lift)| {
+            let lines = [group.first.line, group.last.line];
+            let violation = !matches!(
+                group.worst.kind,
+                FindingKind::Undecided { .. } | FindingKind::Ambiguous(_)
+            );
+            Finding {
+                rule_id: rule(&group.worst.kind),
+                level: if violation { "error" } else { "warning" },
+                message: Text { text: describe(group, *lift, &pair.scope) },
+                locations: [Location {
+                    physical_location: PhysicalLocation {
+                        artifact_location: Artifact { uri: uri.clone() },
+                        // Subprograms may stand before the blocks that call them.
+                        region: Region {
+                            start_line: lines[0].min(lines[1]),
+                            end_line: lines[0].max(lines[1]),
+                        },
+                    },
+                }],
+            }
+        })
+    });
+    let rules = RULES
+        .map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
+    let driver =
+        Driver { name: "touchoff", version: env!("CARGO_PKG_VERSION"), rules: rules.into() };
+    let log = Log {
+        schema: "https://json.schemastore.org/sarif-2.1.0.json",
+        version: "2.1.0",
+        runs: [Run { tool: Tool { driver }, results: results.collect() }],
+    };
+    serde_json::to_vec_pretty(&log)
+}
+
+/// Returns a relative URI reference for a path, with all but unreserved characters and `/` percent-encoded (RFC 3986).
+fn uri(path: &Path) -> String {
+    let mut uri = String::new();
+    for byte in path.to_string_lossy().replace('\\', "/").bytes() {
+        match byte {
+            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
+                uri.push(char::from(byte));
+            }
+            _ => uri.push_str(&format!("%{byte:02X}")),
+        }
+    }
+    uri
+}

@@ -1,0 +1,203 @@
+//! The program that is checked: positions, or G-code on a machine.
+
+use super::job::Job;
+use super::tools::{self, ProgramTool};
+use super::CheckedPair;
+use crate::failure::Failure;
+use crate::program;
+use std::path::Path;
+use touchoff::gcode::ControlSetup;
+use touchoff::machine::{Machine, Side};
+use touchoff::tool::Symmetry;
+use touchoff::verify::{MachineProgram, Move, ToolSelection};
+use touchoff::{Program, Tool, Unit};
+
+/// A program that was read.
+pub(super) enum CheckedProgram {
+    /// Positions of the tip with the axis: a table, or APT-CL.
+    Locations(Program),
+    /// G-code.
+    Machine(Box<MachineProgram>),
+}
+
+impl CheckedProgram {
+    /// Reads the program of a job. G-code without a machine runs on three axes.
+    ///
+    /// # Errors
+    /// If the program or the machine cannot be read, or a motion is not possible on the machine.
+    pub(super) fn read(job: &Job) -> Result<CheckedProgram, Failure> {
+        let name = job.program.display().to_string();
+        let Some(text) = Program::gcode(&job.program)? else {
+            let program = Program::read(&job.program)?;
+            program.check_motions()?;
+            return match &job.machine {
+                None => Ok(CheckedProgram::Locations(program)),
+                Some(_) => Err(Failure::Usage(
+                    "a machine is for G-code: this program states positions of the tip",
+                )),
+            };
+        };
+        let machine = match &job.machine {
+            None => Machine::named("3-axis")?,
+            Some(machine) => read_machine(machine.as_ref())?,
+        };
+        let setup = ControlSetup {
+            work_offsets: job.work_offsets()?,
+            lengths: tools::lengths(&job.tools),
+            block_delete: job.block_delete,
+            ..ControlSetup::default()
+        };
+        let program = MachineProgram::new(&name, text, machine, setup)?;
+        Ok(CheckedProgram::Machine(Box::new(program)))
+    }
+
+    /// Returns the numbers of the tools that the program uses.
+    pub(super) fn tools(&self) -> Vec<Option<u32>> {
+        match self {
+            CheckedProgram::Locations(_) => vec![None],
+            CheckedProgram::Machine(program) => {
+                program.summary().tools.iter().map(|tool| tool.number).collect()
+            }
+        }
+    }
+
+    /// Returns the number of motions.
+    pub(super) fn motions(&self) -> usize {
+        match self {
+            CheckedProgram::Locations(program) => program.locations.len(),
+            CheckedProgram::Machine(program) => {
+                program.summary().tools.iter().map(|tool| tool.motions).sum()
+            }
+        }
+    }
+
+    /// Checks that the program is meant for a tool and the part's unit.
+    ///
+    /// # Errors
+    /// If its unit, poses or cutter do not fit.
+    pub(super) fn check(&self, tool: &dyn Tool, unit: Unit, file: &Path) -> Result<(), Failure> {
+        match self {
+            CheckedProgram::Locations(locations) => {
+                program::check(locations, tool.info(), unit, file)
+            }
+            CheckedProgram::Machine(_) => Ok(()),
+        }
+    }
+
+    /// Returns the motions of a tool relative to a link of the table, or to the part.
+    pub(super) fn moves<'a>(
+        &'a self,
+        tool: &ProgramTool,
+        link: Option<usize>,
+        unit: Unit,
+    ) -> Box<dyn Iterator<Item = Move> + 'a> {
+        match self {
+            CheckedProgram::Locations(program) => {
+                Box::new(program_moves(program, tool.tool().info().symmetry))
+            }
+            CheckedProgram::Machine(program) => Box::new(program.moves(tool.selection, link, unit)),
+        }
+    }
+
+    /// Returns all motions in the order of the program, each with its tool.
+    pub(super) fn moves_in_order<'a>(
+        &'a self,
+        tools: &'a [ProgramTool],
+        unit: Unit,
+    ) -> Box<dyn Iterator<Item = (&'a ProgramTool, Move)> + 'a> {
+        let tool_of = |number: Option<u32>| {
+            tools.iter().find(|tool| tool.number == number).or_else(|| tools.first())
+        };
+        let moves: Box<dyn Iterator<Item = Move>> = match self {
+            CheckedProgram::Locations(program) => {
+                let symmetry = tools.first().map(|tool| tool.tool().info().symmetry);
+                Box::new(symmetry.into_iter().flat_map(|symmetry| program_moves(program, symmetry)))
+            }
+            CheckedProgram::Machine(program) => {
+                Box::new(program.moves(ToolSelection::All, None, unit))
+            }
+        };
+        Box::new(moves.filter_map(move |step| Some((tool_of(step.tool)?, step))))
+    }
+
+    /// Returns the link of the table that moves with an axis, or `base`.
+    ///
+    /// # Errors
+    /// If the program is not for a machine, or its table has no such axis.
+    pub(super) fn link(&self, axis: &str) -> Result<usize, Failure> {
+        let CheckedProgram::Machine(program) = self else {
+            return Err(Failure::Usage("`moves_with` is for programs on a machine"));
+        };
+        if axis == "base" {
+            return Ok(0);
+        }
+        let table = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
+        let position = table.map(|axis| axis.letter.to_string()).position(|letter| letter == axis);
+        position.map(|position| position + 1).ok_or(Failure::Usage(
+            "`moves_with` names an axis of the machine's table, or `base`",
+        ))
+    }
+
+    /// Prints what is known about the program before any finding.
+    pub(super) fn print(&self, pairs: &[CheckedPair<'_>], unit: Unit) {
+        for pair in pairs.iter().filter(|pair| pair.is_part) {
+            program::print_approach(&pair.report, unit);
+        }
+        match self {
+            CheckedProgram::Locations(program) => program::print_ignored(program),
+            CheckedProgram::Machine(program) => print_machine(program),
+        }
+    }
+}
+
+/// Returns the motions of a program of cutter locations.
+fn program_moves(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
+    let locations = &program.locations;
+    let before = std::iter::once(None).chain(locations.iter().map(Some));
+    before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
+}
+
+/// Prints the machine, motions that were not checked, limits, singular passes, and notes.
+fn print_machine(program: &MachineProgram) {
+    let summary = program.summary();
+    message!("machine: {}", program.machine().name());
+    if let Some((count, line)) = summary.unknown {
+        message!(
+            "{count} motion{} not checked, first at line {line}: only the machine knows where they start or end",
+            if count == 1 { "" } else { "s" }
+        );
+    }
+    for (line, violation) in &summary.limits {
+        let unit = if violation.letter.is_rotary() { "°" } else { " mm" };
+        message!(
+            "line {line}: {} goes to {:.4}{unit}, beyond its limit of {}{unit}",
+            violation.letter,
+            violation.value,
+            violation.limit
+        );
+    }
+    for (line, pass) in &summary.singular {
+        message!(
+            "line {line}: {} turns by {:.0}° while the tool axis hardly moves (singular pass)",
+            pass.letter,
+            pass.turn
+        );
+    }
+    for note in &summary.notes {
+        message!("{note}");
+    }
+}
+
+/// Reads a machine by its name, or from a file.
+///
+/// # Errors
+/// If there is no such machine, or its file is refused.
+fn read_machine(name: &Path) -> Result<Machine, Failure> {
+    if name.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(Machine::named(&name.to_string_lossy())?);
+    }
+    let file = name.display().to_string();
+    let text = std::fs::read_to_string(name)
+        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
+    Ok(Machine::parse(&text, &file)?)
+}

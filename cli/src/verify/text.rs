@@ -1,0 +1,152 @@
+//! Findings and their summary as text.
+
+use super::{CheckedPair, Scope};
+use crate::lengths::{format_length, format_number, format_point};
+use touchoff::verify::{Finding, FindingGroup, FindingKind};
+use touchoff::{Interval, SurfaceId, Unit};
+
+/// Describes the findings of consecutive motions.
+///
+/// `lift` is the travel along the tool axis that clears the surface.
+pub(super) fn describe(group: &FindingGroup, lift: Option<f64>, scope: &Scope<'_>) -> String {
+    let &Scope { info, unit, body, .. } = scope;
+    let finding = &group.worst;
+    let name = |surface: SurfaceId| &*info.surface(surface).name;
+    let at = place(group);
+    let text = match &finding.kind {
+        FindingKind::Deep { surface, through: true, witness, .. } => {
+            let point = format_point(&witness.point, unit);
+            format!("{} passes right through {body} at {point}, {at}", name(*surface))
+        }
+        FindingKind::Deep {
+            surface, depth: Interval { low, high }, max_depth, witness, ..
+        } => {
+            let bound = if max_depth > high && finding.from.is_some() {
+                format!("; at most {} {unit}", format_small(*max_depth, unit))
+            } else {
+                String::new()
+            };
+            let (name, depth) = (name(*surface), format_interval(*low, *high, unit));
+            let point = format_point(&witness.point, unit);
+            format!("{name} is {depth} {unit} deep in {body} at {point}, {at}{bound}")
+        }
+        FindingKind::Near {
+            surface, margin, distance: Interval { low, high }, witness, ..
+        } => format!(
+            "{} is {} {unit} from {body} at {}, less than its margin of {margin} {unit}, {at}",
+            name(*surface),
+            format_interval(*low, *high, unit),
+            format_point(&witness.point, unit),
+        ),
+        FindingKind::Inside { surface: None } => {
+            format!("the tool is wholly inside {body}, {at}")
+        }
+        FindingKind::Inside { surface: Some(surface) } => {
+            format!("{} is inside {body}, away from its surface, {at}", name(*surface))
+        }
+        FindingKind::Undecided { surface } => format!(
+            "it is not decided whether {} is too deep in {body} from here on, {at}: try a larger `--resolution`",
+            name(*surface)
+        ),
+        FindingKind::Ambiguous(error) => format!("{error}; only this position was checked"),
+    };
+    let cutting = finding.kind.surface().is_some_and(|surface| info.surface(surface).cutting);
+    let text = match lift {
+        // A gouge of a flank is not mended by a lift.
+        Some(_) if cutting => text,
+        Some(lift) => {
+            format!("{text}; with {} more reach it is clear", format_length(lift, unit))
+        }
+        None => text,
+    };
+    match scope.number {
+        Some(number) => format!("T{number} {text}"),
+        None => text,
+    }
+}
+
+/// Describes the motions of a group.
+fn place(group: &FindingGroup) -> String {
+    let Finding { from, time, rapid, .. } = group.worst;
+    let rapid = if rapid { ", in rapid traverse" } else { "" };
+    match (group.motions, from) {
+        (1, Some(from)) => {
+            format!("at fraction {time:.2} of the motion from line {from}{rapid}")
+        }
+        (1, None) => format!("at the first position{rapid}"),
+        (motions, _) => format!(
+            "on {motions} motions, lines {} to {}{rapid}",
+            group.first.line, group.last.line
+        ),
+    }
+}
+
+/// Formats an interval, as one number if both ends print alike.
+fn format_interval(low: f64, high: f64, unit: Unit) -> String {
+    let [low, high] = [low, high].map(|value| format_small(value, unit));
+    if low == high { high } else { format!("{low} to {high}") }
+}
+
+/// Formats a length with the usual decimals. A length below 0.01 mm of which these show fewer than two nonzero
+/// digits is written with an exponent.
+fn format_small(value: f64, unit: Unit) -> String {
+    let text = format_number(value, unit);
+    let digits = text.chars().filter(|c| ('1'..='9').contains(c)).count();
+    if value == 0.0 || digits > 1 || value.abs() >= 0.01 / unit.millimetres() {
+        text
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
+pub(super) fn summary(pair: &CheckedPair<'_>) -> String {
+    let CheckedPair { scope, report, groups, .. } = pair;
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let motions = report.motions;
+    let tool = match scope.number {
+        Some(number) => format!("T{number} at {}: ", scope.body),
+        None if scope.body == super::PART => String::new(),
+        None => format!("{}: ", scope.body),
+    };
+    let count = groups.len();
+    if count == 0 {
+        return format!("{tool}no findings in {motions} motion{}", plural(motions));
+    }
+    let mut each = Vec::new();
+    for (index, surface) in scope.info.surfaces.iter().enumerate() {
+        let of = || {
+            let is_own = |finding: &&Finding| finding.kind.surface() == Some(SurfaceId(index));
+            report.findings.iter().filter(is_own)
+        };
+        let deepest = of().filter_map(|finding| match finding.kind {
+            FindingKind::Deep { through: true, .. } => Some((f64::INFINITY, finding.line)),
+            FindingKind::Deep { depth, .. } => Some((depth.high, finding.line)),
+            _ => None,
+        });
+        let deepest = deepest.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        let deepest = match deepest {
+            None => String::new(),
+            Some((f64::INFINITY, line)) => format!(" (right through, line {line})"),
+            Some((depth, line)) => {
+                format!(" (deepest {}, line {line})", format_length(depth, scope.unit))
+            }
+        };
+        let on = of().count();
+        if on > 0 {
+            each.push(format!("{} on {on} motion{}{deepest}", surface.name, plural(on)));
+        }
+    }
+    let count_of = |is: fn(&FindingKind) -> bool| {
+        report.findings.iter().filter(|finding| is(&finding.kind)).count()
+    };
+    let inside = count_of(|kind| *kind == FindingKind::Inside { surface: None });
+    let ambiguous = count_of(|kind| matches!(kind, FindingKind::Ambiguous(_)));
+    for (word, count) in [("wholly inside", inside), ("ambiguous", ambiguous)] {
+        if count > 0 {
+            each.push(format!("{word} on {count} motion{}", plural(count)));
+        }
+    }
+    let each = each.join(", ");
+    format!("{tool}{count} finding{} in {motions} motion{}: {each}", plural(count), plural(motions))
+}

@@ -1,0 +1,88 @@
+//! The tools of a program.
+
+use super::job::Tools;
+use crate::arguments::ToolArguments;
+use crate::failure::Failure;
+use crate::loaded_tool::LoadedTool;
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use touchoff::Tool;
+use touchoff::verify::ToolSelection;
+
+/// A tool of a program.
+pub(super) struct ProgramTool {
+    /// Its number in the program, if tools are selected by number.
+    pub(super) number: Option<u32>,
+    /// The motions that it makes.
+    pub(super) selection: ToolSelection,
+    loaded: LoadedTool,
+    /// Allowances of its own surfaces.
+    pub(super) allow: Vec<(String, f64)>,
+}
+
+impl ProgramTool {
+    pub(super) fn tool(&self) -> &dyn Tool {
+        self.loaded.tool()
+    }
+}
+
+/// Loads the tools that a program uses, by its numbers; `None` stands for motions before the first tool change, and for
+/// a program without numbers.
+///
+/// # Errors
+/// If a tool cannot be loaded, or no tool is given for a number.
+pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramTool>, Failure> {
+    match tools {
+        Tools::One(name, arguments) => {
+            let mut numbers = used.iter().flatten();
+            if let (Some(first), Some(second)) = (numbers.next(), numbers.next()) {
+                return Err(Failure::SeveralTools { first: *first, second: *second });
+            }
+            Ok(vec![ProgramTool {
+                number: None,
+                selection: ToolSelection::All,
+                loaded: LoadedTool::load(name, arguments)?,
+                allow: Vec::new(),
+            }])
+        }
+        Tools::Numbered { library, entries } => {
+            let missing = |number: Option<u32>| Failure::NoTool { number };
+            let load = |number: &Option<u32>| {
+                // A program without numbers needs no choice if there is one tool.
+                let known = match (number, entries.iter().next()) {
+                    (None, Some((only, _))) if entries.len() == 1 => *only,
+                    (None, _) => return Err(missing(None)),
+                    (Some(number), _) => *number,
+                };
+                let entry = entries.get(&known);
+                let named = entry.and_then(|entry| entry.tool.clone());
+                let params = entry.map(|entry| entry.params()).unwrap_or_default();
+                let (name, library) = match (named, library) {
+                    (Some(name), _) => (OsString::from(name), None),
+                    (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
+                    (None, None) => return Err(missing(*number)),
+                };
+                Ok(ProgramTool {
+                    number: *number,
+                    selection: ToolSelection::Number(*number),
+                    loaded: LoadedTool::load(&name, &ToolArguments { library, params })?,
+                    allow: entry.map_or(Vec::new(), |entry| {
+                        entry.allow.iter().map(|(name, depth)| (name.clone(), *depth)).collect()
+                    }),
+                })
+            };
+            used.iter().map(load).collect()
+        }
+    }
+}
+
+/// Returns the lengths of the tools that a job states, by number, in mm.
+pub(super) fn lengths(tools: &Tools) -> BTreeMap<u32, f64> {
+    match tools {
+        Tools::One(..) => BTreeMap::new(),
+        Tools::Numbered { entries, .. } => entries
+            .iter()
+            .filter_map(|(number, entry)| Some((*number, entry.length?)))
+            .collect(),
+    }
+}

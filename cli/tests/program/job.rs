@@ -1,0 +1,224 @@
+//! Job files: G-code on a machine, with several tools, fixtures and stock.
+
+use crate::bench::{Bench, stderr, stdout, touchoff};
+use crate::help::parsed;
+use nalgebra::Point3;
+use serde_json::Value;
+use std::process::Output;
+use touchoff::Mesh;
+use touchoff::Unit;
+use touchoff::mesh::shapes;
+
+/// A posted program: it faces the bracket, mills its ends, and runs a ball along an edge, tilted by 80 degrees.
+const PROGRAM: &str = "%
+O1000 (BRACKET)
+N10 G21 G90 G17 G40 G49 G80
+N20 G54
+(FACE)
+N30 T1 M6
+N40 S3000 M3
+N50 G0 A0. C0.
+N60 X-55. Y-10.
+N70 G43 H1 Z50. M8
+N80 Z5.
+N90 G1 Z0. F800.
+N100 X55.
+N110 G0 Z5.
+N120 X-55. Y10.
+N130 G1 Z0.
+N140 X55.
+N150 G0 Z50.
+N160 G91 G28 Z0.
+N170 G90
+(ENDS)
+N200 T3 M6
+N210 S6000 M3
+N220 G0 X35. Y-30.
+N230 G43 H3 Z50.
+N240 G0 Z2.
+N250 G1 Z-9. F600.
+N260 Y15.
+N270 G0 Z50.
+N280 X-35. Y-30.
+N290 Z2.
+N300 G1 Z-9.
+N310 Y15.
+N320 G0 Z50.
+N330 G91 G28 Z0.
+N340 G90
+(EDGE)
+N400 T2 M6
+N410 S9000 M3
+N420 G0 X-30. Y40.
+N430 A-80. C0.
+N440 G43.4 H2 Z60.
+N450 G0 X-40. Y40. Z30.
+N460 Y19.2 Z1.62
+N470 G1 X40. F1000.
+N480 G0 Y40. Z40.
+N490 G49
+N500 G91 G28 Z0.
+N510 G90
+N520 M30
+%
+";
+
+/// A ball end mill in a nut, whose stick-out is a param.
+const BALL: &str = "tool Ball6 \"6 mm ball end mill in a nut\" { units mm; param stickout = 35; profile { start (0, 0); \
+                    arc to (3, 3) center (0, 3) as ball cutting; line to (3, 12) as flute cutting; line to (3, \
+                    stickout) as shank; line to (14, stickout), (14, stickout + 30), (0, stickout + 30) as nut; } \
+                    niceness cutting: 1; }";
+
+/// Returns an end mill of a diameter.
+fn end_mill(name: &str, diameter: f64) -> String {
+    let radius = diameter / 2.0;
+    format!(
+        "tool {name} \"{diameter} mm end mill\" {{ units mm; profile {{ start (0, 0); line to ({radius}, 0) as face cutting; \
+         line to ({radius}, 22) as flute cutting; line to ({radius}, 60), (0, 60) as shank; }} niceness cutting: 1; }}"
+    )
+}
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
+/// Returns meshes as one.
+fn joined(meshes: &[Mesh]) -> Mesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for mesh in meshes {
+        let first = u32::try_from(vertices.len()).expect("few vertices");
+        vertices.extend_from_slice(mesh.vertices());
+        triangles.extend(mesh.triangles().iter().map(|triangle| triangle.map(|k| first + k)));
+    }
+    Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
+}
+
+/// Returns the job of docs/verify.md, and a folder with its files.
+fn bracket() -> (Bench, String) {
+    let bench = Bench::new();
+    bench.part("bracket.stl", &cuboid([-30.0, -20.0, -30.0], [30.0, 20.0, 0.0]));
+    let jaws = [
+        cuboid([-40.0, 20.0, -40.0], [40.0, 50.0, -10.0]),
+        cuboid([-40.0, -50.0, -40.0], [40.0, -20.0, -10.0]),
+    ];
+    bench.part("vise.stl", &joined(&jaws));
+    bench.write("bracket.nc", PROGRAM);
+    bench.write("face40.tool", end_mill("Face40", 40.0));
+    bench.write("ball6.tool", BALL);
+    bench.write("mill10.tool", end_mill("Mill10", 10.0));
+    let page = include_str!("../../../docs/verify.md");
+    let (_, job) = page.split_once("```toml\n# bracket.toml\n").expect("the job of the page");
+    let (job, _) = job.split_once("```").expect("its end");
+    (bench, job.to_owned())
+}
+
+fn job(bench: &Bench, text: &str, more: &[&str]) -> Output {
+    let file = bench.write("bracket.toml", text);
+    touchoff(&[&["verify", &file][..], more].concat())
+}
+
+/// Returns the findings that were printed as JSON.
+fn findings(output: &Output) -> Vec<Value> {
+    stdout(output).lines().map(|line| serde_json::from_str(line).expect("an object")).collect()
+}
+
+/// The walk of docs/verify.md: a nut that touches the vise, then a longer stick-out.
+#[test]
+fn the_job_of_the_page_becomes_clean() {
+    let (bench, text) = bracket();
+    bench.write("bracket.toml", &text);
+    let page = include_str!("../../../docs/verify.md");
+    let (_, block) = page.split_once("```sh\n").expect("a block of commands");
+    let (block, _) = block.split_once("```").expect("its end");
+    let mut count = 0;
+    for line in block.lines() {
+        let command = line.split_once(" #").map_or(line, |(command, _)| command).trim_end();
+        let words: Vec<&str> = command.split(' ').skip(1).collect();
+        let output = parsed(&bench, words, false);
+        assert_eq!(output.status.code(), Some(1), "{command}: {}", stderr(&output));
+        count += 1;
+    }
+    assert!(count >= 3, "{count} commands");
+    let found = job(&bench, &text, &["--json"]);
+    let found = findings(&found);
+    assert!(found.iter().any(|row| {
+        row["tool_number"] == 2 && row["surface"] == "nut" && row["body"] == "the vise"
+    }));
+    assert!(found.iter().all(|row| row["tool_number"] == 2), "{found:?}");
+    let sarif = std::fs::read(bench.folder.path().join("bracket.sarif")).expect("the log");
+    let sarif: serde_json::Value = serde_json::from_slice(&sarif).expect("JSON");
+    assert_eq!(sarif["version"], "2.1.0");
+    let results = sarif["runs"][0]["results"].as_array().expect("results");
+    assert_eq!(results.len(), found.len());
+    let clean = job(&bench, &text.replace("stickout = 20", "stickout = 35"), &[]);
+    assert_eq!(clean.status.code(), Some(0), "{}{}", stdout(&clean), stderr(&clean));
+    assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
+}
+
+/// What a job leaves open or states wrongly is an error that names it.
+#[test]
+fn a_wrong_job_is_refused() {
+    let (bench, text) = bracket();
+    for (from, to, word) in [
+        ("unit = \"mm\"", "unit = \"yard\"", "yard"),
+        ("tolerance = 0.02", "tolerances = 0.02", "line 6: unknown field `tolerances`"),
+        ("tolerance = 0.02", "tolerance = -1", "lengths of 0 or more"),
+        ("G54 = [", "G60 = [", "work offset `G60`"),
+        ("[tool.3]", "[tool.4]", "no tool is given for T3"),
+        ("[tool.3]", "[tool.three]", "`three` is no tool number"),
+        ("A-C trunnion", "A-D trunnion", "is no machine of the library"),
+        ("A-C trunnion", "none.toml", "cannot be read"),
+        ("ball6.tool", "ball7.tool", "ball7.tool"),
+        ("moves_with = \"C\"", "moves_with = \"B\"", "`moves_with` names an axis"),
+        ("spacing = 1", "spacing = 0.001", "coarser"),
+        ("bracket.nc", "none.nc", "cannot be read"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let output = job(&bench, &text.replace(from, to), &[]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{to}: {said}");
+        assert!(said.contains(word), "{to}: `{word}` is missing in:\n{said}");
+    }
+    let absent = touchoff(&["verify", "absent.toml"]);
+    assert_eq!(absent.status.code(), Some(2), "{}", stderr(&absent));
+    // A word that could move the tool stops the program with its line.
+    for (word, message) in [
+        ("G41 D1", "cutter radius compensation"),
+        ("IF [#1 EQ 1] GOTO 5", "bracket.nc:"),
+        ("L X+10 FMAX", "bracket.nc:"),
+        ("G12.1", "G12.1 is not understood"),
+        ("B10.", "bracket.nc:"),
+    ] {
+        bench.write("bracket.nc", PROGRAM.replace("N80 Z5.", &format!("N80 {word}")));
+        let output = job(&bench, &text, &[]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{word}: {said}");
+        assert!(said.contains(message) && said.contains("bracket.nc:11:"), "{word}: {said}");
+    }
+}
+
+/// G-code of one tool needs no job.
+#[test]
+fn g_code_runs_without_a_job() {
+    let bench = Bench::new();
+    bench.part("block.stl", &cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]));
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let part = place("block.stl");
+    let program = bench.write("slot.nc", "G21 G90 G0 X-9 Y0 Z3\nG1 Z-0.5 F100\nX9\nG1 Y1\nX-9\nG0 Z3\nM30\n");
+    let all = ["--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
+    let verify = |more: &[&str]| touchoff(&[&["verify"][..], &all, more].concat());
+    let output = verify(&["--json"]);
+    let found = findings(&output);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let ball = found.iter().find(|row| row["surface"] == "ball").expect("a finding");
+    assert_eq!((&ball["line"], &ball["kind"]), (&3.into(), &"deep".into()));
+    let depth = ball["depth"][0].as_f64().expect("a number");
+    assert!((depth - 0.5).abs() < 2e-3, "{depth}");
+    assert_eq!(verify(&["--tolerance", "0.51"]).status.code(), Some(0));
+    // The same program in inches belongs to another part.
+    let inch = std::fs::read_to_string(&program).expect("the program");
+    bench.write("slot.nc", inch.replace("G21", "G20").replace("-0.5", "-0.001"));
+    let output = verify(&["--tolerance", "1"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("units of part and program"), "{}", stderr(&output));
+}

@@ -1,0 +1,307 @@
+//! One block: the words of a line.
+//!
+//! A line is an optional `/`, an optional `N` with a number, and words in any order. A word is a letter and a
+//! value. Comments are `( … )` and `; …`. Case does not matter, and blanks may stand between words and
+//! between a letter and its value. A character that belongs to none of these stops the interpreter.
+
+use super::code::{Code, GROUPS, Group, group};
+use super::expression::{Cursor, Parameter, Parameters, assignment, begins_value, value};
+use super::label::{OWord, o_word};
+use super::{ExpressionFault, GcodeFault};
+
+/// Words of more than one letter that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keyword {
+    /// `TRAORI`: tool centre point control on.
+    TransformationOn,
+    /// `TRAFOOF`: tool centre point control off.
+    TransformationOff,
+}
+
+/// Words of Heidenhain Klartext that begin a line or end one.
+const KLARTEXT: [&str; 14] = [
+    "BEGIN", "BLK", "CALL", "CC", "CYCL", "END", "FMAX", "FN", "FUNCTION", "LBL", "PGM", "PLANE",
+    "TCPM", "TOOL",
+];
+
+/// Words that decide what is executed, of macro programs and of Sinumerik.
+const DECISIONS: [&str; 14] = [
+    "CASE", "DO", "ELSE", "ENDIF", "FOR", "GOTO", "GOTOB", "GOTOF", "IF", "LOOP", "REPEAT", "THEN",
+    "UNTIL", "WHILE",
+];
+
+/// The words of a block. Words that no other word uses remain in it, and are refused at its end.
+#[derive(Debug, Default)]
+pub(super) struct Block {
+    values: [f64; 26],
+    /// Letters that the block has and that no word has used, as bits from A.
+    unused: u32,
+    codes: [Option<Code>; GROUPS],
+    /// Words that are passed over.
+    pub(super) passed_over: Vec<Code>,
+    pub(super) label: Option<OWord>,
+    pub(super) keyword: Option<Keyword>,
+    assignments: Vec<(Parameter, f64)>,
+    /// Set if a coordinate has no decimal point and is not zero.
+    pub(super) whole_number: bool,
+    /// Set if the line begins with `/`.
+    pub(super) deletable: bool,
+}
+
+/// Removes `/`, which may be followed by the number of its switch, and a block number.
+pub(super) fn begin<'a>(line: &'a str) -> (bool, Cursor<'a>) {
+    let mut cursor = Cursor::new(line);
+    let deletable = cursor.take(b'/');
+    if deletable {
+        cursor.take_while(|byte| byte.is_ascii_digit());
+    }
+    let mut numbered = cursor;
+    if numbered.take(b'N') || numbered.take(b'n') {
+        numbered.peek();
+        let is_number = |byte: u8| byte.is_ascii_digit() || byte == b'.';
+        if !numbered.take_while(is_number).is_empty() {
+            return (deletable, numbered);
+        }
+    }
+    (deletable, cursor)
+}
+
+impl Block {
+    /// Reads a line. Assignments take effect on `parameters` at its end.
+    pub(super) fn parse(
+        &mut self,
+        line: &str,
+        parameters: &mut Parameters,
+    ) -> Result<(), GcodeFault> {
+        self.clear();
+        let (deletable, mut cursor) = begin(line);
+        self.deletable = deletable;
+        while let Some(byte) = next(&mut cursor)? {
+            match byte {
+                b'#' => self.assignments.push(assignment(&mut cursor, parameters)?),
+                b'O' | b'o' if self.is_empty() => {
+                    self.label = Some(o_word(&mut cursor, parameters)?);
+                }
+                _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, parameters)?,
+                b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
+                _ => return Err(unexpected(&cursor)),
+            }
+        }
+        for (parameter, value) in self.assignments.drain(..) {
+            parameters.assign(parameter, value);
+        }
+        Ok(())
+    }
+
+    fn clear(&mut self) {
+        self.unused = 0;
+        self.codes = [None; GROUPS];
+        self.passed_over.clear();
+        self.label = None;
+        self.keyword = None;
+        self.assignments.clear();
+        self.whole_number = false;
+    }
+
+    /// Returns whether the block has no word yet.
+    pub(super) fn is_empty(&self) -> bool {
+        self.unused == 0
+            && self.codes.iter().all(Option::is_none)
+            && self.passed_over.is_empty()
+            && self.label.is_none()
+            && self.keyword.is_none()
+            && self.assignments.is_empty()
+    }
+
+    /// Reads a word that begins with a letter.
+    fn word(&mut self, cursor: &mut Cursor, parameters: &Parameters) -> Result<(), GcodeFault> {
+        let start = *cursor;
+        let letter = char::from(start.rest().as_bytes()[0]).to_ascii_uppercase();
+        cursor.advance();
+        if !begins_value(cursor) {
+            return self.name(start, cursor, letter);
+        }
+        let text = cursor.rest();
+        let value = value(cursor, parameters)?;
+        let written = &text[..text.len() - cursor.rest().len()];
+        match letter {
+            'G' | 'M' => self.code(letter, value, written),
+            'E' | 'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
+            'N' | 'O' => Err(GcodeFault::Unused { word: letter }),
+            _ => {
+                let bit = 1 << (letter as u8 - b'A');
+                if self.unused & bit != 0 {
+                    return Err(GcodeFault::Repeated { word: letter });
+                }
+                self.unused |= bit;
+                self.values[usize::from(letter as u8 - b'A')] = value;
+                let is_coordinate = "XYZABCIJKR".contains(letter);
+                let is_whole = !written.contains(['.', '[', '#']);
+                self.whole_number |= is_coordinate && is_whole && value != 0.0;
+                Ok(())
+            }
+        }
+    }
+
+    fn code(&mut self, letter: char, value: f64, written: &str) -> Result<(), GcodeFault> {
+        let tenths = (10.0 * value).round();
+        let digits = written.trim();
+        let is_literal = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        if !is_literal || (10.0 * value - tenths).abs() > 1e-9 || tenths > 99_999.0 {
+            let expected = "a number with one decimal at most";
+            return Err(GcodeFault::NotAllowed { word: letter, value, expected });
+        }
+        let code = Code { letter, tenths: tenths as u32 };
+        match group(code)? {
+            Group::PassedOver => self.passed_over.push(code),
+            group => match &mut self.codes[group as usize] {
+                Some(first) => {
+                    let (first, second) = (first.to_string(), code.to_string());
+                    return Err(GcodeFault::SameGroup { first, second });
+                }
+                empty => *empty = Some(code),
+            },
+        }
+        Ok(())
+    }
+
+    /// Reads a letter without a value: a word of another dialect, or a mistake.
+    fn name<'a>(
+        &mut self,
+        start: Cursor<'a>,
+        cursor: &mut Cursor<'a>,
+        letter: char,
+    ) -> Result<(), GcodeFault> {
+        let mut whole = start;
+        let name = whole.take_while(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        let upper = name.to_ascii_uppercase();
+        let keyword = match upper.as_str() {
+            "TRAORI" => Keyword::TransformationOn,
+            "TRAFOOF" => Keyword::TransformationOff,
+            _ if KLARTEXT.contains(&upper.as_str()) || is_klartext_line(start.rest()) => {
+                return Err(GcodeFault::Klartext { word: upper });
+            }
+            _ if DECISIONS.contains(&upper.trim_end_matches(|c: char| c.is_ascii_digit())) => {
+                return Err(GcodeFault::ControlFlow { word: upper });
+            }
+            _ if name.len() > 1 => {
+                return Err(GcodeFault::UnknownWord { word: super::unquoted(name) });
+            }
+            _ => {
+                cursor.peek();
+                let function = cursor.take_while(|byte| byte.is_ascii_alphabetic());
+                return match function.len() > 1 && cursor.take(b'[') {
+                    true => {
+                        let name = function.to_ascii_uppercase();
+                        Err(ExpressionFault::Operation { name }.into())
+                    }
+                    false => Err(GcodeFault::NoNumber { word: letter }),
+                };
+            }
+        };
+        if self.keyword.replace(keyword).is_some() {
+            return Err(GcodeFault::Repeated { word: 'T' });
+        }
+        *cursor = whole;
+        Ok(())
+    }
+
+    /// Returns the word of a group.
+    pub(super) fn code_of(&self, group: Group) -> Option<Code> {
+        self.codes[group as usize]
+    }
+
+    /// Returns whether the block has a letter that no word has used.
+    pub(super) fn has(&self, letter: char) -> bool {
+        self.unused & (1 << (letter as u8 - b'A')) != 0
+    }
+
+    /// Returns whether the block has one of the letters.
+    pub(super) fn has_any(&self, letters: &str) -> bool {
+        letters.chars().any(|letter| self.has(letter))
+    }
+
+    /// Returns the number after a letter, which counts as used.
+    pub(super) fn take(&mut self, letter: char) -> Option<f64> {
+        let index = usize::from(letter as u8 - b'A');
+        let found = self.has(letter).then_some(self.values[index]);
+        self.unused &= !(1 << index);
+        found
+    }
+
+    /// Returns the whole number after a letter, if there is one.
+    ///
+    /// # Errors
+    /// If the number is not whole, or not from `least` to `greatest`.
+    pub(super) fn take_whole(
+        &mut self,
+        word: char,
+        least: u32,
+        greatest: u32,
+        expected: &'static str,
+    ) -> Result<Option<u32>, GcodeFault> {
+        let Some(value) = self.take(word) else { return Ok(None) };
+        // Expressions such as `[10 * 0.1]` may miss a whole number by rounding.
+        let whole = value.round();
+        match (value - whole).abs() < 1e-9
+            && (f64::from(least)..=f64::from(greatest)).contains(&whole)
+        {
+            true => Ok(Some(whole as u32)),
+            false => Err(GcodeFault::NotAllowed { word, value, expected }),
+        }
+    }
+
+    /// Refuses a word that no other word has used.
+    pub(super) fn check_used(&self) -> Result<(), GcodeFault> {
+        match self.unused {
+            0 => Ok(()),
+            rest => {
+                Err(GcodeFault::Unused { word: char::from(b'A' + rest.trailing_zeros() as u8) })
+            }
+        }
+    }
+}
+
+/// Passes over blanks and comments, and returns the next byte.
+pub(super) fn next(cursor: &mut Cursor) -> Result<Option<u8>, GcodeFault> {
+    loop {
+        match cursor.peek() {
+            Some(b'(') => {
+                let comment = cursor.take_until(')').ok_or(GcodeFault::OpenComment)?;
+                if comment[1..].contains('(') {
+                    return Err(GcodeFault::OpenComment);
+                }
+            }
+            Some(b';') | None => return Ok(None),
+            Some(byte) => return Ok(Some(byte)),
+        }
+    }
+}
+
+/// Returns the fault of a character that begins no word.
+pub(super) fn unexpected(cursor: &Cursor) -> GcodeFault {
+    let shown = cursor.rest().chars().take(1).flat_map(char::escape_debug).collect::<String>();
+    GcodeFault::Character { shown: format!("`{shown}`") }
+}
+
+/// Returns the fault of a line that begins with a number, as those of Heidenhain Klartext do.
+fn numbered_line(mut cursor: Cursor) -> GcodeFault {
+    let start = cursor;
+    cursor.take_while(|byte| byte.is_ascii_digit());
+    cursor.peek();
+    let line = cursor;
+    let word = cursor.take_while(|byte| byte.is_ascii_alphabetic()).to_ascii_uppercase();
+    match KLARTEXT.contains(&word.as_str()) || is_klartext_line(line.rest()) {
+        true => GcodeFault::Klartext { word },
+        false => unexpected(&start),
+    }
+}
+
+/// Returns whether a line is a motion of Heidenhain Klartext: `L X+10 FMAX`, `C X+5 DR+`.
+fn is_klartext_line(line: &str) -> bool {
+    let mut words = line.split_ascii_whitespace();
+    matches!(words.next(), Some("L" | "C" | "CR" | "CT" | "LP" | "LN"))
+        && words
+            .next()
+            .is_some_and(|word| word.starts_with(['X', 'Y', 'Z', 'A', 'B', 'C', 'I', 'P']))
+}

@@ -1,0 +1,382 @@
+//! Words that change what positions mean: tools and their lengths, work offsets, shifts, tool centre point
+//! control, rotated and tilted planes.
+
+use super::block::{Block, Keyword};
+use super::code::{Code, Group};
+use super::modal::Motion;
+use super::motion::{AXES, Control};
+use super::note::Subject;
+use super::state::{ControlState, Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
+use super::{GcodeFault, StepPath};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Largest number of a tool or a register.
+const MAX_REGISTER: u32 = 99_999_999;
+
+impl Control {
+    /// Changes the state. The machine stands still, so its position gets other coordinates.
+    fn change(&mut self, edit: impl FnOnce(&mut ControlState)) {
+        let mut new = (*self.state).clone();
+        edit(&mut new);
+        if new != *self.state {
+            self.position = self.state.carry_over(&new, self.position);
+            self.state = Arc::new(new);
+        }
+    }
+
+    /// Reads T, M6 and D.
+    pub(super) fn tool(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let expected = "a whole number from 0";
+        if let Some(tool) = block.take_whole('T', 0, MAX_REGISTER, expected)? {
+            self.staged = Some(tool);
+        }
+        if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
+            self.edge = Some(edge);
+            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
+        }
+        if let Some(code) = block.code_of(Group::ToolChange) {
+            let Some(tool) = self.staged else {
+                let needed = "the number of a tool (T) in this block or before";
+                return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            };
+            self.notes.add(self.line, Subject::ToolChange);
+            self.change(|state| state.tool = Some(tool));
+        }
+        Ok(())
+    }
+
+    /// Executes the words that change coordinates and use no axis words, and G68.
+    pub(super) fn coordinates(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let rotation = block.code_of(Group::Rotation);
+        if rotation.is_some_and(|code| code.tenths == 690) {
+            self.change(|state| state.rotation = Rotation::Off);
+        }
+        if let Some(code) = block.code_of(Group::Length) {
+            self.length(block, code)?;
+        }
+        self.transformation(block)?;
+        if let Some(code) = block.code_of(Group::WorkOffset) {
+            self.work_offset(block, code)?;
+        }
+        match rotation {
+            Some(code) if code.tenths == 680 => self.rotate(block, code),
+            Some(code) if code.tenths == 682 => self.tilt(block, code),
+            _ => Ok(()),
+        }
+    }
+
+    /// Executes G43, G49 and the words for tool centre point control of their group.
+    fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        let off = |transformed| if transformed { Tcp::Rotary } else { Tcp::Off };
+        if code.tenths == 490 {
+            let tcp = off(self.transformed);
+            self.vector = None;
+            self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, tcp));
+            return Ok(());
+        }
+        let tcp = match code.tenths {
+            430 => off(self.transformed),
+            _ if self.transformed => {
+                return Err(combination(code, "M428 or TRAORI is in force", "end it before"));
+            }
+            435 => Tcp::Vector,
+            _ => Tcp::Rotary,
+        };
+        if tcp == Tcp::Vector && self.state.rotation != Rotation::Off {
+            return Err(combination(code, "a plane is rotated", "end it with G69 before"));
+        }
+        let given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
+        let length = match (given, self.state.length, self.state.tool) {
+            (Some(0), ..) => LengthOffset::Off,
+            (Some(register), ..) => self.registered(register),
+            // Under tool centre point control, H of the block before stays in force.
+            (None, known @ LengthOffset::On { .. }, _) if code.tenths != 430 => known,
+            (None, _, Some(tool)) => self.registered(tool),
+            (None, _, None) => {
+                let needed = "H with the number of a length, or a tool in the spindle (T M6)";
+                return Err(GcodeFault::Missing { word: code.to_string(), needed });
+            }
+        };
+        self.vector = None;
+        self.change(|state| (state.length, state.tcp) = (length, tcp));
+        Ok(())
+    }
+
+    fn registered(&self, register: u32) -> LengthOffset {
+        LengthOffset::On { register, length: self.lengths.get(&register).copied() }
+    }
+
+    /// Executes M428, M429, `TRAORI` and `TRAFOOF`.
+    fn transformation(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let kinematics = block.code_of(Group::Kinematics);
+        let word = match (kinematics, block.keyword) {
+            (Some(code), Some(_)) => {
+                let (first, second) = (code.to_string(), "TRAORI or TRAFOOF".to_owned());
+                return Err(GcodeFault::SameGroup { first, second });
+            }
+            (Some(code), None) => code.to_string(),
+            (None, Some(Keyword::TransformationOn)) => "TRAORI".to_owned(),
+            (None, Some(Keyword::TransformationOff)) => "TRAFOOF".to_owned(),
+            (None, None) => return self.check_edge(),
+        };
+        if self.state.tcp != Tcp::Off && !self.transformed {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "G43.4, G43.5 or G234 is in force",
+                remedy: "end it with G49 before",
+            });
+        }
+        if word == "M429" || word == "TRAFOOF" {
+            self.transformed = false;
+            self.change(|state| state.tcp = Tcp::Off);
+            return Ok(());
+        }
+        let mut length = self.state.length;
+        // Sinumerik applies the length of the tool in the spindle without a word.
+        if block.keyword.is_some() && length == LengthOffset::Off {
+            let Some(tool) = self.state.tool else {
+                return Err(GcodeFault::Missing { word, needed: "a tool in the spindle (T M6)" });
+            };
+            length = self.registered(tool);
+        }
+        self.transformed = true;
+        self.change(|state| (state.length, state.tcp) = (length, Tcp::Rotary));
+        self.check_edge()
+    }
+
+    /// Refuses another cutting edge than the first of the tool under `TRAORI`: it has another length.
+    fn check_edge(&self) -> Result<(), GcodeFault> {
+        match self.edge {
+            Some(edge) if self.transformed && edge != 1 => Err(GcodeFault::NotAllowed {
+                word: 'D',
+                value: f64::from(edge),
+                expected: "D1, the only cutting edge whose length is known, under TRAORI",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Executes G54 to G59.3 and G54.1.
+    fn work_offset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        let offset = match code.tenths {
+            541 => {
+                let expected = "a whole number from 1 to 300 after P";
+                match block.take_whole('P', 1, 300, expected)? {
+                    Some(number) => WorkOffset::Additional(number as u16),
+                    None => {
+                        let needed = "P with the number of the offset";
+                        return Err(GcodeFault::Missing { word: code.to_string(), needed });
+                    }
+                }
+            }
+            tenths @ 540..=590 => WorkOffset::Standard((tenths / 10 - 53) as u8),
+            tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
+        };
+        if offset != self.state.work_offset {
+            self.check_unrotated(code)?;
+        }
+        self.activate(offset);
+        Ok(())
+    }
+
+    fn activate(&mut self, offset: WorkOffset) {
+        let (origin, rotation) = self.origins.get(&offset).copied().unwrap_or(([None; 6], 0.0));
+        self.change(|state| {
+            state.work_offset = offset;
+            state.origin = origin;
+            state.origin_rotation = rotation;
+        });
+    }
+
+    fn check_unrotated(&self, code: Code) -> Result<(), GcodeFault> {
+        match self.state.rotation {
+            Rotation::Off => Ok(()),
+            _ => Err(combination(code, "a plane is rotated", "end it with G69 before")),
+        }
+    }
+
+    /// Executes the words for one block that use axis words.
+    pub(super) fn one_shot(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let Some(code) = block.code_of(Group::OneShot) else { return Ok(()) };
+        match code.tenths {
+            280 => return self.reference_return(block, "G28"),
+            300 => return self.reference_return(block, "G30"),
+            531 => return self.align(code),
+            _ => {}
+        }
+        self.check_unrotated(code)?;
+        match code.tenths {
+            100 => self.set_origin(block, code),
+            520 => self.set_local(block, code),
+            920 => self.preset(block, code),
+            tenths => self.end_preset(code, tenths),
+        }
+    }
+
+    /// Executes `G10 L2 P`: sets the origin of a work offset.
+    fn set_origin(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        let missing = |needed| GcodeFault::Missing { word: code.to_string(), needed };
+        block
+            .take_whole('L', 2, 2, "L2, which sets the origin of a work offset")?
+            .ok_or_else(|| missing("L2"))?;
+        let number = block
+            .take_whole('P', 1, 9, "a work offset from P1 (G54) to P9 (G59.3)")?
+            .ok_or_else(|| missing("P with the number of the work offset"))?;
+        if self.modal.incremental {
+            return Err(combination(code, "G91 is in force", "write G90 before"));
+        }
+        let turn = block.take('R');
+        let axes = self.take_axes(block);
+        let offset = WorkOffset::Standard(number as u8);
+        let (origin, rotation) = self.origins.entry(offset).or_insert(([None; 6], 0.0));
+        for (coordinate, value) in origin.iter_mut().zip(axes) {
+            *coordinate = value.or(*coordinate);
+        }
+        *rotation = turn.unwrap_or(*rotation);
+        if self.state.work_offset == offset {
+            self.activate(offset);
+        }
+        Ok(())
+    }
+
+    /// Executes G52.
+    fn set_local(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        if self.preset != [Some(0.0); 6] {
+            return Err(combination(code, "G92 is in force", "end G92 with G92.1 before"));
+        }
+        let axes = self.take_axes(block);
+        if axes.iter().all(Option::is_none) {
+            return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
+        }
+        for (local, value) in self.local.iter_mut().zip(axes) {
+            *local = value.unwrap_or(*local);
+        }
+        self.update_shift();
+        Ok(())
+    }
+
+    /// Executes G92: the present position gets the given coordinates.
+    fn preset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        self.check_local(code)?;
+        let axes = self.take_axes(block);
+        if axes.iter().all(Option::is_none) {
+            return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
+        }
+        let workpiece = self.state.to_workpiece(self.position);
+        for axis in 0..AXES.len() {
+            if let Some(value) = axes[axis] {
+                self.preset[axis] = workpiece[axis].map(|coordinate| coordinate - value);
+            }
+        }
+        self.update_shift();
+        for (coordinate, value) in self.position.iter_mut().zip(axes) {
+            *coordinate = value.or(*coordinate);
+        }
+        Ok(())
+    }
+
+    /// Executes G92.1, G92.2 and G92.3.
+    fn end_preset(&mut self, code: Code, tenths: u32) -> Result<(), GcodeFault> {
+        self.check_local(code)?;
+        match tenths {
+            921 => (self.preset, self.suspended) = ([Some(0.0); 6], None),
+            922 => {
+                // A second G92.2 does not forget what the first suspended.
+                if self.suspended.is_none() {
+                    self.suspended = Some(self.preset);
+                }
+                self.preset = [Some(0.0); 6];
+            }
+            _ => self.preset = self.suspended.take().unwrap_or(self.preset),
+        }
+        self.update_shift();
+        Ok(())
+    }
+
+    fn check_local(&self, code: Code) -> Result<(), GcodeFault> {
+        match self.local == [0.0; 6] {
+            true => Ok(()),
+            false => Err(combination(code, "G52 is in force", "end it with G52 X0 Y0 Z0 before")),
+        }
+    }
+
+    fn update_shift(&mut self) {
+        let (preset, local) = (self.preset, self.local);
+        self.change(|state| {
+            for axis in 0..AXES.len() {
+                state.shift[axis] = preset[axis].map(|preset| preset + local[axis]);
+            }
+        });
+    }
+
+    /// Executes G68: a rotation about the normal of the plane, by R degrees about a centre.
+    fn rotate(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        self.check_unrotated(code)?;
+        if self.state.tcp != Tcp::Off {
+            return Err(combination(code, "tool centre point control is on", "write G68.2"));
+        }
+        if self.modal.incremental {
+            return Err(combination(code, "G91 is in force", "write G90 before"));
+        }
+        let missing = |needed| GcodeFault::Missing { word: code.to_string(), needed };
+        let angle = block.take('R').ok_or_else(|| missing("the angle R"))?;
+        let mut centre = Vector3::zeros();
+        for axis in self.modal.plane.axes() {
+            let given = block.take(AXES[axis]).map(|value| self.modal.millimetres(value));
+            centre[axis] = given.or(self.position[axis]).ok_or_else(|| {
+                missing("both coordinates of the centre, since the position is not known")
+            })?;
+        }
+        let rotation = about(self.modal.plane.normal(), angle);
+        let frame = Frame { rotation, origin: centre - rotation * centre };
+        self.change(|state| state.rotation = Rotation::Plane { frame });
+        Ok(())
+    }
+
+    /// Executes G68.2: a tilted plane with an origin and the Euler angles I, J and K, in degrees, about z,
+    /// the new x and the new z (Fanuc).
+    fn tilt(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        self.check_unrotated(code)?;
+        if self.state.tcp == Tcp::Vector {
+            return Err(combination(code, "G43.5 is in force", "end it with G49 before"));
+        }
+        if self.modal.incremental {
+            return Err(combination(code, "G91 is in force", "write G90 before"));
+        }
+        block.take_whole('P', 0, 0, "P0, or no P: the angles are Euler's")?;
+        let missing = || {
+            let needed = "X Y Z and the Euler angles I J K";
+            GcodeFault::Missing { word: code.to_string(), needed }
+        };
+        let mut number = |letter| block.take(letter).ok_or_else(missing);
+        let origin = [number('X')?, number('Y')?, number('Z')?];
+        let [i, j, k] = [number('I')?, number('J')?, number('K')?];
+        let origin = Vector3::from(origin.map(|value| self.modal.millimetres(value)));
+        let rotation = about(2, i) * about(0, j) * about(2, k);
+        let frame = Frame { rotation, origin };
+        self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: false });
+        Ok(())
+    }
+
+    /// Executes G53.1: the rotary axes align the tool with z of the tilted plane.
+    fn align(&mut self, code: Code) -> Result<(), GcodeFault> {
+        let Rotation::Tilted { frame, .. } = self.state.rotation else {
+            let needed = "a tilted plane (G68.2) in a block before";
+            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+        };
+        if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
+            return Err(combination(code, "a canned cycle is in force", "write G80 before"));
+        }
+        let mut end = self.position;
+        end[3..].fill(None);
+        let commanded = [false, false, false, true, true, true];
+        self.push(true, end, commanded, StepPath::Align);
+        self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
+        Ok(())
+    }
+}
+
+fn combination(code: Code, condition: &'static str, remedy: &'static str) -> GcodeFault {
+    GcodeFault::Combination { word: code.to_string(), condition, remedy }
+}

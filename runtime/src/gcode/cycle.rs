@@ -1,0 +1,213 @@
+//! Canned cycles: drilling, tapping and boring along the normal of the plane.
+//!
+//! A cycle moves in rapid traverse over its hole, in rapid traverse to the plane R, at feed rate to its
+//! depth, and back: to R (G99), or to the level at which the first cycle of the series began, if that is
+//! above R (G98). Under G91, R is relative to that level and the depth to R. A tool that begins below R is
+//! raised to it first (LinuxCNC, `interp_cycles.cc`).
+//!
+//! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
+//! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
+//! as zero.
+
+use super::block::Block;
+use super::motion::{AXES, Control};
+use super::note::Subject;
+use super::state::{ControlState, Position, Tcp};
+use super::{GcodeFault, MAX_CYCLE_STEPS, StepPath};
+use std::sync::Arc;
+
+/// Words that stay in force from one cycle to the next, lengths in millimetres as given.
+#[derive(Clone, Debug)]
+pub(super) struct Cycle {
+    retract: f64,
+    depth: f64,
+    peck: Option<f64>,
+    /// Distance mode under which retract and depth were given.
+    incremental: bool,
+    /// Level at the start of the series.
+    initial: Option<f64>,
+    state: Arc<ControlState>,
+}
+
+/// The levels of a cycle along the normal. Unknown if they depend on an unknown position.
+#[derive(Clone, Copy)]
+struct Levels {
+    retract: Option<f64>,
+    depth: Option<f64>,
+    clear: Option<f64>,
+}
+
+impl Control {
+    /// Executes a canned cycle.
+    pub(super) fn canned_cycle(
+        &mut self,
+        block: &mut Block,
+        number: u32,
+    ) -> Result<(), GcodeFault> {
+        let word = format!("G{number}");
+        self.check_cycle(block, &word)?;
+        self.check_feed(&word)?;
+        self.check_tilted(block)?;
+        let normal = self.modal.plane.normal();
+        let cycle = self.cycle_words(block, number, &word)?;
+        let levels = self.levels(&cycle)?;
+        let repeats = match block.take_whole('L', 0, 1_000_000, "a number of repeats after L")? {
+            Some(repeats) => repeats,
+            None => {
+                block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1)
+            }
+        };
+        let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
+            (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
+            _ => 1.0,
+        };
+        if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
+            return Err(GcodeFault::CycleTooLong);
+        }
+        let axes = self.take_axes(block);
+        if repeats > 0 && cycle.initial.zip(levels.retract).is_some_and(|(initial, r)| initial < r)
+        {
+            let is_below = self.position[normal].zip(levels.retract).is_some_and(|(z, r)| z < r);
+            if is_below {
+                self.notes.add(self.line, Subject::CycleFromBelow);
+                self.move_along(normal, true, levels.retract);
+            }
+        }
+        for _ in 0..repeats {
+            self.move_over(axes);
+            if self.position[normal] != levels.retract || levels.retract.is_none() {
+                self.move_along(normal, true, levels.retract);
+            }
+            self.stroke(number, normal, cycle.peck, levels, strokes);
+        }
+        self.cycle = Some(cycle);
+        Ok(())
+    }
+
+    fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
+        let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
+        let changed = self.cycle.as_ref().is_some_and(|cycle| *cycle.state != *self.state);
+        let (word, condition, remedy) = match rotary {
+            Some(letter) => (
+                letter.to_string(),
+                "a canned cycle is in force",
+                "turn the axis in a block before, with G80",
+            ),
+            None if self.state.tcp != Tcp::Off => (
+                word.to_owned(),
+                "tool centre point control is on",
+                "end it with G49, or post the cycle's motions",
+            ),
+            None if changed => (
+                word.to_owned(),
+                "coordinates or tool have changed since the series of cycles began",
+                "write G80 before, and all words of the cycle again",
+            ),
+            None => return Ok(()),
+        };
+        Err(GcodeFault::Combination { word, condition, remedy })
+    }
+
+    /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
+    fn cycle_words(&self, block: &mut Block, number: u32, word: &str) -> Result<Cycle, GcodeFault> {
+        let known = self.cycle.as_ref();
+        let incremental = self.modal.incremental;
+        let usable = known.filter(|cycle| cycle.incremental == incremental);
+        let normal = self.modal.plane.normal();
+        let length = |value: f64| self.modal.millimetres(value);
+        let missing = |needed| GcodeFault::Missing { word: word.to_owned(), needed };
+        let depth = block.take(AXES[normal]).map(length).or(usable.map(|cycle| cycle.depth));
+        let retract = block.take('R').map(length).or(usable.map(|cycle| cycle.retract));
+        let peck = match number {
+            73 | 74 | 83 | 84 => block.take('Q').map(length).or(known.and_then(|cycle| cycle.peck)),
+            _ => known.and_then(|cycle| cycle.peck),
+        };
+        // The time of the dwell.
+        block.take('P');
+        let depth = depth.ok_or_else(|| missing("the depth: Z in G17, Y in G18, X in G19"))?;
+        let retract = retract.ok_or_else(|| missing("the retract plane R"))?;
+        if matches!(number, 73 | 83) && !peck.is_some_and(|peck| peck > 0.0) {
+            return Err(missing("a positive depth of peck Q"));
+        }
+        let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
+        Ok(Cycle { retract, depth, peck, incremental, initial, state: Arc::clone(&self.state) })
+    }
+
+    fn levels(&self, cycle: &Cycle) -> Result<Levels, GcodeFault> {
+        let (retract, depth) = match cycle.incremental {
+            false => (Some(cycle.retract), Some(cycle.depth)),
+            true => {
+                let retract = cycle.initial.map(|initial| initial + cycle.retract);
+                (retract, retract.map(|retract| retract + cycle.depth))
+            }
+        };
+        let is_below = match cycle.incremental {
+            false => cycle.retract < cycle.depth,
+            true => cycle.depth > 0.0,
+        };
+        if is_below {
+            let (retract, depth) = (cycle.retract, cycle.depth);
+            return Err(GcodeFault::CycleBelow { retract, depth });
+        }
+        let clear = match self.modal.retract_to_r {
+            true => retract,
+            false => retract.zip(cycle.initial).map(|(retract, initial)| retract.max(initial)),
+        };
+        Ok(Levels { retract, depth, clear })
+    }
+
+    /// Moves over the next hole, at the present level.
+    fn move_over(&mut self, axes: Position) {
+        let mut end = self.position;
+        let mut commanded = [false; 6];
+        for axis in self.modal.plane.axes() {
+            if let Some(value) = axes[axis] {
+                let origin = if self.modal.incremental { end[axis] } else { Some(0.0) };
+                end[axis] = origin.map(|origin| origin + value);
+                commanded[axis] = true;
+            }
+        }
+        if commanded.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
+        }
+    }
+
+    fn move_along(&mut self, axis: usize, rapid: bool, level: Option<f64>) {
+        let mut end = self.position;
+        end[axis] = level;
+        let mut commanded = [false; 6];
+        commanded[axis] = true;
+        self.push(rapid, end, commanded, StepPath::Line);
+    }
+
+    /// Moves from the retract plane to the depth and back to the clear level.
+    fn stroke(
+        &mut self,
+        number: u32,
+        axis: usize,
+        peck: Option<f64>,
+        levels: Levels,
+        strokes: f64,
+    ) {
+        let Levels { retract, depth, clear } = levels;
+        if let (83, Some(peck), Some(from)) = (number, peck, retract) {
+            for k in 1..strokes as u32 {
+                let level = from - f64::from(k) * peck;
+                self.move_along(axis, false, Some(level));
+                self.move_along(axis, true, retract);
+                self.move_along(axis, true, Some(level));
+            }
+        }
+        self.move_along(axis, false, depth);
+        match number {
+            // Tapping and boring leave the hole at feed rate.
+            74 | 84 | 85 | 89 => {
+                self.move_along(axis, false, retract);
+                if clear != retract || clear.is_none() {
+                    self.move_along(axis, true, clear);
+                }
+            }
+            _ => self.move_along(axis, true, clear),
+        }
+    }
+}

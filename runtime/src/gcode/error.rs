@@ -1,0 +1,254 @@
+//! Errors of the interpreter.
+
+use super::arc::ArcFault;
+use super::expression::ExpressionFault;
+
+/// A line that stops the interpreter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}: {fault}")]
+pub struct GcodeError {
+    /// The line, 1-based.
+    pub line: usize,
+    /// The fault in it.
+    pub fault: GcodeFault,
+}
+
+/// A fault in a line of a G-code program.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GcodeFault {
+    /// A character that begins no word.
+    #[error("the character {shown} begins no word of G-code: remove it")]
+    Character {
+        /// The escaped character.
+        shown: String,
+    },
+    /// A comment without its end.
+    #[error("the comment has no `)`, or another `(` in it: close it on its line")]
+    OpenComment,
+    /// A word without a number.
+    #[error("{word} has no number: write one after the letter")]
+    NoNumber {
+        /// The word's letter.
+        word: char,
+    },
+    /// A number beyond the largest one that is read.
+    #[error("the number of {word} is beyond {}: correct it", super::LARGEST_NUMBER)]
+    TooLarge {
+        /// The word's letter.
+        word: char,
+    },
+    /// A number that has to be a whole number in a range.
+    #[error("{word}{value} is not understood: write {expected}")]
+    NotAllowed {
+        /// The word's letter.
+        word: char,
+        /// The number.
+        value: f64,
+        /// The numbers that are.
+        expected: &'static str,
+    },
+    /// A fault in a parameter or an expression.
+    #[error(transparent)]
+    Expression(#[from] ExpressionFault),
+    /// A name that is no word of the dialects that are read.
+    #[error(
+        "`{word}` is not understood and could move the tool: post the program as ISO G-code, or remove the word if \
+         it moves nothing"
+    )]
+    UnknownWord {
+        /// The word.
+        word: String,
+    },
+    /// A word of Heidenhain's conversational programs.
+    #[error(
+        "`{word}` is a word of Heidenhain Klartext, which is not read: post the program as ISO G-code"
+    )]
+    Klartext {
+        /// The word.
+        word: String,
+    },
+    /// A statement that decides at run time what is executed.
+    #[error(
+        "`{word}` decides while the program runs what is executed, which is not read: post the program without it"
+    )]
+    ControlFlow {
+        /// The statement.
+        word: String,
+    },
+    /// An axis that is not read.
+    #[error("the axis {word} is not read: post the program with X Y Z A B C")]
+    Axis {
+        /// The axis's letter.
+        word: char,
+    },
+    /// A G or M word that is not known.
+    #[error(
+        "{word} is not understood and could move the tool or change what positions mean: post the program without \
+         it, or remove it if it does neither"
+    )]
+    UnknownCode {
+        /// The word.
+        word: String,
+    },
+    /// A known word that is not read.
+    #[error("{word} is {meaning}, which is not read: {remedy}")]
+    NotRead {
+        /// The word.
+        word: String,
+        /// Its meaning.
+        meaning: &'static str,
+        /// The remedy.
+        remedy: &'static str,
+    },
+    /// A letter that stands twice in a block.
+    #[error("{word} stands twice in the block: give each letter once")]
+    Repeated {
+        /// The letter.
+        word: char,
+    },
+    /// Two words of one modal group.
+    #[error("{first} and {second} exclude each other in one block: keep one of them")]
+    SameGroup {
+        /// The word before.
+        first: String,
+        /// The word after it.
+        second: String,
+    },
+    /// A word that no G or M word of the block uses.
+    #[error(
+        "{word} is used by no G or M word of its block: remove it, or add the word that uses it"
+    )]
+    Unused {
+        /// The word's letter.
+        word: char,
+    },
+    /// A letter that two words of the block would use.
+    #[error("{word} could belong to {first} or to {second}: write them in two blocks")]
+    Ambiguous {
+        /// The letter.
+        word: char,
+        /// The one.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A G or M word without a word that it needs.
+    #[error("{word} needs {needed}: add it to the block")]
+    Missing {
+        /// The word.
+        word: String,
+        /// The missing word.
+        needed: &'static str,
+    },
+    /// Words that controls combine in different ways, or do not allow together.
+    #[error("{word} while {condition} differs between controls: {remedy}")]
+    Combination {
+        /// The word.
+        word: String,
+        /// The condition in force.
+        condition: &'static str,
+        /// The remedy.
+        remedy: &'static str,
+    },
+    /// Axis words without a motion mode.
+    #[error("axis words without a motion mode: write G0, G1, G2 or G3 in this block or before")]
+    NoMotionMode,
+    /// A motion at feed rate without a feed rate.
+    #[error(
+        "{word} needs a feed rate: write F with a positive number in this block{}",
+        if *.inverse { " (G93)" } else { " or before" }
+    )]
+    NoFeed {
+        /// The motion word.
+        word: String,
+        /// Set if G93 is in force, under which every block needs its own.
+        inverse: bool,
+    },
+    /// A fault in an arc.
+    #[error(transparent)]
+    Arc(#[from] ArcFault),
+    /// A canned cycle whose plane R is below its depth.
+    #[error(
+        "the retract plane R {retract} is below the depth {depth} of the cycle (mm): exchange them"
+    )]
+    CycleBelow {
+        /// The plane, in millimetres.
+        retract: f64,
+        /// The depth, in millimetres.
+        depth: f64,
+    },
+    /// A canned cycle that takes more steps than the limit.
+    #[error("the cycle takes more than {} motions: correct Q, L or K", super::MAX_CYCLE_STEPS)]
+    CycleTooLong,
+    /// A tool vector of length zero.
+    #[error(
+        "the tool vector I J K is zero and points nowhere: give the direction from the tip to the spindle"
+    )]
+    NoDirection,
+    /// A subprogram that is not in the file.
+    #[error("there is no {label} in this file: append the subprogram, and write repeats after L")]
+    NoSubprogram {
+        /// The label, for example `O100`.
+        label: String,
+    },
+    /// A label that stands twice.
+    #[error("{label} is already defined in line {first}: give it another number")]
+    SecondLabel {
+        /// The label.
+        label: String,
+        /// The line of the first.
+        first: usize,
+    },
+    /// A `sub` or `endsub` at a wrong place.
+    #[error("{label} {word}: {problem}")]
+    Nesting {
+        /// The label.
+        label: String,
+        /// `sub` or `endsub`.
+        word: &'static str,
+        /// The problem, and the remedy.
+        problem: &'static str,
+    },
+    /// A subprogram of one dialect that is called or ended as one of another.
+    #[error("{label} is {what}: {remedy}")]
+    MixedCall {
+        /// The label.
+        label: String,
+        /// The kind of subprogram.
+        what: &'static str,
+        /// The remedy.
+        remedy: &'static str,
+    },
+    /// An end of a subprogram outside one.
+    #[error("{word} ends no subprogram here: {remedy}")]
+    StrayReturn {
+        /// The word.
+        word: String,
+        /// The remedy.
+        remedy: &'static str,
+    },
+    /// A program that runs into the next one.
+    #[error("the program runs into {label}: end it with M30 (or M99 for a subprogram) before")]
+    RunsInto {
+        /// The label.
+        label: String,
+    },
+    /// The end of the file before the end of the program.
+    #[error(
+        "the program stops here without M2, M30 or %: post it again, or add M30 if this is the end"
+    )]
+    Unfinished,
+    /// Subprograms that call each other too deeply.
+    #[error(
+        "subprograms call each other more than {} deep: remove the recursion",
+        super::MAX_CALLS
+    )]
+    TooDeep,
+    /// Subprograms that take too many blocks and steps.
+    #[error(
+        "subprograms take more than {} blocks and motions: reduce the repeats",
+        super::MAX_REPEATED
+    )]
+    TooLong,
+}

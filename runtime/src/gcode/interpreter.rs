@@ -1,0 +1,300 @@
+//! The interpreter: reads blocks, executes them in order, and returns their motions.
+
+use super::block::Block;
+use super::code::{Code, Group};
+use super::expression::Parameters;
+use super::flow::Flow;
+use super::label::{Label, Role};
+use super::modal::{FeedMode, Plane};
+use super::motion::Control;
+use super::note::{Note, Subject};
+use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
+use crate::unit::Unit;
+use std::mem;
+
+/// An interpreter of a program: an iterator over its steps.
+///
+/// It holds the state of the control and the steps of one block, so memory does not grow with the program.
+/// After an error it returns no more steps.
+#[derive(Debug)]
+pub struct Interpreter<'a> {
+    flow: Flow<'a>,
+    parameters: Parameters,
+    block: Block,
+    control: Control,
+    omits_optional_blocks: bool,
+    finished: bool,
+}
+
+impl<'a> Interpreter<'a> {
+    /// Creates an interpreter of a text, which is not copied.
+    ///
+    /// # Errors
+    /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
+    pub fn new(text: &'a str, setup: &ControlSetup) -> Result<Interpreter<'a>, GcodeError> {
+        let extent = text::extent(text);
+        let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
+        let mut control = Control::new(setup);
+        if let Some(line) = extent.left_out {
+            control.notes.add(line, Subject::TextAfterEnd);
+        }
+        Ok(Interpreter {
+            flow,
+            parameters: Parameters::default(),
+            block: Block::default(),
+            control,
+            omits_optional_blocks: setup.block_delete,
+            finished: false,
+        })
+    }
+
+    /// Returns the notes about the blocks that were executed so far, by line.
+    pub fn notes(&self) -> Vec<Note> {
+        self.control.notes.list()
+    }
+
+    /// Executes the next line.
+    fn advance(&mut self) -> Result<(), GcodeError> {
+        let located = |(line, fault)| GcodeError { line, fault };
+        let Some((line, text)) = self.flow.next_line().map_err(located)? else {
+            self.finished = true;
+            return Ok(());
+        };
+        let mut block = mem::take(&mut self.block);
+        let result = self.line(line, text, &mut block);
+        self.block = block;
+        result.map_err(|fault| GcodeError { line, fault })
+    }
+
+    fn line(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
+        let is_optional = text.trim_start().starts_with('/');
+        if is_optional && self.omits_optional_blocks {
+            self.control.notes.add(line, Subject::OmittedOptionalBlock);
+            return Ok(());
+        }
+        block.parse(text, &mut self.parameters)?;
+        if is_optional {
+            self.control.notes.add(line, Subject::ExecutedOptionalBlock);
+        }
+        if let Some(word) = block.label.take() {
+            return self.flow.o_word(word, &mut self.parameters);
+        }
+        if block.is_empty() {
+            return Ok(());
+        }
+        self.flow.start();
+        self.control.execute(line, block)?;
+        self.flow.count(self.control.pending.len())?;
+        let subprogram = block.code_of(Group::Subprogram);
+        let call = match subprogram {
+            Some(Code { tenths: 980, .. }) => Some(called(block)?),
+            _ => None,
+        };
+        block.check_used()?;
+        match (call, subprogram) {
+            (Some((label, times)), _) => {
+                self.flow.call(label, Role::Title, times, &mut self.parameters)?;
+            }
+            (None, Some(_)) => self.flow.end_subprogram(&mut self.parameters)?,
+            (None, None) => {}
+        }
+        match block.code_of(Group::Stop).map(|code| code.tenths) {
+            Some(20 | 300) => {
+                self.finished = true;
+                if let Some(line) = self.flow.text_after_end() {
+                    self.control.notes.add(line, Subject::TextAfterEnd);
+                }
+            }
+            Some(_) => self.control.notes.add(line, Subject::Stop),
+            None => {}
+        }
+        Ok(())
+    }
+}
+
+impl Iterator for Interpreter<'_> {
+    type Item = Result<Step, GcodeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(step) = self.control.pending.pop_front() {
+                return Some(Ok(step));
+            }
+            if self.finished {
+                return None;
+            }
+            if let Err(error) = self.advance() {
+                self.finished = true;
+                self.control.pending.clear();
+                return Some(Err(error));
+            }
+        }
+    }
+}
+
+impl std::iter::FusedIterator for Interpreter<'_> {}
+
+/// Returns the label and the repeats of M98.
+fn called(block: &mut Block) -> Result<(Label, u32), GcodeFault> {
+    let expected = "the number of a program after P";
+    let Some(label) = block.take_whole('P', 0, 99_999_999, expected)? else {
+        let needed = "P with the number of a program";
+        return Err(GcodeFault::Missing { word: "M98".to_owned(), needed });
+    };
+    let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
+    Ok((Label::Number(label), times.unwrap_or(1)))
+}
+
+impl Control {
+    /// Executes a block, in the order of RS274/NGC, table 8.
+    pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
+        self.line = line;
+        self.note_words(block);
+        check_axis_words(block)?;
+        self.feed(block)?;
+        self.tool(block)?;
+        dwell(block)?;
+        self.motion_mode(block);
+        self.settings(block)?;
+        self.coordinates(block)?;
+        self.motion(block)
+    }
+
+    /// Notes the words that are passed over.
+    fn note_words(&mut self, block: &mut Block) {
+        for code in &block.passed_over {
+            self.notes.add(self.line, Subject::PassedOver(*code));
+        }
+        if block.take('S').is_some() {
+            self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
+        }
+        if block.whole_number {
+            self.notes.add(self.line, Subject::WholeNumbers);
+        }
+    }
+
+    /// Reads the feed mode and F.
+    fn feed(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        if let Some(code) = block.code_of(Group::FeedMode) {
+            let mode = match code.tenths {
+                930 => FeedMode::InverseTime,
+                940 => FeedMode::PerMinute,
+                _ => FeedMode::PerRevolution,
+            };
+            if mode != self.modal.feed_mode {
+                self.modal.feed = None;
+            }
+            self.modal.feed_mode = mode;
+        }
+        if self.modal.feed_mode == FeedMode::InverseTime {
+            self.modal.feed = None;
+        }
+        // F of a dwell is its time on some controls.
+        let is_dwell = block.code_of(Group::Dwell).is_some();
+        match block.take('F') {
+            Some(value) if value < 0.0 => {
+                Err(GcodeFault::NotAllowed { word: 'F', value, expected: "a positive number" })
+            }
+            Some(feed) if !is_dwell => {
+                self.modal.feed = Some(feed).filter(|feed| *feed > 0.0);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads the settings that convert and interpret the other words.
+    fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let tenths = |group| block.code_of(group).map(|code| code.tenths);
+        match tenths(Group::Units) {
+            Some(200 | 700 | 7000) => self.modal.unit = Unit::Inch,
+            Some(_) => self.modal.unit = Unit::Millimetre,
+            None => {}
+        }
+        if let Some(distance) = tenths(Group::Distance) {
+            self.modal.incremental = distance == 910;
+        }
+        if let Some(distance) = tenths(Group::ArcDistance) {
+            self.modal.absolute_centres = distance == 901;
+        }
+        if let Some(retract) = tenths(Group::Retract) {
+            self.modal.retract_to_r = retract == 990;
+        }
+        if let Some(plane) = tenths(Group::Plane) {
+            self.select(match plane {
+                170 => Plane::Xy,
+                180 => Plane::Zx,
+                _ => Plane::Yz,
+            })?;
+        }
+        if let Some(code) = block.code_of(Group::PathControl) {
+            let is_rounding = path_control(block, code)?;
+            self.notes.add(
+                self.line,
+                match is_rounding {
+                    true => Subject::RoundedCorners(code),
+                    false => Subject::PassedOver(code),
+                },
+            );
+        }
+        Ok(())
+    }
+}
+
+/// Takes the words of a path mode, and returns whether the control may round corners under it.
+fn path_control(block: &mut Block, code: Code) -> Result<bool, GcodeFault> {
+    let switch = match code.tenths {
+        640 => {
+            block.take('P');
+            block.take('Q');
+            return Ok(true);
+        }
+        610 | 611 => return Ok(false),
+        51 => 'Q',
+        _ => 'P',
+    };
+    // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
+    match block.take(switch) {
+        Some(value) if !block.has_any("XYZIJK") => Ok(value != 0.0),
+        _ => {
+            let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
+            let remedy = "post the program with lines and arcs";
+            Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
+        }
+    }
+}
+
+/// Reads G4, and the word with its time.
+fn dwell(block: &mut Block) -> Result<(), GcodeFault> {
+    let Some(code) = block.code_of(Group::Dwell) else { return Ok(()) };
+    if block.take('P').is_some() || !block.has('X') {
+        return Ok(());
+    }
+    if block.has_any("YZABC") || block.code_of(Group::Motion).is_some() {
+        let (first, second) = (code.to_string(), "a motion".to_owned());
+        return Err(GcodeFault::Ambiguous { word: 'X', first, second });
+    }
+    block.take('X');
+    Ok(())
+}
+
+/// Refuses two words that would use the axis words of a block.
+fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
+    let one_shot = block
+        .code_of(Group::OneShot)
+        .filter(|code| matches!(code.tenths, 100 | 280 | 300 | 520 | 920));
+    let rotation = block.code_of(Group::Rotation).filter(|code| code.tenths != 690);
+    let machine = block.code_of(Group::Machine);
+    let motion = block.code_of(Group::Motion);
+    // `G0 G28` and `G0 G53` are common: the motion word only sets the mode.
+    let is_return = one_shot.is_some_and(|code| matches!(code.tenths, 280 | 300));
+    let is_plain = motion.is_some_and(|code| matches!(code.tenths, 0 | 10));
+    let motion = motion.filter(|_| !(is_plain && (is_return || machine.is_some())));
+    let mut users = [one_shot, rotation, machine, motion].into_iter().flatten();
+    match (users.next(), users.next()) {
+        (Some(first), Some(second)) => {
+            Err(GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() })
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,381 @@
+//! The control, and its motions: lines, arcs, returns to reference positions, machine coordinates.
+
+use super::arc::{self, ArcWords};
+use super::block::Block;
+use super::code::Group;
+use super::cycle::Cycle;
+use super::modal::{FeedMode, Modal, Motion, Plane};
+use super::note::{Notes, Subject};
+use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+use super::{ControlSetup, GcodeFault, Step, StepPath};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+/// Letters of the axes.
+pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// A control: everything that blocks change and motions depend on.
+#[derive(Debug)]
+pub(super) struct Control {
+    pub(super) line: usize,
+    pub(super) modal: Modal,
+    pub(super) state: Arc<ControlState>,
+    /// Position in program coordinates.
+    pub(super) position: Position,
+    /// Origin and rotation of the work offsets.
+    pub(super) origins: BTreeMap<WorkOffset, (Position, f64)>,
+    pub(super) lengths: BTreeMap<u32, f64>,
+    home: Option<[f64; 6]>,
+    second_home: Option<[f64; 6]>,
+    /// Shift by G52.
+    pub(super) local: [f64; 6],
+    /// Shift by G92.
+    pub(super) preset: Position,
+    /// Shift by G92 that G92.2 suspended.
+    pub(super) suspended: Option<Position>,
+    /// The tool that the next M6 changes to.
+    pub(super) staged: Option<u32>,
+    /// The last D.
+    pub(super) edge: Option<u32>,
+    /// Set if tool centre point control was switched on by M428 or `TRAORI`, which G43 and G49 do not end.
+    pub(super) transformed: bool,
+    pub(super) cycle: Option<Cycle>,
+    /// The last tool vector of G43.5.
+    pub(super) vector: Option<[f64; 3]>,
+    pub(super) notes: Notes,
+    /// Steps that were not yet returned.
+    pub(super) pending: VecDeque<Step>,
+}
+
+impl Control {
+    pub(super) fn new(setup: &ControlSetup) -> Control {
+        let offsets = (1..).map(WorkOffset::Standard).zip(setup.work_offsets);
+        let known =
+            |origin: Option<[f64; 6]>| (origin.map_or([None; 6], |origin| origin.map(Some)), 0.0);
+        let origins: BTreeMap<_, _> =
+            offsets.map(|(offset, origin)| (offset, known(origin))).collect();
+        let state = ControlState {
+            tool: None,
+            length: LengthOffset::Off,
+            work_offset: WorkOffset::Standard(1),
+            origin: origins.get(&WorkOffset::Standard(1)).map_or([None; 6], |(origin, _)| *origin),
+            origin_rotation: 0.0,
+            shift: [Some(0.0); 6],
+            tcp: Tcp::Off,
+            rotation: Rotation::Off,
+        };
+        Control {
+            line: 0,
+            modal: Modal::new(setup.unit),
+            state: Arc::new(state),
+            position: setup.start,
+            origins,
+            lengths: setup.lengths.clone(),
+            home: setup.home,
+            second_home: setup.second_home,
+            local: [0.0; 6],
+            preset: [Some(0.0); 6],
+            suspended: None,
+            staged: None,
+            edge: None,
+            transformed: false,
+            cycle: None,
+            vector: None,
+            notes: Notes::default(),
+            pending: VecDeque::new(),
+        }
+    }
+
+    /// Reads the motion mode.
+    pub(super) fn motion_mode(&mut self, block: &Block) {
+        if block.code_of(Group::CycleOff).is_some() {
+            self.modal.motion = None;
+        }
+        if let Some(code) = block.code_of(Group::Motion) {
+            self.modal.motion = Some(match code.tenths {
+                0 => Motion::Rapid,
+                10 => Motion::Feed,
+                20 => Motion::Arc { clockwise: true },
+                30 => Motion::Arc { clockwise: false },
+                tenths => Motion::Cycle(tenths / 10),
+            });
+        }
+        if !matches!(self.modal.motion, Some(Motion::Cycle(_))) {
+            self.cycle = None;
+        }
+    }
+
+    /// Executes the motion of a block.
+    pub(super) fn motion(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let explicit = block.code_of(Group::Motion).is_some();
+        self.one_shot(block)?;
+        if block.code_of(Group::Machine).is_some() {
+            return self.machine_coordinates(block);
+        }
+        let has_vector = self.state.tcp == Tcp::Vector && block.has_any("IJK");
+        let has_axes = block.has_any("XYZABC") || has_vector;
+        match self.modal.motion {
+            Some(Motion::Arc { clockwise }) if has_axes || explicit && block.has_any("IJKR") => {
+                self.arc(block, clockwise)
+            }
+            Some(Motion::Cycle(number)) if has_axes => self.canned_cycle(block, number),
+            Some(Motion::Rapid | Motion::Feed) if has_axes => self.straight(block),
+            None if has_axes => Err(GcodeFault::NoMotionMode),
+            Some(Motion::Cycle(number)) if explicit => {
+                let word = format!("G{number}");
+                Err(GcodeFault::Missing { word, needed: "X, Y or Z" })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes the axis words of a block, in millimetres and degrees.
+    pub(super) fn take_axes(&self, block: &mut Block) -> Position {
+        let mut axes = AXES.map(|letter| block.take(letter));
+        for value in &mut axes[..3] {
+            *value = value.map(|value| self.modal.millimetres(value));
+        }
+        axes
+    }
+
+    /// Takes the axis words of a block as the end of a motion, with the axes that it commands.
+    fn take_end(&self, block: &mut Block) -> (Position, [bool; 6]) {
+        let axes = self.take_axes(block);
+        let mut end = self.position;
+        for (coordinate, value) in end.iter_mut().zip(axes) {
+            if let Some(value) = value {
+                let origin = if self.modal.incremental { *coordinate } else { Some(0.0) };
+                *coordinate = origin.map(|origin| origin + value);
+            }
+        }
+        (end, axes.map(|value| value.is_some()))
+    }
+
+    fn straight(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let rapid = self.modal.motion == Some(Motion::Rapid);
+        if !rapid {
+            self.check_feed("G1")?;
+        }
+        self.check_tilted(block)?;
+        let turns = self.take_vector(block)?;
+        let (mut end, mut commanded) = self.take_end(block);
+        if turns {
+            end[3..].fill(None);
+            commanded[3..].fill(true);
+        }
+        self.push(rapid, end, commanded, StepPath::Line);
+        Ok(())
+    }
+
+    /// Takes the tool vector under G43.5, and returns whether the block has one.
+    fn take_vector(&mut self, block: &mut Block) -> Result<bool, GcodeFault> {
+        if self.state.tcp != Tcp::Vector {
+            return Ok(false);
+        }
+        let given = AXES[3..].iter().find(|letter| block.has(**letter));
+        if let Some(letter) = given {
+            return Err(GcodeFault::Combination {
+                word: letter.to_string(),
+                condition: "G43.5 is in force",
+                remedy: "write the tool vector I J K, or select G43.4",
+            });
+        }
+        if !block.has_any("IJK") {
+            return Ok(false);
+        }
+        let vector = ['I', 'J', 'K'].map(|letter| block.take(letter).unwrap_or(0.0));
+        let norm = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+        if norm < 1e-6 {
+            return Err(GcodeFault::NoDirection);
+        }
+        self.vector = Some(vector.map(|value| value / norm));
+        Ok(true)
+    }
+
+    fn arc(&mut self, block: &mut Block, clockwise: bool) -> Result<(), GcodeFault> {
+        let word = if clockwise { "G2" } else { "G3" };
+        if self.state.tcp == Tcp::Vector {
+            return Err(GcodeFault::Combination {
+                word: word.to_owned(),
+                condition: "G43.5 gives I J K another meaning",
+                remedy: "post the arc as lines, or select G43.4",
+            });
+        }
+        self.check_feed(word)?;
+        self.check_tilted(block)?;
+        let length = |value: f64| self.modal.millimetres(value);
+        let words = ArcWords {
+            clockwise,
+            plane: self.modal.plane,
+            offsets: ['I', 'J', 'K'].map(|letter| block.take(letter).map(length)),
+            absolute: self.modal.absolute_centres,
+            radius: block.take('R').map(length),
+            turns: block
+                .take_whole('P', 1, 1_000_000, "a number of turns from 1 after P")?
+                .unwrap_or(1),
+            unit: self.modal.unit,
+        };
+        let (end, commanded) = self.take_end(block);
+        let path = arc::path(&words, self.position, end)?;
+        self.push(false, end, commanded, path);
+        Ok(())
+    }
+
+    /// Checks that there is a feed rate.
+    pub(super) fn check_feed(&self, word: &str) -> Result<(), GcodeFault> {
+        let inverse = self.modal.feed_mode == FeedMode::InverseTime;
+        match self.modal.feed {
+            Some(_) => Ok(()),
+            None => Err(GcodeFault::NoFeed { word: word.to_owned(), inverse }),
+        }
+    }
+
+    /// Refuses motions in a tilted plane whose meaning depends on G53.1.
+    pub(super) fn check_tilted(&self, block: &Block) -> Result<(), GcodeFault> {
+        let Rotation::Tilted { aligned, .. } = self.state.rotation else { return Ok(()) };
+        let moved = AXES.into_iter().filter(|letter| block.has(*letter));
+        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+        for letter in moved {
+            let is_rotary = AXES[3..].contains(&letter);
+            let (condition, remedy) = match (aligned, is_rotary) {
+                (true, true) => {
+                    ("a tilted plane is aligned (G53.1)", "end the plane with G69 before")
+                }
+                (false, false) if !at_zero && self.state.tcp == Tcp::Off => {
+                    ("a tilted plane is not aligned", "write G53.1 after G68.2")
+                }
+                _ => continue,
+            };
+            return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
+        }
+        Ok(())
+    }
+
+    /// Executes G53.
+    fn machine_coordinates(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        let refused = |condition, remedy| {
+            Err(GcodeFault::Combination { word: "G53".to_owned(), condition, remedy })
+        };
+        if self.modal.incremental {
+            return refused("G91 is in force", "write G90 before");
+        }
+        if self.state.tcp != Tcp::Off {
+            return refused("tool centre point control is on", "end it with G49 before");
+        }
+        let rapid = match self.modal.motion {
+            None | Some(Motion::Rapid) => true,
+            Some(Motion::Feed) => {
+                self.check_feed("G1")?;
+                false
+            }
+            _ => return refused("an arc or a canned cycle is in force", "write G0 in the block"),
+        };
+        let axes = self.take_axes(block);
+        if axes.iter().all(Option::is_none) {
+            return Err(GcodeFault::Missing { word: "G53".to_owned(), needed: "an axis word" });
+        }
+        self.move_machine(rapid, axes.map(|value| value.is_some()), axes);
+        Ok(())
+    }
+
+    /// Executes G28 or G30: to the intermediate position, then to the reference position.
+    pub(super) fn reference_return(
+        &mut self,
+        block: &mut Block,
+        word: &str,
+    ) -> Result<(), GcodeFault> {
+        let refused = |condition, remedy| {
+            Err(GcodeFault::Combination { word: word.to_owned(), condition, remedy })
+        };
+        if self.state.tcp != Tcp::Off {
+            return refused("tool centre point control is on", "end it with G49 before");
+        }
+        if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
+            return refused("a canned cycle is in force", "write G80 before");
+        }
+        if word == "G30" {
+            block.take_whole('P', 2, 2, "P2, or no P")?;
+        }
+        self.check_tilted(block)?;
+        let (end, mut commanded) = self.take_end(block);
+        if commanded.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
+        } else {
+            commanded = [true; 6];
+        }
+        let home = if word == "G28" { self.home } else { self.second_home };
+        self.move_machine(true, commanded, home.map_or([None; 6], |home| home.map(Some)));
+        Ok(())
+    }
+
+    /// Moves axes to machine coordinates. An unknown coordinate leads where only the machine knows.
+    fn move_machine(&mut self, rapid: bool, mut commanded: [bool; 6], target: Position) {
+        let mut machine = self.state.to_machine(self.position);
+        for axis in 0..6 {
+            if commanded[axis] {
+                machine[axis] = target[axis];
+            }
+        }
+        let mut end = self.state.from_machine(machine);
+        // A rotation makes program axes depend on several machine axes.
+        let is_coupled = match (self.state.rotation, self.state.origin_rotation == 0.0) {
+            (Rotation::Off, true) => [false; 6],
+            (Rotation::Off, false) => [true, true, false, false, false, false],
+            _ => [true, true, true, false, false, false],
+        };
+        let moves_coupled = (0..6).any(|axis| commanded[axis] && is_coupled[axis]);
+        for axis in 0..6 {
+            if is_coupled[axis] && moves_coupled {
+                commanded[axis] = true;
+            } else if !commanded[axis] {
+                end[axis] = self.position[axis];
+            }
+        }
+        self.push(rapid, end, commanded, StepPath::Line);
+    }
+
+    /// Adds a step from the present position, and moves there.
+    pub(super) fn push(
+        &mut self,
+        rapid: bool,
+        end: Position,
+        commanded: [bool; 6],
+        path: StepPath,
+    ) {
+        let start = std::mem::replace(&mut self.position, end);
+        let is_long = |axis: usize| {
+            start[axis].zip(end[axis]).is_some_and(|(start, end)| (end - start).abs() > 180.0)
+        };
+        if (3..6).any(is_long) {
+            self.notes.add(self.line, Subject::LongTurn);
+        }
+        let state = Arc::clone(&self.state);
+        let (line, tool_vector) = (self.line, self.vector);
+        self.pending.push_back(Step {
+            line,
+            rapid,
+            start,
+            end,
+            commanded,
+            path,
+            tool_vector,
+            state,
+        });
+    }
+
+    /// Selects a plane.
+    pub(super) fn select(&mut self, plane: Plane) -> Result<(), GcodeFault> {
+        if plane != self.modal.plane {
+            let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
+            if is_rotated || self.cycle.is_some() {
+                return Err(GcodeFault::Combination {
+                    word: "another plane".to_owned(),
+                    condition: "a rotation (G68) or a canned cycle is in force",
+                    remedy: "end it with G69 or G80 before",
+                });
+            }
+        }
+        self.modal.plane = plane;
+        Ok(())
+    }
+}

@@ -1,0 +1,151 @@
+//! Notes: what a program leaves to the control, and words that were passed over.
+
+use super::code::Code;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A note about a program. Equal notes are counted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Note {
+    /// The line of the first, 1-based.
+    pub line: usize,
+    /// The number of them.
+    pub count: usize,
+    /// The subject.
+    pub kind: NoteKind,
+}
+
+/// Subject of a note.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum NoteKind {
+    /// A word that can neither move the tool nor change what positions mean.
+    PassedOver {
+        /// The word.
+        word: String,
+    },
+    /// A path mode that lets the control round corners, by a tolerance that may be its own.
+    RoundedCorners {
+        /// The word.
+        word: String,
+    },
+    /// A tool change, whose motion only the machine knows.
+    ToolChange,
+    /// A stop, at which an operator can move the tool.
+    Stop,
+    /// Coordinates without a decimal point. They are read as whole millimetres, inches or degrees; a control
+    /// can be set to read them as increments of 0.001.
+    WholeNumbers,
+    /// A block that begins with `/`, and was executed.
+    ExecutedOptionalBlock,
+    /// A block that begins with `/`, and was left out.
+    OmittedOptionalBlock,
+    /// A canned cycle that begins below its plane R. The tool is raised first, as by LinuxCNC; other controls
+    /// move sideways first.
+    CycleFromBelow,
+    /// A rotary axis that turns by more than half a turn in one block. A control can be set to take the
+    /// shorter way.
+    LongTurn,
+    /// Text after the end of the program, which is not read.
+    TextAfterEnd,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Note { line, count, kind } = self;
+        write!(f, "line {line}: {kind}")?;
+        if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
+    }
+}
+
+impl fmt::Display for NoteKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NoteKind::PassedOver { word } => write!(f, "{word} is passed over"),
+            NoteKind::RoundedCorners { word } => {
+                write!(
+                    f,
+                    "{word} lets the control round corners, so its path differs from the programmed one"
+                )
+            }
+            NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
+            NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),
+            NoteKind::WholeNumbers => {
+                f.write_str("coordinates without a decimal point are read as whole units")
+            }
+            NoteKind::ExecutedOptionalBlock => f.write_str("an optional block (/) is executed"),
+            NoteKind::OmittedOptionalBlock => f.write_str("an optional block (/) is left out"),
+            NoteKind::CycleFromBelow => {
+                f.write_str("the cycle begins below R: the tool is raised before it moves sideways")
+            }
+            NoteKind::LongTurn => {
+                f.write_str("a rotary axis turns by more than 180 degrees in one block")
+            }
+            NoteKind::TextAfterEnd => {
+                f.write_str("the text after the end of the program is not read")
+            }
+        }
+    }
+}
+
+/// A subject that is compared without allocating.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Subject {
+    PassedOver(Code),
+    RoundedCorners(Code),
+    ToolChange,
+    Stop,
+    WholeNumbers,
+    ExecutedOptionalBlock,
+    OmittedOptionalBlock,
+    CycleFromBelow,
+    LongTurn,
+    TextAfterEnd,
+}
+
+/// The notes of a program.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Notes {
+    /// First line and number.
+    found: BTreeMap<Subject, (usize, usize)>,
+}
+
+impl Notes {
+    pub(super) fn add(&mut self, line: usize, subject: Subject) {
+        self.found.entry(subject).or_insert((line, 0)).1 += 1;
+    }
+
+    /// Returns the notes by line.
+    pub(super) fn list(&self) -> Vec<Note> {
+        let note = |(subject, (line, count)): (&Subject, &(usize, usize))| Note {
+            line: *line,
+            count: *count,
+            kind: subject.kind(),
+        };
+        let mut notes: Vec<Note> = self.found.iter().map(note).collect();
+        notes.sort_by_key(|note| note.line);
+        notes
+    }
+}
+
+impl Subject {
+    fn kind(self) -> NoteKind {
+        match self {
+            // A tool, a speed or an edge is noted by its letter alone.
+            Subject::PassedOver(Code { letter, .. }) if !"GM".contains(letter) => {
+                NoteKind::PassedOver { word: letter.to_string() }
+            }
+            Subject::PassedOver(code) => NoteKind::PassedOver { word: code.to_string() },
+            Subject::RoundedCorners(code) => NoteKind::RoundedCorners { word: code.to_string() },
+            Subject::ToolChange => NoteKind::ToolChange,
+            Subject::Stop => NoteKind::Stop,
+            Subject::WholeNumbers => NoteKind::WholeNumbers,
+            Subject::ExecutedOptionalBlock => NoteKind::ExecutedOptionalBlock,
+            Subject::OmittedOptionalBlock => NoteKind::OmittedOptionalBlock,
+            Subject::CycleFromBelow => NoteKind::CycleFromBelow,
+            Subject::LongTurn => NoteKind::LongTurn,
+            Subject::TextAfterEnd => NoteKind::TextAfterEnd,
+        }
+    }
+}

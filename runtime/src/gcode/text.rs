@@ -1,0 +1,76 @@
+//! The lines of a program text, and its end.
+
+use super::label::Place;
+
+/// Returns the line at a place, and the place after it. Lines may end in LF, CRLF or a lone CR.
+pub(super) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
+    let rest = text.get(place.offset..).filter(|rest| !rest.is_empty())?;
+    let length = rest.bytes().position(|byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
+    let ending = match &rest.as_bytes()[length..] {
+        [b'\r', b'\n', ..] => 2,
+        [] => 0,
+        _ => 1,
+    };
+    let after = Place { offset: place.offset + length + ending, line: place.line + 1 };
+    Some((&rest[..length], after))
+}
+
+/// Returns whether a line is the `%` that encloses a program. A name may follow the first one.
+pub(super) fn is_percent(line: &str, is_first: bool) -> bool {
+    match line.trim().strip_prefix('%') {
+        Some("") => true,
+        Some(rest) => {
+            let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+            let rest = rest.trim();
+            rest.starts_with(['(', ';']) || is_first && rest.chars().all(is_name)
+        }
+        None => false,
+    }
+}
+
+/// Returns whether a line has no words: it is blank, or one comment.
+fn is_empty(line: &str) -> bool {
+    let line = line.trim();
+    line.is_empty()
+        || line.starts_with(';')
+        || line.starts_with('(') && line.find(')') == Some(line.len() - 1)
+}
+
+/// The extent of a program in its file.
+#[derive(Debug)]
+pub(super) struct Extent<'a> {
+    /// The text without what follows the last `%`.
+    pub(super) text: &'a str,
+    /// The first line of the program.
+    pub(super) start: Place,
+    /// Set if `%` ends the program.
+    pub(super) closed: bool,
+    /// The line of the first text after it.
+    pub(super) left_out: Option<usize>,
+}
+
+/// Finds the first line and the end of a program.
+pub(super) fn extent(text: &str) -> Extent<'_> {
+    let mut extent =
+        Extent { text, start: Place { offset: 0, line: 1 }, closed: false, left_out: None };
+    let mut place = extent.start;
+    let mut is_first = true;
+    while let Some((found, after)) = line(text, place) {
+        if extent.closed {
+            if !found.trim().is_empty() && !is_percent(found, false) {
+                extent.left_out = Some(place.line);
+                break;
+            }
+        } else if is_percent(found, is_first) {
+            if is_first {
+                extent.start = after;
+            } else {
+                extent.text = &text[..place.offset];
+                extent.closed = true;
+            }
+        }
+        is_first &= is_empty(found);
+        place = after;
+    }
+    extent
+}

@@ -1,0 +1,231 @@
+//! Errors of machines, of joint values and of the inverse kinematics.
+
+use super::Letter;
+
+/// A reason for which a machine cannot be used. The message names the file, the line, the reason and the
+/// remedy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MachineError {
+    /// No machine of this name comes with the library.
+    #[error("`{name}` is no machine of the library: name one of {known}, or give a file")]
+    UnknownName {
+        /// The name.
+        name: String,
+        /// The known names.
+        known: String,
+    },
+    /// A line of the file is refused.
+    #[error("{file}:{line}: {fault}")]
+    Line {
+        /// The file.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// The fault in it.
+        fault: MachineFault,
+    },
+    /// A linear axis is missing.
+    #[error("{file}: there is no axis {letter}: give an [[axis]] for each of X, Y and Z")]
+    MissingAxis {
+        /// The file.
+        file: String,
+        /// The missing axis.
+        letter: Letter,
+    },
+}
+
+/// A fault in a line of a machine's file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MachineFault {
+    /// The text is not TOML, or a key is unknown, missing or of the wrong type.
+    #[error("{message}: correct the line (docs of the module `machine` list the keys)")]
+    Syntax {
+        /// The parser's message.
+        message: String,
+    },
+    /// The name is empty or has a control character.
+    #[error("the name is empty or has a control character: give the machine a name of one line")]
+    Name,
+    /// An axis is given twice.
+    #[error("axis {letter} is given again, first in line {first}: remove one of them")]
+    Repeated {
+        /// The axis.
+        letter: Letter,
+        /// The line of the first, 1-based.
+        first: usize,
+    },
+    /// A linear axis with a rotary axis's letter, or the other way round.
+    #[error(
+        "{letter} is the letter of a {expected} axis: X, Y, Z are linear, A, B, C rotary (ISO 841)"
+    )]
+    Kind {
+        /// The letter.
+        letter: Letter,
+        /// The kind that belongs to the letter.
+        expected: &'static str,
+    },
+    /// A linear axis in another direction than that of its letter.
+    #[error(
+        "axis {letter} has another direction than machine coordinate {letter}: remove `direction`"
+    )]
+    LinearDirection {
+        /// The axis.
+        letter: Letter,
+    },
+    /// A linear axis with a point.
+    #[error("axis {letter} is linear and has no point: remove `point`")]
+    LinearPoint {
+        /// The axis.
+        letter: Letter,
+    },
+    /// A rotary axis without one of its keys.
+    #[error("rotary axis {letter} has no `{key}`: add `{key} = {example}`")]
+    MissingKey {
+        /// The axis.
+        letter: Letter,
+        /// The missing key.
+        key: &'static str,
+        /// An example of its value.
+        example: &'static str,
+    },
+    /// A zero direction.
+    #[error("the direction of axis {letter} is zero: give a vector such as [1, 0, 0]")]
+    ZeroDirection {
+        /// The axis.
+        letter: Letter,
+    },
+    /// A number that is not finite or too large.
+    #[error("`{key}` of axis {letter} is {value}: give a number within ±{limit:e}")]
+    Range {
+        /// The axis.
+        letter: Letter,
+        /// The key.
+        key: &'static str,
+        /// The value.
+        value: f64,
+        /// The largest magnitude allowed.
+        limit: f64,
+    },
+    /// A lower limit that is not below the upper one.
+    #[error("the limits of axis {letter} are {low} and {high}: give the lower one first")]
+    Limits {
+        /// The axis.
+        letter: Letter,
+        /// The first limit.
+        low: f64,
+        /// The second limit.
+        high: f64,
+    },
+    /// A home position outside the limits.
+    #[error("axis {letter} has its home at {home}, outside its limits: correct one of them")]
+    Home {
+        /// The axis.
+        letter: Letter,
+        /// The position.
+        home: f64,
+    },
+    /// A linear axis that a rotary axis of its side carries.
+    #[error(
+        "axis {letter} is carried by rotary axis {rotary}, which is not supported: list it before {rotary}"
+    )]
+    CarriedLinear {
+        /// The linear axis.
+        letter: Letter,
+        /// The rotary axis before it.
+        rotary: Letter,
+    },
+    /// More than two rotary axes.
+    #[error("{letter} is a third rotary axis: two determine the tool axis, so give at most two")]
+    ThirdRotary {
+        /// The axis.
+        letter: Letter,
+    },
+    /// Two rotary axes with the same direction.
+    #[error(
+        "axes {first} and {letter} are parallel, so they are one axis to the tool: correct a direction"
+    )]
+    Parallel {
+        /// The first axis.
+        first: Letter,
+        /// The second axis.
+        letter: Letter,
+    },
+}
+
+/// A reason for which joint values are refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JointError {
+    /// A value that is not finite or too large.
+    #[error("{what} is {value}: give a number within ±{limit:e}")]
+    Range {
+        /// The value's name.
+        what: String,
+        /// The value.
+        value: f64,
+        /// The largest magnitude allowed.
+        limit: f64,
+    },
+    /// A value of an axis that the machine lacks.
+    #[error(
+        "{letter} is {value}, but the machine has no axis {letter}: choose another machine, or remove {letter}"
+    )]
+    NoAxis {
+        /// The axis.
+        letter: Letter,
+        /// The value, in degrees.
+        value: f64,
+    },
+    /// A link that the machine lacks.
+    #[error("there is no link {link}: the table side has links 0 (the base) to {last}")]
+    NoLink {
+        /// The link.
+        link: usize,
+        /// The last link.
+        last: usize,
+    },
+    /// A position of the tip relative to a body that not all linear axes move.
+    #[error(
+        "not all linear axes move the tool relative to link {link}: give the tip relative to the workpiece"
+    )]
+    Frame {
+        /// The link.
+        link: usize,
+    },
+}
+
+/// A reason for which no joint values place the tool.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InverseError {
+    /// A coordinate of the tip, the tool length or a nearby joint value is out of range.
+    #[error(transparent)]
+    Joint(#[from] JointError),
+    /// The tool axis is zero or not finite.
+    #[error("the tool axis is zero or not finite: give the vector from the tip to the spindle")]
+    NoDirection,
+    /// The rotary axes do not reach the direction.
+    #[error(
+        "the rotary axes miss the tool axis by {degrees:.4}°: choose another direction or machine"
+    )]
+    Unreachable {
+        /// Angle between the direction and the nearest that is reached, in degrees.
+        degrees: f64,
+    },
+    /// The solution is outside the limits of an axis.
+    #[error(
+        "axis {letter} would be at {value:.4}, outside its limits {low} to {high}: move or reclamp the part"
+    )]
+    Limit {
+        /// The axis.
+        letter: Letter,
+        /// The value nearest to the limits, in millimetres or degrees.
+        value: f64,
+        /// The lower limit.
+        low: f64,
+        /// The upper limit.
+        high: f64,
+    },
+}

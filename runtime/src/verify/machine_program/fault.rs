@@ -1,0 +1,89 @@
+//! Errors of programs on a machine.
+
+use crate::gcode::GcodeFault;
+use crate::machine::{InverseError, JointError};
+
+/// A program that cannot be checked on its machine.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MachineProgramError {
+    /// A line stops the interpreter.
+    #[error("{file}:{line}: {fault}")]
+    Gcode {
+        /// The program.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// The fault in it.
+        fault: GcodeFault,
+    },
+    /// A motion is not possible on the machine.
+    #[error("{file}:{line}: {fault}")]
+    Step {
+        /// The program.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// The fault of the motion.
+        fault: StepFault,
+    },
+}
+
+/// A reason for which a motion is not possible on a machine.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepFault {
+    /// A joint value is out of range, or of an axis that the machine lacks.
+    #[error(transparent)]
+    Joint(#[from] JointError),
+    /// No joint values give the tool axis.
+    #[error(transparent)]
+    Inverse(#[from] InverseError),
+    /// The length offset is that of another tool.
+    #[error(
+        "the length offset H{register} is {offset} mm, but T{tool} in the spindle is {length} mm long: correct H, or the \
+         lengths of the job"
+    )]
+    Length {
+        /// The register.
+        register: u32,
+        /// Its value, in mm.
+        offset: f64,
+        /// The tool in the spindle.
+        tool: u32,
+        /// Its length, in mm.
+        length: f64,
+    },
+    /// The length offset has the number of another tool, and a length is unknown.
+    #[error(
+        "the length offset H{register} has another number than T{tool} in the spindle: correct H, or state the lengths of \
+         both in the job"
+    )]
+    Register {
+        /// The register.
+        register: u32,
+        /// The tool in the spindle.
+        tool: u32,
+    },
+    /// The head turns, and the length of the tool is unknown.
+    #[error("the head turns, and so the length of the tool matters: state it in the job")]
+    NoLength,
+    /// The table turns without tool centre point control, and the place of the part on it is unknown.
+    #[error(
+        "the table turns without tool centre point control, and so the place of the part on it matters: state the origin \
+         of G54 in the job's `work_offsets`"
+    )]
+    NoPlace,
+    /// The origin of a work offset is unknown.
+    #[error("the origin of {offset} is unknown: state it, and that of G54, in the job's `work_offsets`")]
+    NoOrigin {
+        /// The work offset.
+        offset: String,
+    },
+    /// A work offset is turned against that of the part while the program states tips.
+    #[error("{offset} is turned against G54 while tool centre point control is on, which is not read")]
+    TurnedOffset {
+        /// The work offset.
+        offset: String,
+    },
+}

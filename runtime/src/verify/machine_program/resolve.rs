@@ -1,0 +1,297 @@
+//! Steps in program coordinates, resolved to joint motions.
+
+use super::StepFault;
+use super::path::{self, Map};
+use crate::gcode::{
+    ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, Tcp, WorkOffset,
+};
+use crate::machine::{Chain, JointMotion, Joints, LinearPath, Machine, Setup, Side};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use std::collections::BTreeMap;
+
+/// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
+const LENGTH_TOLERANCE: f64 = 1e-3;
+
+/// The motions of a step.
+pub(super) enum Resolved {
+    /// The motions, in order, each with a bound on its distance from that of the control, in mm.
+    Motions(Vec<(JointMotion, f64)>),
+    /// Only the end is known: a motion that rests there.
+    Arrival(Box<JointMotion>),
+    /// The end is unknown.
+    Unknown,
+}
+
+/// Resolves the steps of a program in their order.
+pub(super) struct Resolver<'a> {
+    machine: &'a Machine,
+    lengths: &'a BTreeMap<u32, f64>,
+    /// Origin of the part in machine coordinates.
+    origin: [f64; 6],
+    /// Set if a rotary axis carries the tool.
+    has_head: bool,
+    /// Set if a rotary axis turns the part, whose place on the machine is unknown.
+    is_loose: bool,
+    /// The chain for the last tool length.
+    chain: Option<(f64, Chain)>,
+    /// The joint values after the last step, as far as they are known.
+    joints: Position,
+}
+
+/// The mapping of a step's coordinates.
+struct Frame {
+    chain: Chain,
+    /// From program coordinates to linear joints, or to the tip in the part's frame.
+    map: Map,
+    /// From program coordinates to rotary joints.
+    rotary: [f64; 3],
+    /// Set if the map leads to the tip.
+    is_tip: bool,
+}
+
+impl<'a> Resolver<'a> {
+    pub(super) fn new(machine: &'a Machine, setup: &'a ControlSetup) -> Resolver<'a> {
+        let origin = setup.work_offsets[0].unwrap_or_default();
+        let mut joints = [None; 6];
+        for (joint, (start, origin)) in joints.iter_mut().zip(setup.start.iter().zip(origin)) {
+            *joint = start.map(|start| start + origin);
+        }
+        let has_rotary = |side: Side| {
+            machine.axes().iter().any(|axis| axis.letter.is_rotary() && axis.side == side)
+        };
+        Resolver {
+            machine,
+            lengths: &setup.lengths,
+            origin,
+            has_head: has_rotary(Side::Tool),
+            is_loose: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
+            chain: None,
+            joints,
+        }
+    }
+
+    /// Resolves a step.
+    ///
+    /// # Errors
+    /// If the motion is not possible on the machine, or a length or an origin is missing.
+    pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
+        let frame = self.frame(&step.state)?;
+        let stands = self.stands(&frame);
+        let mut ends = [step.start, step.end];
+        for k in 0..6 {
+            // The machine stands where it stands, whatever the program knows of it.
+            ends[0][k] = stands[k].or(ends[0][k]);
+            if ends[1][k].is_none() && !step.commanded[k] {
+                ends[1][k] = ends[0][k];
+            }
+        }
+        if matches!(step.path, StepPath::Align) {
+            return self.align(&frame, &step.state);
+        }
+        let near = self.joints.map(Option::unwrap_or_default);
+        let [start, end] = ends.map(|position| known(&position));
+        if let (Some(axis), Some(end)) = (step.tool_vector, end.or(linear_only(&ends[1]))) {
+            let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
+            let found = frame.chain.inverse(&tip, &Vector3::from(axis), &near)?;
+            for k in 3..6 {
+                ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]);
+            }
+        }
+        let end = known(&ends[1]).or(end);
+        let Some(end) = end else {
+            self.forget(&frame, &ends[1]);
+            return Ok(Resolved::Unknown);
+        };
+        if self.is_loose && !frame.is_tip {
+            let turns = |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
+            if turns(end) || start.is_some_and(turns) {
+                return Err(StepFault::NoPlace);
+            }
+        }
+        let is_determined = !matches!(step.path, StepPath::Undetermined);
+        match start.filter(|_| is_determined) {
+            Some(start) => {
+                let motions = frame.motions(&step.path, [start, end])?;
+                if let Some((last, _)) = motions.last() {
+                    self.joints = last.joints(1.0).map(Some);
+                }
+                Ok(Resolved::Motions(motions))
+            }
+            None => {
+                let mut motions = frame.motions(&StepPath::Line, [end, end])?;
+                let (rest, _) = motions.swap_remove(0);
+                self.joints = rest.joints(1.0).map(Some);
+                Ok(Resolved::Arrival(Box::new(rest)))
+            }
+        }
+    }
+
+    /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
+    fn align(&mut self, frame: &Frame, state: &ControlState) -> Result<Resolved, StepFault> {
+        let axis = match &state.rotation {
+            Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
+            Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
+        };
+        let Some(joints) = known(&self.joints) else { return Ok(Resolved::Unknown) };
+        let tip = frame.chain.pose(&joints)?.tip();
+        // The linear joints of the solution are those of the tip, which does not rest.
+        let found = frame.chain.inverse(&tip, &axis, &joints)?.joints;
+        let rest = [joints[0], joints[1], joints[2]];
+        let rotary = [[joints[3], joints[4], joints[5]], [found[3], found[4], found[5]]];
+        let motion =
+            JointMotion::new(&frame.chain, rotary, &LinearPath::Line { start: rest, end: rest })?;
+        self.joints = motion.joints(1.0).map(Some);
+        Ok(Resolved::Motions(vec![(motion, 0.0)]))
+    }
+
+    /// Returns the mapping of a state's coordinates.
+    fn frame(&mut self, state: &ControlState) -> Result<Frame, StepFault> {
+        let is_tip = state.turns_with_workpiece();
+        let (length, offset) = self.lengths(state)?;
+        let chain = match &self.chain {
+            Some((known, chain)) if *known == length => *chain,
+            _ => {
+                let setup = Setup { work_offset: self.origin, tool_length: length };
+                let chain = self.machine.chain(&setup)?;
+                self.chain = Some((length, chain));
+                chain
+            }
+        };
+        let name = || state.work_offset.to_string();
+        let is_part = state.work_offset == WorkOffset::Standard(1);
+        let origin = match known(&state.origin) {
+            Some(origin) => origin,
+            None if is_part => self.origin,
+            None => return Err(StepFault::NoOrigin { offset: name() }),
+        };
+        let shift = known(&state.shift).unwrap_or_default();
+        let (turn, about) = match state.rotation.frame() {
+            Some(frame) => (frame.rotation, frame.origin),
+            None => (Matrix3::identity(), Vector3::zeros()),
+        };
+        let about = about + Vector3::new(shift[0], shift[1], shift[2]);
+        let turned = Rotation3::from_axis_angle(
+            &Vector3::z_axis(),
+            state.origin_rotation.to_radians(),
+        );
+        let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
+        if is_tip {
+            if state.origin_rotation != 0.0 || origin[3..] != self.origin[3..] {
+                return Err(StepFault::TurnedOffset { offset: name() });
+            }
+            linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
+        } else {
+            linear.z += offset;
+        }
+        let map = if state.origin_rotation == 0.0 {
+            Map { rotation: turn, origin: about + linear }
+        } else {
+            Map { rotation: turned.matrix() * turn, origin: turned * about + linear }
+        };
+        let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
+        Ok(Frame { chain, map, rotary, is_tip })
+    }
+
+    /// Returns the length of the tool in the spindle and the length offset, in mm. If neither is known, both count as 0:
+    /// the tip is then where the program says.
+    fn lengths(&self, state: &ControlState) -> Result<(f64, f64), StepFault> {
+        let length = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
+        let lengths = match (state.length, state.tool) {
+            (LengthOffset::Off, _) => (length.unwrap_or(0.0), 0.0),
+            (LengthOffset::On { register, length: Some(offset) }, tool) => match (tool, length) {
+                (Some(tool), Some(length)) if (length - offset).abs() > LENGTH_TOLERANCE => {
+                    return Err(StepFault::Length { register, offset, tool, length });
+                }
+                (Some(tool), None) if tool != register => {
+                    return Err(StepFault::Register { register, tool });
+                }
+                _ => (length.unwrap_or(offset), offset),
+            },
+            (LengthOffset::On { register, length: None }, Some(tool)) if tool != register => {
+                return Err(StepFault::Register { register, tool });
+            }
+            (LengthOffset::On { .. }, _) => (length.unwrap_or(0.0), length.unwrap_or(0.0)),
+        };
+        let is_known = length.is_some() || matches!(state.length, LengthOffset::On { length: Some(_), .. });
+        if self.has_head && !is_known && state.tcp == Tcp::Off && self.joints[3..].iter().any(|angle| *angle != Some(0.0)) {
+            return Err(StepFault::NoLength);
+        }
+        Ok(lengths)
+    }
+
+    /// Returns the position of the machine in program coordinates, as far as it is known.
+    fn stands(&self, frame: &Frame) -> Position {
+        let mut position = [None; 6];
+        for k in 3..6 {
+            position[k] = self.joints[k].map(|angle| angle - frame.rotary[k - 3]);
+        }
+        let back = frame.map.rotation.transpose();
+        if frame.is_tip {
+            if let Some(pose) = known(&self.joints).and_then(|joints| frame.chain.pose(&joints).ok()) {
+                let linear = back * (pose.tip().coords - frame.map.origin);
+                (0..3).for_each(|k| position[k] = Some(linear[k]));
+            }
+        } else if frame.map.rotation == Matrix3::identity() {
+            for k in 0..3 {
+                position[k] = self.joints[k].map(|value| value - frame.map.origin[k]);
+            }
+        } else if let Some([x, y, z, ..]) = linear_only(&self.joints) {
+            let linear = back * (Vector3::new(x, y, z) - frame.map.origin);
+            (0..3).for_each(|k| position[k] = Some(linear[k]));
+        }
+        position
+    }
+
+    /// Keeps the joints that are known at an end that is not known in all axes.
+    fn forget(&mut self, frame: &Frame, end: &Position) {
+        for k in 3..6 {
+            self.joints[k] = end[k].map(|angle| angle + frame.rotary[k - 3]);
+        }
+        let is_plain = !frame.is_tip && frame.map.rotation == Matrix3::identity();
+        for k in 0..3 {
+            let value = end[k].filter(|_| is_plain);
+            self.joints[k] = value.map(|value| value + frame.map.origin[k]);
+        }
+    }
+}
+
+impl Frame {
+    /// Returns the motions between two positions in program coordinates.
+    fn motions(
+        &self,
+        path: &StepPath,
+        [start, end]: [Joints; 2],
+    ) -> Result<Vec<(JointMotion, f64)>, StepFault> {
+        let linear = [start, end].map(|position| [position[0], position[1], position[2]]);
+        let angles = |at: f64| {
+            [3, 4, 5].map(|k| {
+                let value = if at == 1.0 { end[k] } else { start[k] + at * (end[k] - start[k]) };
+                value + self.rotary[k - 3]
+            })
+        };
+        let pieces = path::map(path, linear, &self.map);
+        let motion = |piece: path::Piece| {
+            let rotary = piece.fractions.map(angles);
+            let motion = match self.is_tip {
+                true => JointMotion::with_tcp(&self.chain, rotary, &piece.path)?,
+                false => JointMotion::new(&self.chain, rotary, &piece.path)?,
+            };
+            Ok((motion, piece.error))
+        };
+        pieces.into_iter().map(motion).collect()
+    }
+}
+
+/// Returns the coordinates if all are known.
+fn known(position: &Position) -> Option<[f64; 6]> {
+    let mut values = [0.0; 6];
+    for (value, known) in values.iter_mut().zip(position) {
+        *value = (*known)?;
+    }
+    Some(values)
+}
+
+/// Returns the position with rotary coordinates of 0, if X, Y and Z are known.
+fn linear_only(position: &Position) -> Option<[f64; 6]> {
+    known(&[position[0], position[1], position[2], Some(0.0), Some(0.0), Some(0.0)])
+}

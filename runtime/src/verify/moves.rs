@@ -1,0 +1,199 @@
+//! The motions of a program, each with its place in the file.
+
+use crate::machine::JointMotion;
+use crate::motion::{Motion, MotionError};
+use crate::pose::Pose;
+use crate::program::CutterLocation;
+use crate::interval::Interval;
+use crate::tool::{Symmetry, ToolInfo};
+use crate::unit::Unit;
+use nalgebra::Point3;
+
+/// A motion of a program.
+#[derive(Clone, Debug)]
+pub struct Move {
+    /// Line of the block or cutter location at which the motion ends.
+    pub line: usize,
+    /// Line at which it begins; `None` for the first position, which is checked by itself.
+    pub from: Option<usize>,
+    /// Set in rapid traverse.
+    pub rapid: bool,
+    /// Number of the tool in the spindle, if the program states it.
+    pub tool: Option<u32>,
+    /// The way of the tool, in the frame and unit of the part.
+    pub path: MovePath,
+}
+
+/// The way of the tool during a motion.
+#[derive(Clone, Debug)]
+pub enum MovePath {
+    /// The tip moves on a straight line, and the axis turns at constant speed.
+    Straight(Motion),
+    /// The control interpolates the axes of a machine.
+    Joints(Box<JointPath>),
+    /// The rotation is ambiguous. Only the end is known, as a motion of length 0.
+    Ambiguous(MotionError, Motion),
+}
+
+/// A joint motion in the unit of the part.
+#[derive(Clone, Debug)]
+pub struct JointPath {
+    motion: JointMotion,
+    /// Units of the part per millimetre.
+    scale: f64,
+    /// Bound on the distance of the motion from the one that the control makes, in millimetres.
+    error: f64,
+}
+
+impl JointPath {
+    /// Creates the path of a joint motion that differs from that of the control by at most `error`, in millimetres.
+    pub fn new(motion: JointMotion, unit: Unit, error: f64) -> JointPath {
+        JointPath { motion, scale: Unit::Millimetre.factor_to(unit), error }
+    }
+
+    /// Returns the pose at a fraction of the motion, from 0 to 1.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        let pose = self.motion.pose(fraction);
+        if self.scale == 1.0 {
+            return pose;
+        }
+        Pose::turned(*pose.rotation(), pose.tip() * self.scale, true)
+    }
+
+    /// Adds to a bound on the deviation, in millimetres, the error of the motion and the rounding of scaled coordinates.
+    fn scaled(&self, deviation: f64, tip: &Point3<f64>, reach: f64) -> f64 {
+        let rounding = f64::EPSILON * (tip.coords.norm() + reach);
+        (deviation + self.error) * self.scale + rounding
+    }
+}
+
+impl Move {
+    /// Returns the motion from one cutter location to the next, or the first one by itself. A tool of revolution
+    /// turns about the common normal of both axes, a solid about one fixed axis.
+    ///
+    /// # Panics
+    /// Panics if a solid is given a pose without a spin ([`Program::check_poses`](crate::Program::check_poses)).
+    pub fn between(
+        from: Option<&CutterLocation>,
+        to: &CutterLocation,
+        symmetry: Symmetry,
+    ) -> Move {
+        let before = from.map_or(&to.pose, |from| &from.pose);
+        let path = match between(before, &to.pose, symmetry) {
+            Ok(motion) => MovePath::Straight(motion),
+            Err(error) => {
+                let rest = between(&to.pose, &to.pose, symmetry);
+                MovePath::Ambiguous(error, rest.expect("a pose with a spin, if the tool needs one"))
+            }
+        };
+        Move { line: to.line, from: from.map(|from| from.line), rapid: to.rapid, tool: None, path }
+    }
+}
+
+impl MovePath {
+    /// Returns the pose at a fraction of the motion, from 0 to 1.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        match self {
+            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.pose(fraction),
+            MovePath::Joints(path) => path.pose(fraction),
+        }
+    }
+
+    /// Returns an upper bound on the speed of any point of a tool, per unit of the motion's time, with lengths in `unit`.
+    pub fn max_speed(&self, tool: &ToolInfo, unit: Unit) -> f64 {
+        let Interval { low, high } = tool.reach();
+        let reach = low.abs().max(high.abs()).hypot(tool.radius()) * tool.unit.factor_to(unit);
+        match self {
+            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
+            MovePath::Joints(path) => path.motion.max_speed(reach / path.scale) * path.scale,
+        }
+    }
+
+    /// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
+    pub(super) fn max_travel(&self, reach: f64, symmetry: Symmetry) -> f64 {
+        match self {
+            MovePath::Straight(motion) => travel(motion, reach),
+            MovePath::Joints(path) => span(path, [0.0, 1.0], reach, symmetry).max_travel,
+            MovePath::Ambiguous(..) => f64::INFINITY,
+        }
+    }
+}
+
+/// A span of a joint motion, approximated by a motion between its ends.
+pub(super) struct Span {
+    pub(super) motion: Result<Motion, MotionError>,
+    /// Bound on the distance between any point of the tool in the approximation and its true place at the same time.
+    pub(super) deviation: f64,
+    /// Upper bound on the travel of any point of the tool.
+    pub(super) max_travel: f64,
+}
+
+/// Approximates a span of a joint motion for the points within `reach` of the tip.
+///
+/// A tool of revolution may turn on a great circle or about one fixed axis, whichever is nearer to the truth: the first if
+/// the spin about the tool axis is most of the rotation, the second otherwise.
+pub(super) fn span(
+    path: &JointPath,
+    times: [f64; 2],
+    reach: f64,
+    symmetry: Symmetry,
+) -> Span {
+    let [from, to] = times.map(|time| path.pose(time));
+    let unscaled = reach / path.scale;
+    let deviation = path.motion.deviation_with_spin(times[0], times[1], unscaled);
+    let mut span = Span::new(path, Motion::with_spin(&from, &to), deviation, (&from.tip(), reach));
+    if symmetry == Symmetry::Revolved {
+        let deviation = path.motion.deviation(times[0], times[1], unscaled);
+        let revolved = Span::new(path, Motion::new(&from, &to), deviation, (&from.tip(), reach));
+        let max_travel = span.max_travel.min(revolved.max_travel);
+        if span.motion.is_err() || revolved.deviation < span.deviation {
+            span = revolved;
+        }
+        span.max_travel = max_travel;
+    }
+    span
+}
+
+impl Span {
+    fn new(
+        path: &JointPath,
+        motion: Result<Motion, MotionError>,
+        deviation: f64,
+        (tip, reach): (&Point3<f64>, f64),
+    ) -> Span {
+        let deviation = path.scaled(deviation, tip, reach);
+        let max_travel = match &motion {
+            Ok(motion) => travel(motion, reach) + 2.0 * deviation,
+            Err(_) => f64::INFINITY,
+        };
+        Span { motion, deviation, max_travel }
+    }
+}
+
+/// Returns the motion between two poses: about the common normal of both axes for a tool of revolution, about one
+/// fixed axis for a solid.
+pub(super) fn between(from: &Pose, to: &Pose, symmetry: Symmetry) -> Result<Motion, MotionError> {
+    match symmetry {
+        Symmetry::Revolved => Motion::new(from, to),
+        Symmetry::Solid { .. } => Motion::with_spin(from, to),
+    }
+}
+
+/// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
+fn travel(motion: &Motion, reach: f64) -> f64 {
+    motion.displacement().norm() + motion.angle() * reach
+}
+
+/// Returns an upper bound on the distance between the places of any point of the tool within `reach` of the tip at
+/// two poses. The spin of a tool of revolution does not count.
+pub(super) fn displacement(from: &Pose, to: &Pose, reach: f64, symmetry: Symmetry) -> f64 {
+    // A rotation by an angle a moves a point at distance d by at most 2d sin(a/2). That is the chord between the axes
+    // for d = 1, and the Frobenius norm of the difference of the matrices is √2 times as large.
+    let chord = match symmetry {
+        Symmetry::Revolved => (to.axis() - from.axis()).norm(),
+        Symmetry::Solid { .. } => {
+            (to.rotation() - from.rotation()).norm() * std::f64::consts::FRAC_1_SQRT_2
+        }
+    };
+    (to.tip() - from.tip()).norm() + chord * reach
+}
