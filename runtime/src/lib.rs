@@ -162,6 +162,7 @@ mod probe;
 pub mod program;
 mod scene;
 pub mod scenes;
+pub mod stock;
 mod storage;
 pub mod tool;
 mod unit;

@@ -56,6 +56,7 @@ const RUNTIME: &[&str] = &[
     "scene",
     "program",
     "certify",
+    "stock",
     "haptic",
     "postures",
     "verify",
