@@ -126,6 +126,9 @@ pub(crate) enum Failure {
     /// A machine's file is refused, or no machine has that name.
     #[error(transparent)]
     Machine(#[from] touchoff::machine::MachineError),
+    /// The stock cannot be made or cut.
+    #[error(transparent)]
+    Stock(#[from] touchoff::stock::StockError),
     /// G-code cannot be checked on its machine.
     #[error(transparent)]
     MachineProgram(#[from] touchoff::verify::MachineProgramError),

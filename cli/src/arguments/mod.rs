@@ -55,9 +55,9 @@ pub(crate) enum Command {
     /// Compute depth, force, torque and niceness of a tool in a part, at each pose of a program.
     #[command(after_help = examples::RUN)]
     Run(Box<Run>),
-    /// Check a program against the finished part: find where the tool is deeper than allowed.
+    /// Check a program against the finished part, fixtures and stock: find where the tool is deeper than allowed.
     ///
-    /// Every motion is proved, not only its end points. Prints one line per finding. The exit status is 1 if there
+    /// Every motion is proved, not only its end points. Prints one line per finding, the worst first. The exit status is 1 if there
     /// are findings, and 2 if the program could not be checked.
     #[command(after_help = examples::VERIFY)]
     Verify(Box<Verify>),

@@ -5,6 +5,7 @@ mod job;
 mod json;
 mod sarif;
 mod source;
+mod stock;
 mod text;
 mod tools;
 
@@ -16,6 +17,7 @@ use crate::progress::Progress;
 use job::{Fixture, Job};
 use json::Row;
 use source::CheckedProgram;
+use stock::StockFinding;
 use std::io::Write;
 use std::process::ExitCode;
 use text::{describe, summary};
@@ -94,6 +96,11 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         }
     }
     drop(progress);
+    let cut = match &job.stock {
+        Some(stock) => Some((stock::cut(&job, stock, &program, &tools)?, stock)),
+        None => None,
+    };
+    let in_stock = || cut.iter().flat_map(|(cut, _)| &cut.findings);
     let file = job.program.display().to_string();
     let mut out = Output::rows();
     let mut found: Vec<(&CheckedPair<'_>, &FindingGroup, Option<f64>)> = pairs
@@ -110,15 +117,28 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
             writeln!(out, "{file}:{}: {text}", group.worst.line)?;
         }
     }
+    for finding in in_stock() {
+        if json {
+            serde_json::to_writer(&mut out, finding)?;
+            writeln!(out)?;
+        } else {
+            writeln!(out, "{file}:{}: {}", finding.line, finding.describe(job.unit))?;
+        }
+    }
     out.flush()?;
     if let Some(sarif) = sarif {
-        write_file(&sarif, sarif::log(&pairs, &job.program)?)?;
+        let stock: Vec<&StockFinding> = in_stock().collect();
+        write_file(&sarif, sarif::log(&pairs, &stock, &job)?)?;
     }
     program.print(&pairs, job.unit);
     for pair in &pairs {
         message!("{}", summary(pair));
     }
-    Ok(ExitCode::from(status(&pairs, &job)))
+    if let Some((cut, entry)) = &cut {
+        cut.report(entry, &bodies[0].bvh)?;
+    }
+    let is_clear = pairs.iter().all(|pair| pair.groups.is_empty()) && in_stock().next().is_none();
+    Ok(ExitCode::from(status(&pairs, &job, if is_clear { 0 } else { FOUND })))
 }
 
 /// Reads the part and the fixtures.
@@ -185,9 +205,8 @@ fn check<'a>(
     Ok(CheckedPair { scope, report, groups, lifts, is_part: body.margin.is_none() })
 }
 
-/// Returns the exit status, and reports why there is no verdict.
-fn status(pairs: &[CheckedPair<'_>], job: &Job) -> u8 {
-    let mut status = if pairs.iter().all(|pair| pair.groups.is_empty()) { 0 } else { FOUND };
+/// Returns the given exit status, or that without a verdict, and reports why there is none.
+fn status(pairs: &[CheckedPair<'_>], job: &Job, mut status: u8) -> u8 {
     let mut refuse = |text: String| {
         message!("not verified: {text}");
         status = NOT_CHECKED;

@@ -2,6 +2,8 @@
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
+use super::job::Job;
+use super::stock::StockFinding;
 use super::text::describe;
 use super::{CheckedPair, rule};
 use serde::Serialize;
@@ -82,49 +84,58 @@ struct Region {
 }
 
 /// The rules, with what each finds.
-const RULES: [(&str, &str); 5] = [
+const RULES: [(&str, &str); 6] = [
     ("deep", "A surface of the tool is deeper in the part, a fixture or the machine than allowed."),
     ("near", "A surface of the tool comes nearer than its margin."),
     ("inside", "The tool, or a piece of it, is inside the material."),
+    ("stock", "A surface that does not cut, or a rapid motion, touches material that is still there."),
     ("undecided", "It is not decided whether a surface exceeds its limit."),
     ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
 ];
 
 /// Returns the findings of all checks as a SARIF log.
-pub(super) fn log(pairs: &[CheckedPair<'_>], program: &Path) -> Result<Vec<u8>, serde_json::Error> {
-    let uri = uri(program);
-    let results = pairs.iter().flat_map(|pair| {
-        pair.groups.iter().zip(&pair.lifts).map(|(group, lift)| {
-            let lines = [group.first.line, group.last.line];
-            let violation = !matches!(
-                group.worst.kind,
-                FindingKind::Undecided { .. } | FindingKind::Ambiguous(_)
-            );
-            Finding {
-                rule_id: rule(&group.worst.kind),
-                level: if violation { "error" } else { "warning" },
-                message: Text { text: describe(group, *lift, &pair.scope) },
-                locations: [Location {
-                    physical_location: PhysicalLocation {
-                        artifact_location: Artifact { uri: uri.clone() },
-                        // Subprograms may stand before the blocks that call them.
-                        region: Region {
-                            start_line: lines[0].min(lines[1]),
-                            end_line: lines[0].max(lines[1]),
-                        },
-                    },
-                }],
-            }
-        })
-    });
-    let rules = RULES
-        .map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
+pub(super) fn log(
+    pairs: &[CheckedPair<'_>],
+    stock: &[&StockFinding],
+    job: &Job,
+) -> Result<Vec<u8>, serde_json::Error> {
+    let uri = uri(&job.program);
+    let finding = |rule_id, violation: bool, text: String, lines: [usize; 2]| Finding {
+        rule_id,
+        level: if violation { "error" } else { "warning" },
+        message: Text { text },
+        locations: [Location {
+            physical_location: PhysicalLocation {
+                artifact_location: Artifact { uri: uri.clone() },
+                // Subprograms may stand before the blocks that call them.
+                region: Region {
+                    start_line: lines[0].min(lines[1]),
+                    end_line: lines[0].max(lines[1]),
+                },
+            },
+        }],
+    };
+    let mut results = Vec::new();
+    for pair in pairs {
+        for (group, lift) in pair.groups.iter().zip(&pair.lifts) {
+            let kind = &group.worst.kind;
+            let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
+            let text = describe(group, *lift, &pair.scope);
+            results.push(finding(rule(kind), !open, text, [group.first.line, group.last.line]));
+        }
+    }
+    for contact in stock {
+        let lines = [contact.first_line, contact.last_line];
+        results.push(finding("stock", true, contact.describe(job.unit), lines));
+    }
+    let rules =
+        RULES.map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
     let driver =
         Driver { name: "touchoff", version: env!("CARGO_PKG_VERSION"), rules: rules.into() };
     let log = Log {
         schema: "https://json.schemastore.org/sarif-2.1.0.json",
         version: "2.1.0",
-        runs: [Run { tool: Tool { driver }, results: results.collect() }],
+        runs: [Run { tool: Tool { driver }, results }],
     };
     serde_json::to_vec_pretty(&log)
 }

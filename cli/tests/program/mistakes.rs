@@ -43,7 +43,7 @@ const FILES: [(&str, &str); 21] = [
     ("short.csv", "0,0,3,0,0,1\n0,0,2,0,1\n"),
     ("names.csv", "tx,ty,tz,ax,ay,az\n0,0,3,0,0,1\n"),
     ("nan.csv", "0,0,3,0,0,1\n0,nan,2,0,0,1\n"),
-    ("semicolon.csv", "0;0;3;0;0;1\n0;0;2;0;0;1\n"),
+    ("decimal_comma.csv", "0,5;0;3;0;0;1\n0;0;2;0;0;1\n"),
     ("zero.csv", "0,0,3,0,0,1\n0,0,2,0,0,0\n"),
     ("one.csv", "0,0,3,0,0,1\n"),
     ("part.step", "ISO-10303-21;\nHEADER;\n"),
@@ -126,7 +126,7 @@ const MISTAKES: [&str; 81] = [
     "run PART --tool D2Ball --program empty.apt",
     "run PART --tool D2Ball --program gcode.nc",
     "run PART --tool D2Ball --program noaxis.csv",
-    "run PART --tool D2Ball --program semicolon.csv",
+    "run PART --tool D2Ball --program decimal_comma.csv",
     "verify PART --tool D2Ball --program far.apt",
     "run PART --tool Block --program program.apt",
     // Outputs and maps.

@@ -2,8 +2,8 @@
 //!
 //! `x,y,z` is the tip and `i,j,k` the unit vector from the tip to the spindle. The quaternion turns the tool's
 //! frame into the part's. The first row decides the number of columns, which every other row must have too.
-//! Columns are separated by commas; `#` opens a comment, blank lines are skipped, and a first row may have the
-//! names above.
+//! Columns are separated by commas, semicolons or tabs, as the first row has them; `#` opens a comment, blank lines
+//! are skipped, and a first row may have the names above.
 //!
 //! A table that [`Program::write_csv`](super::Program::write_csv) wrote announces in its first line, a comment,
 //! that it ends with an end mark, another comment. Without that mark the table was truncated and is refused.
@@ -27,12 +27,14 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
     check_end(text)?;
     let mut locations = Vec::new();
     let mut columns = None;
+    let mut separator = None;
     for (line, raw) in lines(text) {
         let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
         if row.is_empty() {
             continue;
         }
-        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        let separator = *separator.get_or_insert_with(|| separator_of(row));
+        let cells: Vec<&str> = row.split(separator).map(str::trim).collect();
         let is_header =
             columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
         if !is_header {
@@ -42,6 +44,15 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
         columns = Some(cells.len());
     }
     Ok(locations)
+}
+
+/// Returns the separator of a first row. A comma beside semicolons is a decimal comma, which is refused later.
+fn separator_of(row: &str) -> char {
+    match row {
+        row if row.contains(';') => ';',
+        row if row.contains('\t') && !row.contains(',') => '\t',
+        _ => ',',
+    }
 }
 
 /// Refuses a table that announces an end mark and does not end with it.
@@ -95,7 +106,7 @@ fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, Progr
         return Err(columns_error());
     }
     let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, ProgramFault>>();
-    match values.map_err(|fault| with_separators(fault, row))?[..] {
+    match values.map_err(with_remedy)?[..] {
         [x, y, z, i, j, k] => axis_pose([x, y, z], [i, j, k]),
         [x, y, z, qx, qy, qz, qw] => quaternion_pose([x, y, z], [qx, qy, qz, qw]),
         _ => Err(columns_error()),
@@ -110,15 +121,12 @@ fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, ProgramF
     Ok(Pose::from_quaternion(Point3::from(tip), quaternion)?)
 }
 
-const SEMICOLONS: &str =
-    "separate the columns by commas, not semicolons, and write decimals with a point";
+const DECIMAL_COMMA: &str = "write decimals with a point";
 
 /// Returns the remedy for a wrong number of columns, guessed from the formats of spreadsheets.
 fn columns_remedy(row: &str, found: usize) -> &'static str {
-    if row.contains(';') {
-        SEMICOLONS
-    } else if found == 1 && row.contains(char::is_whitespace) {
-        "separate the columns by commas, not blanks"
+    if found == 1 && row.contains(char::is_whitespace) {
+        "separate the columns by commas, semicolons or tabs, not blanks"
     } else if found > QUATERNION.len() && !row.contains('.') {
         "these look like decimal commas (`0,5`): write points (`0.5`)"
     } else {
@@ -126,12 +134,11 @@ fn columns_remedy(row: &str, found: usize) -> &'static str {
     }
 }
 
-/// Adapts the remedy of a fault: semicolons between decimal commas may give the right number of cells, but no
-/// numbers.
-fn with_separators(fault: ProgramFault, row: &str) -> ProgramFault {
+/// Adapts the remedy of a fault to decimal commas.
+fn with_remedy(fault: ProgramFault) -> ProgramFault {
     match fault {
         ProgramFault::NotNumber { cell, .. } => {
-            let remedy = if row.contains(';') { SEMICOLONS } else { PLAIN_NUMBER };
+            let remedy = if cell.contains(',') { DECIMAL_COMMA } else { PLAIN_NUMBER };
             ProgramFault::NotNumber { cell, remedy }
         }
         other => other,
@@ -228,6 +235,14 @@ mod tests {
     }
 
     #[test]
+    fn reads_semicolons_and_tabs() {
+        for separator in [";", "\t", " ; "] {
+            let text = "x,y,z,i,j,k\n1,2,3.5,0,0,1\n4,5,6,0,0,1\n".replace(',', separator);
+            assert_eq!(locations(&text)[0].pose.tip(), Point3::new(1.0, 2.0, 3.5), "{text}");
+        }
+    }
+
+    #[test]
     fn counts_lone_carriage_returns_as_lines() {
         let locations = locations("# old\r1,2,3,0,0,1\r4,5,6,0,0,1\r");
         assert_eq!(locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3]);
@@ -245,8 +260,6 @@ mod tests {
     #[test]
     fn every_refusal_names_its_line_and_remedy() {
         let either = "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)";
-        let semicolons =
-            "separate the columns by commas, not semicolons, and write decimals with a point";
         let plain = "is not a number: write a plain number with a decimal point";
         let infinite = "is not a finite number: correct it or remove the position";
         let unit = "give a unit vector (within 0.001 of 1)";
@@ -267,13 +280,19 @@ mod tests {
                      (`0,5`): write points (`0.5`)"
                 ),
             ),
-            ("1.5;2;3;0;0;1\n", format!("1: found 1 column, expected {either}: {semicolons}")),
-            ("0,5;1,5;2,5;0,0;1,0;0,0\n", format!("1: `5;1` is not a number: {semicolons}")),
+            (
+                "0,5;1,5;2,5;0,0;1,0;0,0\n",
+                "1: `0,5` is not a number: write decimals with a point".to_owned(),
+            ),
+            (
+                "1;2;3;0;0;1\n1,2,3,0,0,1\n",
+                "2: found 1 column, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
+            ),
             (
                 "1 2 3 0 0 1\n",
                 format!(
-                    "1: found 1 column, expected {either}: separate the columns by commas, not \
-                     blanks"
+                    "1: found 1 column, expected {either}: separate the columns by commas, semicolons \
+                     or tabs, not blanks"
                 ),
             ),
             (
