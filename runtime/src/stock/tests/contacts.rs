@@ -158,6 +158,32 @@ fn each_surface_has_its_contact() {
     assert_eq!((shank.points, stock.initial_len() - stock.len()), (80 * 12 * 10, 80 * 12 * 30));
 }
 
+/// A tool in inches cuts and touches the same points as the same tool in millimetres, at the same depths.
+#[test]
+fn units_are_converted() {
+    crate::tool! {
+        tool InchMill "the mill in inches" {
+            units inch;
+            let mm = 1/25.4;
+            profile {
+                start (0, 0);
+                line to (3*mm, 0), (3*mm, 10*mm) as flute cutting;
+                line to (3*mm, 30*mm), (0, 30*mm) as shank;
+            }
+            niceness cutting: 1;
+        }
+    }
+    let poses = [[-10.0, 9.9, -15.0], [50.0, 10.1, -14.0]].map(upright);
+    let run = |tool: &dyn Tool| {
+        let mut stock = wall();
+        (advance(&mut stock, tool, poses, MotionMode::Feed, 0.01), stock.remaining())
+    };
+    let ((mm, remaining), (inch, remaining_of_inch)) = (run(&Mill), run(&InchMill));
+    assert_eq!(remaining, remaining_of_inch);
+    let ([mm], [inch]) = (&mm[..], &inch[..]) else { panic!("{mm:?} {inch:?}") };
+    assert!((mm.depth - inch.depth).abs() < 1e-9 && mm.points == inch.points, "{mm:?} {inch:?}");
+}
+
 #[test]
 fn what_is_no_motion_is_refused() {
     let mut stock = wall();
