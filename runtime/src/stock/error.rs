@@ -2,8 +2,9 @@
 
 use super::MAX_POINTS;
 use crate::mesh::{LARGEST_COORDINATE, MeshError};
+use crate::unit::Unit;
 
-/// A reason for which a stock cannot be built or advanced.
+/// A reason for which a stock cannot be built, advanced or compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StockError {
@@ -124,5 +125,13 @@ pub enum StockError {
     NoSpin {
         /// The solid's name.
         solid: String,
+    },
+    /// The part is in another unit than the stock.
+    #[error("the part is in {part}, but the stock is in {stock}: read both in the same unit")]
+    Unit {
+        /// The part's unit.
+        part: Unit,
+        /// The stock's unit.
+        stock: Unit,
     },
 }

@@ -5,7 +5,7 @@
 //!                                                          │ advance(tool, motion), motion by motion
 //!        contacts of surfaces that must not touch ◀────────┤ removes the points in cutting surfaces
 //!                                                          ▼
-//!                                      remaining mesh ◀── points that are left
+//!     remaining mesh, comparison with the finished part ◀── points that are left
 //! ```
 //!
 //! A stock is the set of the nodes of a regular lattice that are inside it. A feed motion removes those that come into a
@@ -49,12 +49,15 @@ mod advance;
 mod bits;
 mod cells;
 mod columns;
+mod comparison;
 mod contact;
 mod error;
 mod lattice;
+mod nearest;
 mod query;
 
 pub use advance::MotionMode;
+pub use comparison::{DeviationPoint, PartComparison};
 pub use contact::StockContact;
 pub use error::StockError;
 
@@ -260,6 +263,15 @@ fn check_count(points: usize, spacing: f64) -> Result<(), StockError> {
             Err(StockError::TooManyPoints { spacing, points, coarser })
         }
     }
+}
+
+/// Returns whether a node has a neighbour that is not in a set.
+fn is_at_boundary(lattice: &Lattice, nodes: &BitSet, node: [usize; 3]) -> bool {
+    (0..3).any(|axis| {
+        [false, true].into_iter().any(|up| {
+            lattice.neighbour(node, axis, up).is_none_or(|neighbour| !nodes.contains(neighbour))
+        })
+    })
 }
 
 #[cfg(test)]

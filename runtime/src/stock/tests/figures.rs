@@ -1,6 +1,7 @@
 //! Times and sizes, printed with `--nocapture`. Their limits are far above what is measured, for slow machines.
 
 use super::*;
+use crate::certify::TriangleBvh;
 use crate::program::Program;
 use std::time::Instant;
 
@@ -106,6 +107,15 @@ fn figures_of_a_program() {
         1e3 * time,
         1e6 * time / motions as f64,
         points - stock.len()
+    );
+    let bvh = TriangleBvh::new(&part);
+    let start = Instant::now();
+    let comparison = stock.compare(&bvh).expect("compared");
+    println!(
+        "comparison: {} points over the part, {} gouges, {:.0} ms",
+        comparison.excess.len(),
+        comparison.gouges.len(),
+        1e3 * start.elapsed().as_secs_f64()
     );
     let start = Instant::now();
     let mesh = stock.remaining_mesh().expect("a mesh");
