@@ -110,7 +110,9 @@ pub(crate) enum Failure {
         second: u32,
     },
     /// A work offset of a job has another name, or another number of coordinates.
-    #[error("work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3")]
+    #[error(
+        "work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3"
+    )]
     WorkOffset {
         /// The given name.
         name: String,

@@ -43,8 +43,9 @@ pub(crate) fn check(
 
 /// Prints the boxes of part and program, the travelled length, and the nearest approach of the tool.
 pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
-    let Approach { part, program: tips, travel, distance, line, diameter, proved_clearance, .. } =
-        report.approach;
+    let Approach {
+        part, program: tips, travel, distance, line, diameter, proved_clearance, ..
+    } = report.approach;
     message!("part: {} in {unit}", extent(part, unit));
     message!(
         "program: {} positions, tips in {} in {unit}, {} in feed and {} in rapid traverse",

@@ -136,7 +136,8 @@ impl Job {
             job.anyway |= arguments.anyway;
             return Ok(job);
         }
-        let missing = Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
+        let missing =
+            Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
         let (Some(part), Some(unit), Some(tool), Some(program)) =
             (arguments.part, arguments.unit, arguments.tool, arguments.program)
         else {
@@ -183,7 +184,7 @@ impl Job {
         let text = std::fs::read_to_string(file)
             .map_err(|error| fault(format!("cannot be read ({error}): check the path")))?;
         let job: JobFile = toml::from_str(&text).map_err(|error| {
-            let line = error.span().map(|span| text[..span.start].lines().count().max(1));
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
             let line = line.map_or(String::new(), |line| format!("line {line}: "));
             fault(format!("{line}{}", error.message()))
         })?;

@@ -3,6 +3,7 @@
 
 mod job;
 mod json;
+mod machine;
 mod sarif;
 mod source;
 mod stock;
@@ -16,16 +17,17 @@ use crate::part::{self, NO_INSIDE};
 use crate::progress::Progress;
 use job::{Fixture, Job};
 use json::Row;
+use machine::MachineFinding;
 use source::CheckedProgram;
-use stock::StockFinding;
 use std::io::Write;
 use std::process::ExitCode;
+use stock::StockFinding;
 use text::{describe, summary};
 use tools::ProgramTool;
+use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
 use touchoff::verify::{FindingGroup, FindingKind, Verifier, VerifyReport};
-use touchoff::Unit;
 
 /// The exit status if there are findings.
 const FOUND: u8 = 1;
@@ -105,7 +107,9 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let mut out = Output::rows();
     let mut found: Vec<(&CheckedPair<'_>, &FindingGroup, Option<f64>)> = pairs
         .iter()
-        .flat_map(|pair| pair.groups.iter().zip(&pair.lifts).map(move |(group, lift)| (pair, group, *lift)))
+        .flat_map(|pair| {
+            pair.groups.iter().zip(&pair.lifts).map(move |(group, lift)| (pair, group, *lift))
+        })
         .collect();
     found.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
     for (pair, group, lift) in found {
@@ -115,6 +119,15 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         } else {
             let text = describe(group, lift, &pair.scope);
             writeln!(out, "{file}:{}: {text}", group.worst.line)?;
+        }
+    }
+    let machine = program.machine_findings(&file);
+    for finding in &machine {
+        if json {
+            serde_json::to_writer(&mut out, finding)?;
+            writeln!(out)?;
+        } else {
+            writeln!(out, "{file}:{}: {}", finding.line, finding.describe())?;
         }
     }
     for finding in in_stock() {
@@ -128,7 +141,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     out.flush()?;
     if let Some(sarif) = sarif {
         let stock: Vec<&StockFinding> = in_stock().collect();
-        write_file(&sarif, sarif::log(&pairs, &stock, &job)?)?;
+        write_file(&sarif, sarif::log(&pairs, &machine, &stock, &job)?)?;
     }
     program.print(&pairs, job.unit);
     for pair in &pairs {
@@ -137,8 +150,18 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     if let Some((cut, entry)) = &cut {
         cut.report(entry, &bodies[0].bvh)?;
     }
-    let is_clear = pairs.iter().all(|pair| pair.groups.is_empty()) && in_stock().next().is_none();
-    Ok(ExitCode::from(status(&pairs, &job, if is_clear { 0 } else { FOUND })))
+    let is_clear = pairs.iter().all(|pair| pair.groups.is_empty())
+        && in_stock().next().is_none()
+        && !machine.iter().any(MachineFinding::is_violation);
+    let mut status = status(&pairs, &job, if is_clear { 0 } else { FOUND });
+    if let (false, Some(line)) = (job.anyway, program.unknown_feed()) {
+        message!(
+            "not verified: the feed motion at line {line} starts or ends where only the machine knows: state tool lengths and \
+             work offsets in a job, or accept the rest with `--anyway`"
+        );
+        status = NOT_CHECKED;
+    }
+    Ok(ExitCode::from(status))
 }
 
 /// Reads the part and the fixtures.

@@ -3,6 +3,7 @@
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
 use super::job::Job;
+use super::machine::MachineFinding;
 use super::stock::StockFinding;
 use super::text::describe;
 use super::{CheckedPair, rule};
@@ -84,11 +85,17 @@ struct Region {
 }
 
 /// The rules, with what each finds.
-const RULES: [(&str, &str); 6] = [
+const RULES: [(&str, &str); 9] = [
     ("deep", "A surface of the tool is deeper in the part, a fixture or the machine than allowed."),
     ("near", "A surface of the tool comes nearer than its margin."),
     ("inside", "The tool, or a piece of it, is inside the material."),
-    ("stock", "A surface that does not cut, or a rapid motion, touches material that is still there."),
+    ("length", "A feed motion has the length offset of another tool."),
+    ("limit", "An axis of the machine goes beyond its limit."),
+    ("singular", "A rotary axis turns far while the tool axis hardly moves."),
+    (
+        "stock",
+        "A surface that does not cut, or a rapid motion, touches material that is still there.",
+    ),
     ("undecided", "It is not decided whether a surface exceeds its limit."),
     ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
 ];
@@ -96,6 +103,7 @@ const RULES: [(&str, &str); 6] = [
 /// Returns the findings of all checks as a SARIF log.
 pub(super) fn log(
     pairs: &[CheckedPair<'_>],
+    machine: &[MachineFinding],
     stock: &[&StockFinding],
     job: &Job,
 ) -> Result<Vec<u8>, serde_json::Error> {
@@ -123,6 +131,10 @@ pub(super) fn log(
             let text = describe(group, *lift, &pair.scope);
             results.push(finding(rule(kind), !open, text, [group.first.line, group.last.line]));
         }
+    }
+    for found in machine {
+        let lines = [found.line; 2];
+        results.push(finding(found.kind(), found.is_violation(), found.describe(), lines));
     }
     for contact in stock {
         let lines = [contact.first_line, contact.last_line];

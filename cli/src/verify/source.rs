@@ -1,15 +1,16 @@
 //! The program that is checked: positions, or G-code on a machine.
 
-use super::job::Job;
-use super::tools::{self, ProgramTool};
 use super::CheckedPair;
+use super::job::Job;
+use super::machine::MachineFinding;
+use super::tools::{self, ProgramTool};
 use crate::failure::Failure;
 use crate::program;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
 use touchoff::machine::{Machine, Side};
 use touchoff::tool::Symmetry;
-use touchoff::verify::{MachineProgram, Move, ToolSelection};
+use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
 use touchoff::{Program, Tool, Unit};
 
 /// A program that was read.
@@ -49,6 +50,22 @@ impl CheckedProgram {
         };
         let program = MachineProgram::new(&name, text, machine, setup)?;
         Ok(CheckedProgram::Machine(Box::new(program)))
+    }
+
+    /// Returns the line of the first feed motion that cannot be checked.
+    pub(super) fn unknown_feed(&self) -> Option<usize> {
+        match self {
+            CheckedProgram::Locations(_) => None,
+            CheckedProgram::Machine(program) => program.summary().unknown?.feed_line,
+        }
+    }
+
+    /// Returns the findings about the machine's axes.
+    pub(super) fn machine_findings(&self, file: &str) -> Vec<MachineFinding> {
+        match self {
+            CheckedProgram::Locations(_) => Vec::new(),
+            CheckedProgram::Machine(program) => MachineFinding::all(program, file),
+        }
     }
 
     /// Returns the numbers of the tools that the program uses.
@@ -133,9 +150,9 @@ impl CheckedProgram {
         }
         let table = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
         let position = table.map(|axis| axis.letter.to_string()).position(|letter| letter == axis);
-        position.map(|position| position + 1).ok_or(Failure::Usage(
-            "`moves_with` names an axis of the machine's table, or `base`",
-        ))
+        position
+            .map(|position| position + 1)
+            .ok_or(Failure::Usage("`moves_with` names an axis of the machine's table, or `base`"))
     }
 
     /// Prints what is known about the program before any finding.
@@ -157,30 +174,14 @@ fn program_moves(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = 
     before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
 }
 
-/// Prints the machine, motions that were not checked, limits, singular passes, and notes.
+/// Prints the machine, the number of motions that were not checked, and notes.
 fn print_machine(program: &MachineProgram) {
     let summary = program.summary();
     message!("machine: {}", program.machine().name());
-    if let Some((count, line)) = summary.unknown {
+    if let Some(UnknownMotions { count, line, .. }) = summary.unknown {
         message!(
             "{count} motion{} not checked, first at line {line}: only the machine knows where they start or end",
             if count == 1 { "" } else { "s" }
-        );
-    }
-    for (line, violation) in &summary.limits {
-        let unit = if violation.letter.is_rotary() { "°" } else { " mm" };
-        message!(
-            "line {line}: {} goes to {:.4}{unit}, beyond its limit of {}{unit}",
-            violation.letter,
-            violation.value,
-            violation.limit
-        );
-    }
-    for (line, pass) in &summary.singular {
-        message!(
-            "line {line}: {} turns by {:.0}° while the tool axis hardly moves (singular pass)",
-            pass.letter,
-            pass.turn
         );
     }
     for note in &summary.notes {

@@ -80,8 +80,7 @@ pub(super) fn cut(
                 finding.motions += usize::from(finding.last_line != step.line);
                 finding.last_line = step.line;
                 if depth > finding.depth {
-                    (finding.line, finding.depth, finding.point) =
-                        (step.line, depth, point.into());
+                    (finding.line, finding.depth, finding.point) = (step.line, depth, point.into());
                 }
                 continue;
             }

@@ -80,9 +80,8 @@ pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramToo
 pub(super) fn lengths(tools: &Tools) -> BTreeMap<u32, f64> {
     match tools {
         Tools::One(..) => BTreeMap::new(),
-        Tools::Numbered { entries, .. } => entries
-            .iter()
-            .filter_map(|(number, entry)| Some((*number, entry.length?)))
-            .collect(),
+        Tools::Numbered { entries, .. } => {
+            entries.iter().filter_map(|(number, entry)| Some((*number, entry.length?))).collect()
+        }
     }
 }

@@ -161,7 +161,7 @@ fn a_wrong_job_is_refused() {
     let (bench, text) = bracket();
     for (from, to, word) in [
         ("unit = \"mm\"", "unit = \"yard\"", "yard"),
-        ("tolerance = 0.02", "tolerances = 0.02", "line 6: unknown field `tolerances`"),
+        ("tolerance = 0.02", "tolerances = 0.02", "line 5: unknown field `tolerances`"),
         ("tolerance = 0.02", "tolerance = -1", "lengths of 0 or more"),
         ("G54 = [", "G60 = [", "work offset `G60`"),
         ("[tool.3]", "[tool.4]", "no tool is given for T3"),
@@ -204,7 +204,8 @@ fn g_code_runs_without_a_job() {
     bench.part("block.stl", &cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]));
     let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let part = place("block.stl");
-    let program = bench.write("slot.nc", "G21 G90 G0 X-9 Y0 Z3\nG1 Z-0.5 F100\nX9\nG1 Y1\nX-9\nG0 Z3\nM30\n");
+    let program =
+        bench.write("slot.nc", "G21 G90 G0 X-4 Y0 Z3\nG1 Z-0.5 F100\nX4\nG1 Y1\nX-4\nG0 Z3\nM30\n");
     let all = ["--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
     let verify = |more: &[&str]| touchoff(&[&["verify"][..], &all, more].concat());
     let output = verify(&["--json"]);

@@ -32,10 +32,16 @@ fn findings_are_lines_as_compilers_print_them() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let lines: Vec<String> = stdout(&output).lines().map(str::to_owned).collect();
     let [line] = &lines[..] else { panic!("{lines:?}") };
-    assert!(line.starts_with(&format!("{file}:5: ball is 0.5000 mm deep in the part at (")), "{line}");
+    assert!(
+        line.starts_with(&format!("{file}:5: ball is 0.5000 mm deep in the part at (")),
+        "{line}"
+    );
     assert!(line.contains(" of the motion from line 4"), "{line}");
     let said = stderr(&output);
-    assert!(said.contains("1 finding in 3 motions: ball on 1 motion (deepest 0.5000 mm, line 5)"), "{said}");
+    assert!(
+        said.contains("1 finding in 3 motions: ball on 1 motion (deepest 0.5000 mm, line 5)"),
+        "{said}"
+    );
     let clean = verify(&bench, "block.apt", "D2Ball", &["--tolerance", "0.5"]);
     assert_eq!((clean.status.code(), clean.stdout.len()), (Some(0), 0), "{}", stderr(&clean));
     assert!(stderr(&clean).contains("no findings in 3 motions"), "{}", stderr(&clean));

@@ -132,17 +132,16 @@ impl<'a> ApproachSearch<'a> {
     fn add_move(&mut self, step: &Move) {
         let max_travel = step.path.max_travel(self.reach, self.symmetry);
         let end = step.path.pose(1.0);
-        let bound = self.last.map_or(0.0, |(low, _)| {
-            low - max_travel - 4.0 * f64::EPSILON * (low + max_travel)
-        });
+        let bound = self
+            .last
+            .map_or(0.0, |(low, _)| low - max_travel - 4.0 * f64::EPSILON * (low + max_travel));
         let bound = if bound > self.distance { bound } else { self.query(&end, step.line) };
         if let Some(clearance) = self.clearance {
             let over_motion = match (&step.path, self.last) {
                 // An ambiguous motion is a finding; only its end is checked.
                 (MovePath::Ambiguous(..), _) | (_, None) => Some(bound),
                 (path, Some((first, _))) => {
-                    let span =
-                        Span { times: [0.0, 1.0], lower_bounds: [first, bound], max_travel };
+                    let span = Span { times: [0.0, 1.0], lower_bounds: [first, bound], max_travel };
                     self.span(path, span, (step.line, MAX_HALVINGS))
                 }
             };
@@ -214,11 +213,8 @@ impl<'a> ApproachSearch<'a> {
             lower_bounds: [first, lower_bound],
             max_travel: travels[0],
         };
-        let after = Span {
-            times: [middle, to],
-            lower_bounds: [lower_bound, last],
-            max_travel: travels[1],
-        };
+        let after =
+            Span { times: [middle, to], lower_bounds: [lower_bound, last], max_travel: travels[1] };
         let before = self.span(path, before, (line, halvings))?;
         Some(before.min(self.span(path, after, (line, halvings))?))
     }

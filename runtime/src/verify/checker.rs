@@ -72,16 +72,21 @@ impl<'a> Checker<'a> {
         match &step.path {
             MovePath::Straight(motion) => {
                 let margin = self.modes[usize::from(step.rapid)].margin;
-                let max_travel = step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
+                let max_travel =
+                    step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
                 let poses = [0.0, 0.5].map(|at| motion.pose(at));
                 if !self.free_space.contains(poses, max_travel, margin) {
                     found = self.motion(step.rapid, motion, 0.0);
                 }
             }
-            MovePath::Joints(joints) => self.joints(step.rapid, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found),
+            MovePath::Joints(joints) => {
+                self.joints(step.rapid, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found)
+            }
             MovePath::Ambiguous(error, rest) => {
                 found.push((1.0, FindingKind::Ambiguous(*error)));
-                found.extend(self.motion(step.rapid, rest, 0.0).into_iter().map(|(_, kind)| (1.0, kind)));
+                found.extend(
+                    self.motion(step.rapid, rest, 0.0).into_iter().map(|(_, kind)| (1.0, kind)),
+                );
             }
         }
         let finding = |(time, kind)| Finding {
@@ -112,7 +117,8 @@ impl<'a> Checker<'a> {
         found: &mut Vec<(f64, FindingKind)>,
     ) {
         let FreeSpace { reach, symmetry, .. } = self.free_space;
-        let Span { motion, deviation, max_travel } = moves::span(joints, [from, to], reach, symmetry);
+        let Span { motion, deviation, max_travel } =
+            moves::span(joints, [from, to], reach, symmetry);
         let middle = f64::midpoint(from, to);
         let margin = self.modes[usize::from(rapid)].margin;
         let poses = [from, middle].map(|at| joints.pose(at));
@@ -138,10 +144,15 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both.
+/// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both. A depth and a short
+/// distance count as the same kind.
 fn merge(found: &mut Vec<(f64, FindingKind)>, mut new: (f64, FindingKind)) {
+    let is_measured =
+        |kind: &FindingKind| matches!(kind, FindingKind::Deep { .. } | FindingKind::Near { .. });
     let same = |(_, kind): &&mut (f64, FindingKind)| {
-        mem::discriminant(kind) == mem::discriminant(&new.1) && kind.surface() == new.1.surface()
+        let is_same_kind = mem::discriminant(kind) == mem::discriminant(&new.1)
+            || is_measured(kind) && is_measured(&new.1);
+        is_same_kind && kind.surface() == new.1.surface()
     };
     let Some(known) = found.iter_mut().find(same) else {
         found.push(new);
@@ -177,8 +188,9 @@ impl Mode<'_> {
                 MotionDepth::Deeper { at, depth: Interval { low, high }, max_depth, witness }
                     if low < 0.0 =>
                 {
-                    let [from, to, min_distance] = [-high - slack, -low + slack, -max_depth - slack]
-                        .map(|distance| distance.max(0.0));
+                    let [from, to, min_distance] =
+                        [-high - slack, -low + slack, -max_depth - slack]
+                            .map(|distance| distance.max(0.0));
                     let (margin, distance) = (-allowed, Interval::new(from, to));
                     found.push((
                         at,

@@ -37,9 +37,10 @@ pub struct MachineProgram {
 pub struct MachineSummary {
     /// The tools in the order of their first use.
     pub tools: Vec<ToolUse>,
-    /// Motions that are not checked, since only the machine knows where they start or end: their number, and the line of
-    /// the first.
-    pub unknown: Option<(usize, usize)>,
+    /// Motions that are not checked, since only the machine knows where they start or end.
+    pub unknown: Option<UnknownMotions>,
+    /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
+    pub other_lengths: Vec<(usize, u32, u32)>,
     /// Axes that leave their limits, each with its line: the worst per axis and limit. Empty if the origin of the part on
     /// the machine is not given.
     pub limits: Vec<(usize, LimitViolation)>,
@@ -47,6 +48,18 @@ pub struct MachineSummary {
     pub singular: Vec<(usize, SingularPass)>,
     /// Notes of the interpreter.
     pub notes: Vec<Note>,
+}
+
+/// Motions that are not checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UnknownMotions {
+    /// Their number.
+    pub count: usize,
+    /// The line of the first.
+    pub line: usize,
+    /// The line of the first in feed, if there is one.
+    pub feed_line: Option<usize>,
 }
 
 /// A tool's use in a program.
@@ -106,7 +119,8 @@ impl MachineProgram {
                 Some(_) => (),
             }
         }
-        if is_placed && home.iter().zip(machine_axes(&machine)).all(|(home, has)| home.is_some() || !has)
+        if is_placed
+            && home.iter().zip(machine_axes(&machine)).all(|(home, has)| home.is_some() || !has)
         {
             setup.home = Some(home.map(|value| value.unwrap_or(0.0)));
         }
@@ -183,12 +197,22 @@ impl MachineProgram {
             summary.tools[index].motions += 1;
             let motions = match resolved {
                 Resolved::Unknown | Resolved::Arrival(_) => {
-                    let (count, _) = summary.unknown.get_or_insert((0, step.line));
-                    *count += 1;
+                    let unknown = UnknownMotions { count: 0, line: step.line, feed_line: None };
+                    let unknown = summary.unknown.get_or_insert(unknown);
+                    unknown.count += 1;
+                    if !step.rapid {
+                        unknown.feed_line.get_or_insert(step.line);
+                    }
                     continue;
                 }
                 Resolved::Motions(motions) => motions,
             };
+            let other = resolver.other_length(&step.state).filter(|_| !step.rapid);
+            if let Some((register, tool)) = other
+                && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
+            {
+                summary.other_lengths.push((step.line, register, tool));
+            }
             for (motion, _) in &motions {
                 // Without a work offset, linear joints are known up to a displacement only.
                 let violations = if is_placed { motion.check_limits() } else { Vec::new() };
@@ -213,11 +237,7 @@ fn machine_axes(machine: &Machine) -> [bool; 6] {
 }
 
 /// Adds a violation, or keeps the worse one of the same axis and limit.
-fn add_violation(
-    found: &mut Vec<(usize, LimitViolation)>,
-    line: usize,
-    violation: LimitViolation,
-) {
+fn add_violation(found: &mut Vec<(usize, LimitViolation)>, line: usize, violation: LimitViolation) {
     let same = |(_, known): &&mut (usize, LimitViolation)| {
         known.letter == violation.letter && known.limit == violation.limit
     };

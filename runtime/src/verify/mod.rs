@@ -36,6 +36,7 @@ pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
 pub use group::FindingGroup;
 pub use machine_program::{
     MachineProgram, MachineProgramError, MachineSummary, StepFault, ToolSelection, ToolUse,
+    UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath};
 

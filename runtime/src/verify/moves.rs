@@ -1,10 +1,10 @@
 //! The motions of a program, each with its place in the file.
 
+use crate::interval::Interval;
 use crate::machine::JointMotion;
 use crate::motion::{Motion, MotionError};
 use crate::pose::Pose;
 use crate::program::CutterLocation;
-use crate::interval::Interval;
 use crate::tool::{Symmetry, ToolInfo};
 use crate::unit::Unit;
 use nalgebra::Point3;
@@ -73,11 +73,7 @@ impl Move {
     ///
     /// # Panics
     /// Panics if a solid is given a pose without a spin ([`Program::check_poses`](crate::Program::check_poses)).
-    pub fn between(
-        from: Option<&CutterLocation>,
-        to: &CutterLocation,
-        symmetry: Symmetry,
-    ) -> Move {
+    pub fn between(from: Option<&CutterLocation>, to: &CutterLocation, symmetry: Symmetry) -> Move {
         let before = from.map_or(&to.pose, |from| &from.pose);
         let path = match between(before, &to.pose, symmetry) {
             Ok(motion) => MovePath::Straight(motion),
@@ -132,12 +128,7 @@ pub(super) struct Span {
 ///
 /// A tool of revolution may turn on a great circle or about one fixed axis, whichever is nearer to the truth: the first if
 /// the spin about the tool axis is most of the rotation, the second otherwise.
-pub(super) fn span(
-    path: &JointPath,
-    times: [f64; 2],
-    reach: f64,
-    symmetry: Symmetry,
-) -> Span {
+pub(super) fn span(path: &JointPath, times: [f64; 2], reach: f64, symmetry: Symmetry) -> Span {
     let [from, to] = times.map(|time| path.pose(time));
     let unscaled = reach / path.scale;
     let deviation = path.motion.deviation_with_spin(times[0], times[1], unscaled);

@@ -20,16 +20,13 @@ impl Verifier<'_> {
         let mut is_clear = |travel: f64| {
             let tip = finding.pose.tip() + finding.pose.axis() * travel;
             let pose = if finding.pose.has_spin() {
-                Pose::from_quaternion(
-                    tip,
-                    finding.pose.to_isometry().rotation.coords.into(),
-                )
+                Pose::from_quaternion(tip, finding.pose.to_isometry().rotation.coords.into())
             } else {
                 Pose::from_axis(tip, finding.pose.axis())
             };
-            let found = pose.ok().and_then(|pose| {
-                certifier.deepest_on(surface, &pose, 0.5 * self.resolution).ok()
-            });
+            let found = pose
+                .ok()
+                .and_then(|pose| certifier.deepest_on(surface, &pose, 0.5 * self.resolution).ok());
             found.is_some_and(|found| found.depth.high <= allowed + self.resolution)
         };
         let excess = (depth.high - allowed).max(self.resolution);

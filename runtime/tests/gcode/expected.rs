@@ -1,6 +1,5 @@
 //! Compares the interpreter with the canonical commands that LinuxCNC's interpreter gives for its own test programs.
 
-
 use crate::common::{folder, text};
 use std::collections::BTreeMap;
 use touchoff::gcode::{ControlSetup, GcodeError, Interpreter, Plane, Step, StepPath, WorkOffset};

@@ -4,10 +4,10 @@
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::{PI, TAU};
+use touchoff::Unit;
 use touchoff::gcode::{
     ControlSetup, LengthOffset, Plane, Position, Rotation, Step, StepPath, Tcp, WorkOffset, read,
 };
-use touchoff::Unit;
 
 fn at_zero() -> ControlSetup {
     ControlSetup {

@@ -1,6 +1,5 @@
 //! Programs that have to be refused, with the line, and programs that have to be read.
 
-
 use crate::common::{folder, text};
 use touchoff::gcode::{
     ControlSetup, GcodeError, Interpreter, NoteKind, Position, Step, StepPath, Tcp, read,

@@ -77,7 +77,8 @@ fn blocks(random: &mut Random, count: usize) -> Vec<Block> {
     let mut angles = [0.0; 2];
     for k in 0..count {
         let reach = if random.between(0.0, 1.0) < 0.3 { 40.0 } else { 6.0 };
-        angles = [angles[0] + random.between(-reach, reach), angles[1] + random.between(-reach, reach)];
+        angles =
+            [angles[0] + random.between(-reach, reach), angles[1] + random.between(-reach, reach)];
         angles[0] = f64::clamp(angles[0], -80.0, 80.0);
         let tcp = (k / 10) % 2 == 1;
         let tip: [f64; 3] = random.vector(14.0).into();
@@ -105,8 +106,11 @@ fn program(blocks: &[Block]) -> String {
 
 fn rounded(blocks: Vec<Block>) -> Vec<Block> {
     let round = |value: f64| format!("{value:.6}").parse().expect("a number");
-    let rounded =
-        |block: Block| Block { linear: block.linear.map(round), angles: block.angles.map(round), ..block };
+    let rounded = |block: Block| Block {
+        linear: block.linear.map(round),
+        angles: block.angles.map(round),
+        ..block
+    };
     blocks.into_iter().map(rounded).collect()
 }
 
@@ -142,8 +146,7 @@ fn joint_motions_agree_with_brute_force() {
         let machine = Machine::parse(TRUNNION, "trunnion.toml").expect("a machine");
         let program = MachineProgram::new("blocks.nc", program(&blocks), machine, setup);
         let program = program.expect("a program");
-        let moves: Vec<_> =
-            program.moves(ToolSelection::All, None, Unit::Millimetre).collect();
+        let moves: Vec<_> = program.moves(ToolSelection::All, None, Unit::Millimetre).collect();
         let first_line = moves[0].line;
         let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
         let verifier = verifier.with_resolution(RESOLUTION).expect("a length");
@@ -166,7 +169,8 @@ fn joint_motions_agree_with_brute_force() {
             }
             judged += 1;
             let limits = limits(allowances, 0.0, to.rapid);
-            let of_line = |found: &&Finding| found.line == lines[k] && found.from == Some(lines[k - 1]);
+            let of_line =
+                |found: &&Finding| found.line == lines[k] && found.from == Some(lines[k - 1]);
             let found: Vec<Finding> = report.findings.iter().filter(of_line).copied().collect();
             let shown: Vec<Finding> = found
                 .iter()
@@ -184,7 +188,10 @@ fn joint_motions_agree_with_brute_force() {
                     FindingKind::Deep { surface, depth, allowed, max_depth, witness, .. } => {
                         there.add(&witness.point, &(tip, axis));
                         let actual = there.depth[surface.0];
-                        assert!(actual > allowed.max(0.0) || actual == 0.0, "{actual}: {finding:?}");
+                        assert!(
+                            actual > allowed.max(0.0) || actual == 0.0,
+                            "{actual}: {finding:?}"
+                        );
                         // On the border to another surface the deviation may decide which is the nearest.
                         if actual > 0.0 {
                             let slack = RESOLUTION / 2.0;
@@ -211,8 +218,10 @@ fn joint_motions_agree_with_brute_force() {
             let decided: Vec<Finding> = found
                 .iter()
                 .filter(|found| {
-                    !matches!(found.kind, FindingKind::Undecided { .. } | FindingKind::Inside { .. })
-                        || !is_deep(found.kind.surface())
+                    !matches!(
+                        found.kind,
+                        FindingKind::Undecided { .. } | FindingKind::Inside { .. }
+                    ) || !is_deep(found.kind.surface())
                 })
                 .copied()
                 .collect();
@@ -220,6 +229,9 @@ fn joint_motions_agree_with_brute_force() {
             clear += usize::from(found.is_empty());
         }
     }
-    println!("{judged} motions: {deep} deep, {near} near, {clear} clear; tool {}", Mounted.info().name);
+    println!(
+        "{judged} motions: {deep} deep, {near} near, {clear} clear; tool {}",
+        Mounted.info().name
+    );
     assert!(deep > 50 && near > 10 && clear > 50, "{deep} deep, {near} near, {clear} clear");
 }

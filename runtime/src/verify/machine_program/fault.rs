@@ -39,7 +39,7 @@ pub enum StepFault {
     /// No joint values give the tool axis.
     #[error(transparent)]
     Inverse(#[from] InverseError),
-    /// The length offset is that of another tool.
+    /// The length offset is that of another tool, while positions are those of the tip.
     #[error(
         "the length offset H{register} is {offset} mm, but T{tool} in the spindle is {length} mm long: correct H, or the \
          lengths of the job"
@@ -54,17 +54,6 @@ pub enum StepFault {
         /// Its length, in mm.
         length: f64,
     },
-    /// The length offset has the number of another tool, and a length is unknown.
-    #[error(
-        "the length offset H{register} has another number than T{tool} in the spindle: correct H, or state the lengths of \
-         both in the job"
-    )]
-    Register {
-        /// The register.
-        register: u32,
-        /// The tool in the spindle.
-        tool: u32,
-    },
     /// The head turns, and the length of the tool is unknown.
     #[error("the head turns, and so the length of the tool matters: state it in the job")]
     NoLength,
@@ -75,13 +64,17 @@ pub enum StepFault {
     )]
     NoPlace,
     /// The origin of a work offset is unknown.
-    #[error("the origin of {offset} is unknown: state it, and that of G54, in the job's `work_offsets`")]
+    #[error(
+        "the origin of {offset} is unknown: state it, and that of G54, in the job's `work_offsets`"
+    )]
     NoOrigin {
         /// The work offset.
         offset: String,
     },
     /// A work offset is turned against that of the part while the program states tips.
-    #[error("{offset} is turned against G54 while tool centre point control is on, which is not read")]
+    #[error(
+        "{offset} is turned against G54 while tool centre point control is on, which is not read"
+    )]
     TurnedOffset {
         /// The work offset.
         offset: String,

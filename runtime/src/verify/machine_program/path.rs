@@ -75,9 +75,8 @@ fn chords(
     map: &Map,
 ) -> Vec<Piece> {
     let ([first, second], normal) = (plane.axes(), plane.normal());
-    let radius = |position: [f64; 3]| {
-        (position[first] - centre[0]).hypot(position[second] - centre[1])
-    };
+    let radius =
+        |position: [f64; 3]| (position[first] - centre[0]).hypot(position[second] - centre[1]);
     let [from, to] = [start, end].map(radius);
     let largest = from.max(to);
     let angle = (8.0 * CHORD_TOLERANCE / largest).sqrt().clamp(1e-3, 0.5);

@@ -75,7 +75,15 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        let frame = self.frame(&step.state)?;
+        let Some(lengths) = self.lengths(&step.state)? else {
+            // A length offset of another tool puts Z at an unknown height.
+            self.joints[2] = None;
+            if step.state.turns_with_workpiece() {
+                self.joints[..2].fill(None);
+            }
+            return Ok(Resolved::Unknown);
+        };
+        let frame = self.frame(&step.state, lengths)?;
         let stands = self.stands(&frame);
         let mut ends = [step.start, step.end];
         for k in 0..6 {
@@ -103,7 +111,8 @@ impl<'a> Resolver<'a> {
             return Ok(Resolved::Unknown);
         };
         if self.is_loose && !frame.is_tip {
-            let turns = |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
+            let turns =
+                |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
             if turns(end) || start.is_some_and(turns) {
                 return Err(StepFault::NoPlace);
             }
@@ -145,9 +154,12 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the mapping of a state's coordinates.
-    fn frame(&mut self, state: &ControlState) -> Result<Frame, StepFault> {
+    fn frame(
+        &mut self,
+        state: &ControlState,
+        (length, offset): (f64, f64),
+    ) -> Result<Frame, StepFault> {
         let is_tip = state.turns_with_workpiece();
-        let (length, offset) = self.lengths(state)?;
         let chain = match &self.chain {
             Some((known, chain)) if *known == length => *chain,
             _ => {
@@ -170,10 +182,8 @@ impl<'a> Resolver<'a> {
             None => (Matrix3::identity(), Vector3::zeros()),
         };
         let about = about + Vector3::new(shift[0], shift[1], shift[2]);
-        let turned = Rotation3::from_axis_angle(
-            &Vector3::z_axis(),
-            state.origin_rotation.to_radians(),
-        );
+        let turned =
+            Rotation3::from_axis_angle(&Vector3::z_axis(), state.origin_rotation.to_radians());
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
         if is_tip {
             if state.origin_rotation != 0.0 || origin[3..] != self.origin[3..] {
@@ -192,31 +202,47 @@ impl<'a> Resolver<'a> {
         Ok(Frame { chain, map, rotary, is_tip })
     }
 
-    /// Returns the length of the tool in the spindle and the length offset, in mm. If neither is known, both count as 0:
-    /// the tip is then where the program says.
-    fn lengths(&self, state: &ControlState) -> Result<(f64, f64), StepFault> {
+    /// Returns the length of the tool in the spindle and the length offset, in mm; `None` if the offset is that of another
+    /// tool and one of both is unknown. If neither is known, both count as 0: the tip is then where the program says.
+    fn lengths(&self, state: &ControlState) -> Result<Option<(f64, f64)>, StepFault> {
         let length = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
-        let lengths = match (state.length, state.tool) {
-            (LengthOffset::Off, _) => (length.unwrap_or(0.0), 0.0),
-            (LengthOffset::On { register, length: Some(offset) }, tool) => match (tool, length) {
-                (Some(tool), Some(length)) if (length - offset).abs() > LENGTH_TOLERANCE => {
-                    return Err(StepFault::Length { register, offset, tool, length });
-                }
-                (Some(tool), None) if tool != register => {
-                    return Err(StepFault::Register { register, tool });
-                }
-                _ => (length.unwrap_or(offset), offset),
-            },
-            (LengthOffset::On { register, length: None }, Some(tool)) if tool != register => {
-                return Err(StepFault::Register { register, tool });
+        let (lengths, is_known) = match (state.length, length) {
+            (LengthOffset::Off, Some(length)) => ((length, 0.0), true),
+            (LengthOffset::Off, None) => ((0.0, 0.0), false),
+            (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
+                ((length, offset), true)
             }
-            (LengthOffset::On { .. }, _) => (length.unwrap_or(0.0), length.unwrap_or(0.0)),
+            (LengthOffset::On { register, length: offset }, length) => {
+                if state.tool.is_some_and(|tool| tool != register) {
+                    return Ok(None);
+                }
+                let known = offset.or(length);
+                ((known.unwrap_or(0.0), known.unwrap_or(0.0)), known.is_some())
+            }
         };
-        let is_known = length.is_some() || matches!(state.length, LengthOffset::On { length: Some(_), .. });
-        if self.has_head && !is_known && state.tcp == Tcp::Off && self.joints[3..].iter().any(|angle| *angle != Some(0.0)) {
+        let turns = self.joints[3..].iter().any(|angle| *angle != Some(0.0));
+        if self.has_head && !is_known && state.tcp == Tcp::Off && turns {
             return Err(StepFault::NoLength);
         }
-        Ok(lengths)
+        let (length, offset) = lengths;
+        if let (LengthOffset::On { register, .. }, Some(tool)) = (state.length, state.tool)
+            && state.turns_with_workpiece()
+            && (length - offset).abs() > LENGTH_TOLERANCE
+        {
+            return Err(StepFault::Length { register, offset, tool, length });
+        }
+        Ok(Some(lengths))
+    }
+
+    /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.
+    pub(super) fn other_length(&self, state: &ControlState) -> Option<(u32, u32)> {
+        let (LengthOffset::On { register, length: Some(offset) }, Some(tool)) =
+            (state.length, state.tool)
+        else {
+            return None;
+        };
+        let length = self.lengths.get(&tool)?;
+        ((length - offset).abs() > LENGTH_TOLERANCE).then_some((register, tool))
     }
 
     /// Returns the position of the machine in program coordinates, as far as it is known.
@@ -227,7 +253,9 @@ impl<'a> Resolver<'a> {
         }
         let back = frame.map.rotation.transpose();
         if frame.is_tip {
-            if let Some(pose) = known(&self.joints).and_then(|joints| frame.chain.pose(&joints).ok()) {
+            if let Some(pose) =
+                known(&self.joints).and_then(|joints| frame.chain.pose(&joints).ok())
+            {
                 let linear = back * (pose.tip().coords - frame.map.origin);
                 (0..3).for_each(|k| position[k] = Some(linear[k]));
             }
