@@ -5,8 +5,8 @@ use crate::mesh::{Geometry, shapes};
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
-/// Returns the winding number of a mesh about a point, from the solid angles of its triangles (Van Oosterom and
-/// Strackee 1983); `None` if the point is on a triangle, within rounding.
+/// Returns the winding number of a mesh about a point, from the solid angles of its triangles (Van Oosterom
+/// and Strackee 1983); `None` if the point is on a triangle, within rounding.
 fn solid_angles(mesh: &Mesh, point: Point3<f64>) -> Option<f64> {
     let mut sum = 0.0;
     for triangle in mesh.triangles() {
@@ -120,8 +120,8 @@ fn parts_from_files_agree_with_solid_angles() {
     println!("{checked} nodes of parts from files");
 }
 
-/// Columns through edges, corners and vertical faces, and nodes on faces: half-open in each coordinate, as if each node
-/// were moved up by an infinitely small amount.
+/// Columns through edges, corners and vertical faces, and nodes on faces: half-open in each coordinate, as if
+/// each node were moved up by an infinitely small amount.
 #[test]
 fn nodes_on_the_surface_are_moved_up() {
     let (low, high) = (Point3::new(-1.0, -2.0, -1.0), Point3::new(1.0, 2.0, 3.0));
@@ -171,8 +171,8 @@ fn a_box_and_its_mesh_are_the_same_stock() {
     assert!((stock.volume() - 210.0).abs() < 1e-9);
 }
 
-/// Random balls in space: one larger than the stated radius has a point in it, and some that are a little smaller have
-/// none.
+/// Random balls in space: one larger than the stated radius has a point in it, and some that are a little
+/// smaller have none.
 #[test]
 fn no_larger_ball_is_missed() {
     let stock = block([0.0; 3], [10.0; 3], 0.5);
