@@ -24,8 +24,8 @@ pub enum MotionMode {
 /// The greatest number of intervals between the samples of a motion: some minutes of work if all of them cut.
 const MAX_INTERVALS: f64 = 67_108_864.0;
 
-/// The number of intervals from which on a range of samples is tested as a whole. For fewer, the test costs as much as
-/// the samples.
+/// The number of intervals from which on a range of samples is tested as a whole. For fewer, the test costs
+/// as much as the samples.
 const MIN_TESTED_INTERVALS: u64 = 4;
 
 /// The factor by which widened tools are larger than needed, for the rounding of poses and times.
@@ -33,8 +33,8 @@ const WIDENING: f64 = 1.0 + 1e-9;
 
 impl Stock {
     /// Returns an upper bound on the travel of any point of a tool over a motion, in the stock's unit, as
-    /// [`Stock::advance`] needs it: the length of the tip's path, plus the angle times the largest distance of the
-    /// tool's points from the tip.
+    /// [`Stock::advance`] needs it: the length of the tip's path, plus the angle times the largest distance
+    /// of the tool's points from the tip.
     pub fn max_travel(&self, tool: &dyn Tool, motion: &Motion) -> f64 {
         let info = tool.info();
         let reach = info.reach();
@@ -43,21 +43,22 @@ impl Stock {
         (motion.displacement().norm() + motion.angle() * lever) * WIDENING
     }
 
-    /// Moves a tool through the stock: removes the points that it cuts, and returns its contacts, at most one per
-    /// surface, in the order of surfaces.
+    /// Moves a tool through the stock: removes the points that it cuts, and returns its contacts, at most one
+    /// per surface, in the order of surfaces.
     ///
-    /// `motion` returns the pose at a time from 0 to 1, in the stock's frame and unit. `max_travel` is an upper bound on
-    /// the speed of the tool's points: between the times s and t, none travels farther than `max_travel · |t − s|`. For
-    /// a [`Motion`], [`Stock::max_travel`] returns it. Points no deeper than `tolerance` in a surface that must not touch
-    /// are no contact. The module's page states what is proved, and what becomes of points in contact.
+    /// `motion` returns the pose at a time from 0 to 1, in the stock's frame and unit. `max_travel` is an
+    /// upper bound on the speed of the tool's points: between the times s and t, none travels farther than
+    /// `max_travel · |t − s|`. For a [`Motion`], [`Stock::max_travel`] returns it. Points no deeper than
+    /// `tolerance` in a surface that must not touch are no contact. The module's page states what is proved,
+    /// and what becomes of points in contact.
     ///
-    /// Ranges of the motion are skipped if the tool, widened by half its travel over the range, reaches no point. A
-    /// motion farther from all points than half its travel thus costs a single test.
+    /// Ranges of the motion are skipped if the tool, widened by half its travel over the range, reaches no
+    /// point. A motion farther from all points than half its travel thus costs a single test.
     ///
     /// # Errors
-    /// If `max_travel` or `tolerance` is not a finite length of 0 or more, if the travel has more than 2²⁶ steps, or if
-    /// the tool is a solid without an axis and a pose has no spin. In the last case, the motion ends before that
-    /// pose, and its contacts are lost.
+    /// If `max_travel` or `tolerance` is not a finite length of 0 or more, if the travel has more than 2²⁶
+    /// steps, or if the tool is a solid without an axis and a pose has no spin. In the last case, the motion
+    /// ends before that pose, and its contacts are lost.
     pub fn advance(
         &mut self,
         tool: &dyn Tool,
@@ -120,7 +121,8 @@ impl Sampler<'_> {
         };
         let intervals = (max_travel / self.stock.step()).ceil() as u64;
         let time = |sample: f64| if intervals == 0 { 0.0 } else { sample / intervals as f64 };
-        // The setup of each level: its tool is widened by half the travel over the longest range of the level.
+        // The setup of each level: its tool is widened by half the travel over the longest range of the
+        // level.
         let mut levels: Vec<QuerySetup> = Vec::new();
         let mut ranges = vec![(0, intervals, 0)];
         while let Some((first, last, level)) = ranges.pop() {

@@ -6,17 +6,18 @@ use nalgebra::Point3;
 use std::collections::HashMap;
 
 impl Stock {
-    /// Returns the surface of the cells that are left: a closed, consistently oriented mesh with two triangles per face
-    /// between a cell that is left and one that is not. [`Mesh::write_stl`] writes it. Where cells touch along an edge
-    /// only, four faces share it.
+    /// Returns the surface of the cells that are left: a closed, consistently oriented mesh with two
+    /// triangles per face between a cell that is left and one that is not. [`Mesh::write_stl`] writes it.
+    /// Where cells touch along an edge only, four faces share it.
     ///
-    /// **Deviation.** Let M be the material as the points know it: what was inside at the beginning, less what was
-    /// removed (see the [module's page](crate::stock)). A face lies halfway between a node inside M and a neighbour
-    /// outside, and M's surface crosses the line between them. The crossing is within half a spacing of the face's
-    /// middle, the face's corners are within √½ of a spacing of it, at right angles. Every point of the mesh is thus
-    /// within √3/2 of a spacing of M's surface. A point of M that is farther than that from M's surface is in a cell that
-    /// is left, since the nearest node is in M as well; likewise for points outside. Pieces and gaps that hold no larger
-    /// ball may be missing. [`Stock::missed_ball_radius`] returns this distance.
+    /// **Deviation.** Let M be the material as the points know it: what was inside at the beginning, less
+    /// what was removed (see the [module's page](crate::stock)). A face lies halfway between a node inside M
+    /// and a neighbour outside, and M's surface crosses the line between them. The crossing is within half a
+    /// spacing of the face's middle, the face's corners are within √½ of a spacing of it, at right angles.
+    /// Every point of the mesh is thus within √3/2 of a spacing of M's surface. A point of M that is farther
+    /// than that from M's surface is in a cell that is left, since the nearest node is in M as well; likewise
+    /// for points outside. Pieces and gaps that hold no larger ball may be missing.
+    /// [`Stock::missed_ball_radius`] returns this distance.
     ///
     /// # Errors
     /// [`StockError::NothingLeft`] if nothing is left, and [`StockError::Mesh`] if coordinates are too large.

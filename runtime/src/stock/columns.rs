@@ -1,13 +1,15 @@
 //! Nodes of a lattice inside a closed surface: winding numbers along the columns of the lattice.
 //!
-//! A column is a line along z. The winding number of the surface about a node is the number of triangles that the
-//! column crosses above it, counted 1 if they face up and −1 if they face down. Signs are those of exact predicates
-//! (Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*, 1997), so the result
-//! is exact for the doubles of corners and nodes, unless products of three lengths overflow or underflow.
+//! A column is a line along z. The winding number of the surface about a node is the number of triangles that
+//! the column crosses above it, counted 1 if they face up and −1 if they face down. Signs are those of exact
+//! predicates (Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*,
+//! 1997), so the result is exact for the doubles of corners and nodes, unless products of three lengths
+//! overflow or underflow.
 //!
-//! **Ties.** Columns through edges and corners are common: lattice and part are often symmetric. All nodes count as if
-//! they were moved by `(ε², ε³, ε)`, with ε infinitely small (simulation of simplicity: Edelsbrunner and Mücke 1990).
-//! A column then crosses no edge and no vertical triangle. A node on the surface counts as the point just above it.
+//! **Ties.** Columns through edges and corners are common: lattice and part are often symmetric. All nodes
+//! count as if they were moved by `(ε², ε³, ε)`, with ε infinitely small (simulation of simplicity:
+//! Edelsbrunner and Mücke 1990). A column then crosses no edge and no vertical triangle. A node on the
+//! surface counts as the point just above it.
 
 use super::StockError;
 use super::bits::BitSet;
@@ -24,8 +26,8 @@ struct Crossing {
     faces_up: bool,
 }
 
-/// Returns the nodes about which the winding number of a closed and oriented surface is positive. `triangles` are its
-/// corners.
+/// Returns the nodes about which the winding number of a closed and oriented surface is positive. `triangles`
+/// are its corners.
 ///
 /// # Errors
 /// [`StockError::InsideOut`] if the winding number about a node is negative.
@@ -89,7 +91,8 @@ fn cross(lattice: &Lattice, corners: [[f64; 3]; 3], crossings: &mut Vec<Crossing
     }
 }
 
-/// Returns whether a column, moved by `(ε², ε³)`, is on the left of a line. The line has two different points.
+/// Returns whether a column, moved by `(ε², ε³)`, is on the left of a line. The line has two different
+/// points.
 fn is_left(from: Coord<f64>, to: Coord<f64>, at: Coord<f64>) -> bool {
     let side = orient2d(from, to, at);
     if side != 0.0 {
@@ -107,8 +110,8 @@ fn is_below(corners: [[f64; 3]; 3], faces_up: bool, node: Coord3D<f64>) -> bool 
     if faces_up { side > 0.0 } else { side < 0.0 }
 }
 
-/// Returns the first number of a range for which a condition fails that holds up to some number; the range's end if
-/// it never fails.
+/// Returns the first number of a range for which a condition fails that holds up to some number; the range's
+/// end if it never fails.
 fn first_not(range: std::ops::Range<usize>, holds: impl Fn(&usize) -> bool) -> usize {
     let (mut low, mut high) = (range.start, range.end);
     while low < high {

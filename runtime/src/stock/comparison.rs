@@ -11,12 +11,12 @@ use std::io::{self, Write};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PartComparison {
-    /// Material over the part: the points that are left outside the part and have a neighbour that is not, with their
-    /// distances from the part's surface, 0 or more. Material extends beyond a point by at most
+    /// Material over the part: the points that are left outside the part and have a neighbour that is not,
+    /// with their distances from the part's surface, 0 or more. Material extends beyond a point by at most
     /// [`Stock::missed_ball_radius`].
     pub excess: Vec<DeviationPoint>,
-    /// Gouges: the points of the stock inside the part that were removed, with their distances from the part's surface
-    /// as negative numbers, 0 or less.
+    /// Gouges: the points of the stock inside the part that were removed, with their distances from the
+    /// part's surface as negative numbers, 0 or less.
     pub gouges: Vec<DeviationPoint>,
     /// The unit of length.
     pub unit: Unit,
@@ -36,8 +36,8 @@ pub struct DeviationPoint {
 const COLUMNS: &str = "x,y,z,distance";
 
 impl Stock {
-    /// Compares what is left with the finished part, in the same frame. A point on the part's surface counts as the point
-    /// just above it, as in [`Stock::from_mesh`].
+    /// Compares what is left with the finished part, in the same frame. A point on the part's surface counts
+    /// as the point just above it, as in [`Stock::from_mesh`].
     ///
     /// # Errors
     /// If the part has another unit, has no inside, or is inside out somewhere.
@@ -75,18 +75,20 @@ impl Stock {
 }
 
 impl PartComparison {
-    /// Returns the point of material that is farthest outside the part, the first of several; `None` if there is none.
+    /// Returns the point of material that is farthest outside the part, the first of several; `None` if there
+    /// is none.
     pub fn greatest_excess(&self) -> Option<DeviationPoint> {
         farthest(&self.excess)
     }
 
-    /// Returns the removed point that is deepest inside the part, the first of several; `None` if there is none.
+    /// Returns the removed point that is deepest inside the part, the first of several; `None` if there is
+    /// none.
     pub fn deepest_gouge(&self) -> Option<DeviationPoint> {
         farthest(&self.gouges)
     }
 
-    /// Writes all points as CSV, with a header: first those over the part, then gouges. Every number reads back as the
-    /// same double.
+    /// Writes all points as CSV, with a header: first those over the part, then gouges. Every number reads
+    /// back as the same double.
     ///
     /// # Errors
     /// If the output cannot be written.
@@ -98,8 +100,8 @@ impl PartComparison {
         out.flush()
     }
 
-    /// Writes all points as binary PLY, in the order of [`PartComparison::write_csv`]: vertices with the property
-    /// `distance`.
+    /// Writes all points as binary PLY, in the order of [`PartComparison::write_csv`]: vertices with the
+    /// property `distance`.
     ///
     /// # Errors
     /// If the output cannot be written.

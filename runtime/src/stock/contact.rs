@@ -4,8 +4,8 @@ use super::bits::BitSet;
 use crate::id::SurfaceId;
 use nalgebra::Point3;
 
-/// A surface of the tool that touches material on a motion where it must not: one that does not cut, or any surface in
-/// rapid traverse.
+/// A surface of the tool that touches material on a motion where it must not: one that does not cut, or any
+/// surface in rapid traverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StockContact {
@@ -17,14 +17,15 @@ pub struct StockContact {
     pub depth: f64,
     /// The point: a point of material, in the part's frame and the stock's unit.
     pub point: Point3<f64>,
-    /// The number of points that the surface touches for the first time since the contact began; 0 if it only went
-    /// deeper.
+    /// The number of points that the surface touches for the first time since the contact began; 0 if it only
+    /// went deeper.
     pub points: usize,
     /// True if the surface was already in contact at the end of the motion before.
     pub continued: bool,
 }
 
-/// The contacts of the current tool that have not ended: points stay in the stock while the tool is around them.
+/// The contacts of the current tool that have not ended: points stay in the stock while the tool is around
+/// them.
 #[derive(Debug, Default)]
 pub(super) struct OpenContacts {
     /// The digest of the tool.
@@ -45,8 +46,8 @@ struct OpenContact {
 }
 
 impl OpenContacts {
-    /// Begins a motion of a tool, given by its digest. Returns the slots in contact with another tool, whose contacts
-    /// end.
+    /// Begins a motion of a tool, given by its digest. Returns the slots in contact with another tool, whose
+    /// contacts end.
     pub(super) fn begin(&mut self, tool: u64) -> Vec<usize> {
         if self.tool == Some(tool) {
             return Vec::new();
@@ -64,7 +65,8 @@ impl OpenContacts {
         self.surfaces.iter().any(|open| open.slots.contains(slot))
     }
 
-    /// Records a point in contact at a time of the motion. `slots` is the number of slots, `point` returns its place.
+    /// Records a point in contact at a time of the motion. `slots` is the number of slots, `point` returns
+    /// its place.
     pub(super) fn record(
         &mut self,
         surface: SurfaceId,
@@ -89,8 +91,8 @@ impl OpenContacts {
         open.current = Some(StockContact { points, ..deepest });
     }
 
-    /// Ends a motion. Returns its contacts in the order of surfaces, and the slots that are in contact no more.
-    /// `still_inside` are the slots inside the tool at the motion's end, in ascending order.
+    /// Ends a motion. Returns its contacts in the order of surfaces, and the slots that are in contact no
+    /// more. `still_inside` are the slots inside the tool at the motion's end, in ascending order.
     pub(super) fn finish(&mut self, still_inside: &[usize]) -> (Vec<StockContact>, Vec<usize>) {
         let (mut contacts, mut ended) = (Vec::new(), Vec::new());
         self.surfaces.retain_mut(|open| {

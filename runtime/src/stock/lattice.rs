@@ -6,8 +6,8 @@ use nalgebra::Point3;
 /// The greatest number of nodes of a lattice: an index fits 32 bits, and a set of nodes half a gigabyte.
 pub(super) const MAX_NODES: usize = u32::MAX as usize;
 
-/// The smallest spacing as a fraction (2^-40) of the greatest coordinate: nodes are then rounded by less than a
-/// thousandth of the spacing.
+/// The smallest spacing as a fraction (2^-40) of the greatest coordinate: nodes are then rounded by less than
+/// a thousandth of the spacing.
 const MIN_SPACING_FRACTION: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// A regular grid of nodes in a box, at equal distances along x, y and z. The nodes of a column along z have
@@ -21,13 +21,14 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Creates the lattice of a box, centred in it, with the whole number of layers that is nearest to its size. The
-    /// outermost nodes are half a spacing within the faces if the size is a multiple of the spacing, and never more than
-    /// 3/4: the next ones would be outside. A box thinner than a spacing has one layer, in its middle.
+    /// Creates the lattice of a box, centred in it, with the whole number of layers that is nearest to its
+    /// size. The outermost nodes are half a spacing within the faces if the size is a multiple of the
+    /// spacing, and never more than 3/4: the next ones would be outside. A box thinner than a spacing has one
+    /// layer, in its middle.
     ///
     /// # Errors
-    /// If the spacing is not a finite length above 0 or is too small for the coordinates, or if there are more than
-    /// [`MAX_NODES`].
+    /// If the spacing is not a finite length above 0 or is too small for the coordinates, or if there are
+    /// more than [`MAX_NODES`].
     pub(super) fn new([low, high]: [Point3<f64>; 2], spacing: f64) -> Result<Lattice, StockError> {
         if !(spacing > 0.0 && spacing.is_finite()) {
             return Err(StockError::Spacing { spacing });
@@ -98,7 +99,8 @@ impl Lattice {
         [0, 1, 2].map(|axis| self.coordinate(axis, node[axis] as f64))
     }
 
-    /// Returns the numbers along an axis of the nodes between two coordinates. Rounding may add one at either end.
+    /// Returns the numbers along an axis of the nodes between two coordinates. Rounding may add one at either
+    /// end.
     pub(super) fn between(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
         let number = |coordinate: f64| (coordinate - self.origin[axis]) / self.spacing;
         let count = self.counts[axis];
@@ -108,7 +110,8 @@ impl Lattice {
         first..end.clamp(first, count)
     }
 
-    /// Returns the index of the neighbour of a node along an axis, up or down; `None` if it is beyond the lattice.
+    /// Returns the index of the neighbour of a node along an axis, up or down; `None` if it is beyond the
+    /// lattice.
     pub(super) fn neighbour(&self, node: [usize; 3], axis: usize, up: bool) -> Option<usize> {
         let mut neighbour = node;
         neighbour[axis] = if up {

@@ -8,42 +8,46 @@
 //!     remaining mesh, comparison with the finished part ◀── points that are left
 //! ```
 //!
-//! A stock is the set of the nodes of a regular lattice that are inside it. A feed motion removes those that come into a
-//! cutting surface of the tool. Points in any other surface, and points in any surface in rapid traverse, are
-//! [contacts](StockContact).
+//! A stock is the set of the nodes of a regular lattice that are inside it. A feed motion removes those that
+//! come into a cutting surface of the tool. Points in any other surface, and points in any surface in rapid
+//! traverse, are [contacts](StockContact).
 //!
-//! **Resolution.** A node of a lattice with spacing h is the nearest one to the points of a cube with edges of length h,
-//! its cell, and the corners of a cube are √3/2 h from its centre. Every point of space is thus within √3/2 h of a node,
-//! and every ball of material with a larger radius contains one. A tool that enters a smaller piece of material only is
-//! not found. [`Stock::missed_ball_radius`] returns this radius, with the rounding of stored points added.
+//! **Resolution.** A node of a lattice with spacing h is the nearest one to the points of a cube with edges
+//! of length h, its cell, and the corners of a cube are √3/2 h from its centre. Every point of space is thus
+//! within √3/2 h of a node, and every ball of material with a larger radius contains one. A tool that enters
+//! a smaller piece of material only is not found. [`Stock::missed_ball_radius`] returns this radius, with the
+//! rounding of stored points added.
 //!
 //! **Sampling.** A motion is sampled at equal times, so closely that no point of the tool travels more than a
-//! [step](Stock::step) from one sample to the next: a quarter of the spacing. From any time of the motion to the nearest
-//! sample, no point of the tool travels more than half a step. Let `L` be the Lipschitz constant of the tool's depth, 1
-//! for a tool with a profile. A point that is deeper than `L · step/2` at any time is farther than half a step from the
-//! tool's surface, and hence inside at the nearest sample. It follows:
+//! [step](Stock::step) from one sample to the next: a quarter of the spacing. From any time of the motion to
+//! the nearest sample, no point of the tool travels more than half a step. Let `e` be half a step times the
+//! Lipschitz constant of the tool's depth, which is 1 for a tool with a profile. A point that is deeper than
+//! `e` at any time is farther than half a step from the tool's surface, and hence inside at the nearest
+//! sample. It follows:
 //!
-//! - Nothing is removed that is not cut: a point that is removed was inside a cutting surface at a sample. The exception
-//!   are contacts that have ended, see below.
-//! - A point that is left was at no time of a feed motion deeper than `L · step/2` in the tool, unless its nearest surface
-//!   at the sample does not cut. Points that were cut less deeply may be left, as may those between two samples of a
-//!   tool that is thinner than a step along its motion. A tolerance below `L · step/2` can report such points on a later
-//!   motion, even one back over the same poses; a larger one does not report them there.
-//! - The depth of a contact is that of a point at a sample. At other times, a point is at most `L · step/2` deeper than at
-//!   the nearest sample.
-//! - A contact is found if, at some time of a motion, a ball of material that is larger than the missed ball is all
-//!   deeper than the tolerance and `L · step/2` in a surface that must not touch, and nearer to that surface than to
-//!   any other by a step. The exception is material of contacts that have ended.
+//! - Nothing is removed that is not cut: a point that is removed was inside a cutting surface at a sample.
+//!   The exception are contacts that have ended, see below.
+//! - A point that is left was at no time of a feed motion deeper than `e` in the tool, unless its nearest
+//!   surface at the sample does not cut. Points that were cut less deeply may be left, as may those between
+//!   two samples of a tool that is thinner than a step along its motion. A tolerance below `e` can report
+//!   such points on a later motion, even one back over the same poses; a larger one does not report them
+//!   there.
+//! - The depth of a contact is that of a point at a sample. At other times, a point is at most `e` deeper
+//!   than at the nearest sample.
+//! - A contact is found if, at some time of a motion, a ball of material that is larger than the missed ball
+//!   is all deeper than the tolerance plus `e` in a surface that must not touch, and nearer to that surface
+//!   than to any other by a step. The exception is material of contacts that have ended.
 //!
-//! For a tool without a Lipschitz constant (a file with formulas, of which no bound is proved), nothing is known between
-//! samples.
+//! For a tool without a Lipschitz constant (a file with formulas, of which no bound is proved), nothing is
+//! known between samples.
 //!
-//! **Contacts.** Points in contact stay while the tool is around them, so that depths do not depend on how a path is
-//! divided into motions. They are removed at the end of the first motion after which they are outside the tool, or when
-//! the tool changes: the rest of the program is judged as if that material had been cut. A motion reports a surface only
-//! if it touches new points or goes deeper than before, and marks a contact that goes on as
-//! [continued](StockContact::continued). A crash that lasts a thousand motions is thus one contact that is not continued
-//! and those that follow it. Points within the tolerance are neither reported nor removed.
+//! **Contacts.** Points in contact stay while the tool is around them, so that depths do not depend on how a
+//! path is divided into motions. They are removed at the end of the first motion after which they are outside
+//! the tool, or when the tool changes: the rest of the program is judged as if that material had been cut. A
+//! motion reports a surface only if it touches new points or goes deeper than before, and marks a contact
+//! that goes on as [continued](StockContact::continued). A crash that lasts a thousand motions is thus one
+//! contact that is not continued and those that follow it. Points within the tolerance are neither reported
+//! nor removed.
 
 mod advance;
 mod bits;
@@ -71,12 +75,12 @@ use lattice::Lattice;
 use nalgebra::Point3;
 use query::{InsidePoint, Query};
 
-/// The greatest number of points of a stock. A point takes some 18 bytes, and 50 while the stock is built: at most 2.5
-/// gigabytes.
+/// The greatest number of points of a stock. A point takes some 18 bytes, and 50 while the stock is built: at
+/// most 2.5 gigabytes.
 pub const MAX_POINTS: usize = 50_000_000;
 
-/// The step as a fraction of the spacing. Its half, the error of sampling, is then a seventh of the radius below which
-/// balls of material are missed.
+/// The step as a fraction of the spacing. Its half, the error of sampling, is then a seventh of the radius
+/// below which balls of material are missed.
 const STEP_FRACTION: f64 = 0.25;
 
 /// The material that is left, as the points of a lattice.
@@ -111,7 +115,8 @@ const STEP_FRACTION: f64 = 0.25;
 /// assert!(contacts.is_empty());
 /// assert!((stock.volume() - (40.0 * 20.0 * 20.0 - 40.0 * 6.0 * 5.0)).abs() < 200.0);
 /// // A rapid motion through the wall of the slot touches material.
-/// let motion = Motion::new(&pose(20.0, -5.0)?, &Pose::from_axis(Point3::new(20.0, 30.0, -5.0), Vector3::z())?)?;
+/// let outside = Pose::from_axis(Point3::new(20.0, 30.0, -5.0), Vector3::z())?;
+/// let motion = Motion::new(&pose(20.0, -5.0)?, &outside)?;
 /// let travel = stock.max_travel(&Mill, &motion);
 /// let contacts = stock.advance(&Mill, &|time| motion.pose(time), travel, MotionMode::Rapid, 0.1)?;
 /// assert_eq!(contacts.len(), 1);
@@ -135,12 +140,13 @@ debug!([] Stock, "Stock", |this| {
 });
 
 impl Stock {
-    /// Creates a stock from the inside of a mesh. A point of the lattice on the mesh counts as the point just above it.
+    /// Creates a stock from the inside of a mesh. A point of the lattice on the mesh counts as the point just
+    /// above it.
     ///
     /// # Errors
-    /// If the mesh has no inside or is inside out somewhere, if the spacing is not a length above 0 or too small for the
-    /// coordinates, or if there are no points, more than [`MAX_POINTS`], or more than 2³² − 1 nodes in the box around
-    /// the mesh.
+    /// If the mesh has no inside or is inside out somewhere, if the spacing is not a length above 0 or too
+    /// small for the coordinates, or if there are no points, more than [`MAX_POINTS`], or more than 2³² − 1
+    /// nodes in the box around the mesh.
     pub fn from_mesh(mesh: &Mesh, spacing: f64) -> Result<Stock, StockError> {
         if !mesh.diagnostics().is_solid() {
             return Err(StockError::NoInside { what: "stock" });
@@ -151,8 +157,8 @@ impl Stock {
         Stock::new(lattice, inside, mesh.unit())
     }
 
-    /// Creates a stock from a box, given by its lowest and its highest corner in `unit`. If its sides are multiples of
-    /// the spacing, the cells of the points fill it exactly.
+    /// Creates a stock from a box, given by its lowest and its highest corner in `unit`. If its sides are
+    /// multiples of the spacing, the cells of the points fill it exactly.
     ///
     /// # Errors
     /// If the corners do not bound a box, or as for [`Stock::from_mesh`].
@@ -215,20 +221,21 @@ impl Stock {
         self.initial.len()
     }
 
-    /// Returns the volume of the cells that are left, in the cube of the unit. It differs from the volume of the
-    /// material by at most the volume within √3/2 of a spacing of its surface, and for smooth surfaces by far less.
+    /// Returns the volume of the cells that are left, in the cube of the unit. It differs from the volume of
+    /// the material by at most the volume within √3/2 of a spacing of its surface, and for smooth surfaces by
+    /// far less.
     pub fn volume(&self) -> f64 {
         self.len() as f64 * self.spacing().powi(3)
     }
 
-    /// Returns the radius above which every ball of material contains a point: √3/2 of the spacing, and the greatest
-    /// distance of a point as it is stored from its node.
+    /// Returns the radius above which every ball of material contains a point: √3/2 of the spacing, and the
+    /// greatest distance of a point as it is stored from its node.
     pub fn missed_ball_radius(&self) -> f64 {
         let frame = &self.tree.frame;
         let [leaf, size] =
             [self.tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
-        // Per coordinate: the node's own rounding, an offset in `f32` from the leaf's centre, and the difference from the
-        // tree's origin, which is taken first.
+        // Per coordinate: the node's own rounding, an offset in `f32` from the leaf's centre, and the
+        // difference from the tree's origin, which is taken first.
         let node = 2.0 * f64::EPSILON * (frame.origin.coords.amax() + size);
         let stored = leaf / 2f64.powi(24) + 2.0 * f64::EPSILON * size;
         3f64.sqrt() * (0.5 * self.spacing() + node + stored)

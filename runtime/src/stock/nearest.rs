@@ -5,12 +5,14 @@ use crate::certify::TriangleBvh;
 use crate::mesh::area_and_normal;
 use nalgebra::{Point3, Vector3};
 
-/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a bound.
+/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a
+/// bound.
 pub(super) struct NearestTriangle<'a> {
     bvh: &'a TriangleBvh,
     /// The triangle found last, as an index in the tree's order.
     last: usize,
-    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared distance.
+    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared
+    /// distance.
     stack: Vec<(f64, usize, usize)>,
 }
 
@@ -19,12 +21,13 @@ impl NearestTriangle<'_> {
         NearestTriangle { bvh, last: 0, stack: Vec::new() }
     }
 
-    /// Returns the distance of a point from the nearest triangle, in the part's frame and unit. It is the distance from a
-    /// point of a triangle, rounded by some units in the last place of the coordinates.
+    /// Returns the distance of a point from the nearest triangle, in the part's frame and unit. It is the
+    /// distance from a point of a triangle, rounded by some units in the last place of the coordinates.
     pub(super) fn distance(&mut self, point: Point3<f64>) -> f64 {
         let frame = &self.bvh.frame;
         let p = frame.inside(point.into());
-        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at most 1.
+        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at
+        // most 1.
         let farthest = p.iter().fold(1.0, |farthest: f64, part| farthest.max(part.abs()));
         let margin = 16.0 * f64::EPSILON * farthest;
         let corners = |triangle: usize| self.bvh.corners[triangle].map(Point3::from);
@@ -75,11 +78,11 @@ fn squared_distance_of_box(point: Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> 
     beyond.map(|beyond| beyond.max(0.0)).norm_squared()
 }
 
-/// Returns the squared distance of a point from a triangle. For a triangle without area, it is the distance from its
-/// edges.
+/// Returns the squared distance of a point from a triangle. For a triangle without area, it is the distance
+/// from its edges.
 ///
-/// The nearest point is the foot on the triangle's plane if that is on the inner side of all edges, and otherwise on an
-/// edge (Ericson, *Real-time collision detection*, 2005, section 5.1.5).
+/// The nearest point is the foot on the triangle's plane if that is on the inner side of all edges, and
+/// otherwise on an edge (Ericson, *Real-time collision detection*, 2005, section 5.1.5).
 fn squared_distance(point: Point3<f64>, corners: [Point3<f64>; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - point);
     let edges = [(a, b), (b, c), (c, a)];

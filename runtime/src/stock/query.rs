@@ -1,5 +1,5 @@
-//! Queries of the points inside a tool, with memory that is kept between them. The points may change from query to
-//! query, unlike those of a [`Probe`](crate::Probe).
+//! Queries of the points inside a tool, with memory that is kept between them. The points may change from
+//! query to query, unlike those of a [`Probe`](crate::Probe).
 
 use crate::bvh::{PoseTransform, QuerySetup};
 use crate::interval::Interval;
@@ -9,8 +9,8 @@ use crate::tool::{EnvelopeSlab, Evaluations, Outputs, Symmetry, Tool, ToolInfo};
 use fearless_simd::Level;
 use std::borrow::Cow;
 
-/// The number of nodes that a test of the reach may visit. A tool far from all points needs a few dozen; one that
-/// reaches the points would visit thousands.
+/// The number of nodes that a test of the reach may visit. A tool far from all points needs a few dozen; one
+/// that reaches the points would visit thousands.
 const MAX_REACH_NODES: usize = 64;
 
 /// A point inside a tool.
@@ -34,7 +34,8 @@ pub(super) struct Query {
 }
 
 impl Query {
-    /// Lists the points inside a tool at a pose. `length` is the length of the tool's unit in that of the points.
+    /// Lists the points inside a tool at a pose. `length` is the length of the tool's unit in that of the
+    /// points.
     pub(super) fn inside(
         &mut self,
         tree: &PointBvh,
@@ -78,8 +79,8 @@ impl Query {
     }
 }
 
-/// Returns the setup of queries of all points within a distance of a tool, in the tool's unit: of its envelope, widened
-/// by the distance.
+/// Returns the setup of queries of all points within a distance of a tool, in the tool's unit: of its
+/// envelope, widened by the distance.
 pub(super) fn widened(tree: &PointBvh, info: &ToolInfo, length: f64, distance: f64) -> QuerySetup {
     let wide = |Interval { low, high }| Interval::new(low - distance, high + distance);
     let slab = |slab: &EnvelopeSlab| {

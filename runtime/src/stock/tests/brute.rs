@@ -3,8 +3,8 @@
 use super::*;
 use crate::id::SurfaceId;
 
-/// The signed depth of a point `[d, z]` in a tool, negative outside, and its distances from the surfaces that cut and
-/// that do not.
+/// The signed depth of a point `[d, z]` in a tool, negative outside, and its distances from the surfaces that
+/// cut and that do not.
 struct Depth {
     signed: f64,
     cutting: f64,
@@ -103,7 +103,8 @@ fn check(
     for ((at, was_left), (_, is_left)) in before.iter().zip(&after).filter(|((_, was), _)| *was) {
         assert!(*was_left);
         let at = Vector3::from(*at);
-        // As the samples decide: cut at the first sample at which a cutting surface is the nearest, in contact before.
+        // As the samples decide: cut at the first sample at which a cutting surface is the nearest, in
+        // contact before.
         let (mut removed, mut undecided, mut cut) = (false, false, false);
         let mut contact = [f64::NEG_INFINITY; 2];
         // Over all times: the greatest depth, and the greatest depth near a surface that cuts and no other.

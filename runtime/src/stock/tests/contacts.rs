@@ -11,8 +11,8 @@ fn wall() -> Stock {
     block([0.0, 0.0, -20.0], [40.0, 20.0, 0.0], 0.5)
 }
 
-/// A program along the wall, lower from line to line: the flute stays clear of the wall by 0.1 mm, the thicker shank
-/// would be 0.9 mm in it. It is above the block until the tip is below -8 mm.
+/// A program along the wall, lower from line to line: the flute stays clear of the wall by 0.1 mm, the
+/// thicker shank would be 0.9 mm in it. It is above the block until the tip is below -8 mm.
 #[test]
 fn a_shank_that_rubs_is_found_at_its_line() {
     let mut stock = wall();
@@ -41,7 +41,8 @@ fn a_shank_that_rubs_is_found_at_its_line() {
     assert_eq!(stock.initial_len() - stock.len(), contact.points);
 }
 
-/// The depth of a contact does not depend on the way in which a path is divided, and a contact that goes on is marked.
+/// The depth of a contact does not depend on the way in which a path is divided, and a contact that goes on
+/// is marked.
 #[test]
 fn divided_motions_find_the_same_contact() {
     let pose = |x: f64| upright([x, -3.1, -12.0]);
@@ -119,7 +120,8 @@ fn points_within_the_tolerance_stay() {
     assert_eq!(stock.initial_len() - stock.len(), 80 * 8);
 }
 
-/// A tool that rests in material reports it once; it is left where it is until the tool has gone or is changed.
+/// A tool that rests in material reports it once; it is left where it is until the tool has gone or is
+/// changed.
 #[test]
 fn contacts_end_when_the_tool_leaves_or_changes() {
     let inside = upright([20.0, 10.0, -5.0]);

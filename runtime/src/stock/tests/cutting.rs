@@ -3,8 +3,8 @@
 use super::*;
 use std::f64::consts::PI;
 
-/// An end mill cuts a slot into a box. Every node is compared with the slot, and the volume with slots that are larger
-/// and smaller by the resolution.
+/// An end mill cuts a slot into a box. Every node is compared with the slot, and the volume with slots that
+/// are larger and smaller by the resolution.
 #[test]
 fn a_slot_has_its_volume() {
     let (radius, depth, [from, to]) = (3.0, 5.0, [15.0, 45.0]);
@@ -33,8 +33,8 @@ fn a_slot_has_its_volume() {
     }
 }
 
-/// A ball cuts parallel lines. The height of the cusps between them is `R − √(R² − (p/2)²)`, with p the distance of
-/// the lines.
+/// A ball cuts parallel lines. The height of the cusps between them is `R − √(R² − (p/2)²)`, with p the
+/// distance of the lines.
 #[test]
 fn a_ball_leaves_cusps_of_their_height() {
     let (radius, pitch, floor, spacing) = (3.0, 2.0, -2.0, 0.05);
@@ -65,6 +65,37 @@ fn a_ball_leaves_cusps_of_their_height() {
     let cusp = height(0.5 * pitch);
     println!("cusps {cusp:.4} mm high, highest point at {highest:.4} mm");
     assert!(highest <= cusp + sampling && highest > height(0.5 * pitch - 0.5 * spacing) - spacing);
+}
+
+/// A solid without an axis, turned by a quarter, cuts a slot of its other width.
+#[test]
+fn a_solid_cuts_by_its_sides() {
+    crate::tool! {
+        solid Punch "a box of 6 × 4 × 3 mm" {
+            units mm;
+            curve along = 3 - max(x, -x);
+            curve across = 2 - max(y, -y);
+            curve end = min(z, 3 - z);
+            region along as punch cutting where 0 <= along <= min(across, end) { depth: along; }
+            region across as punch cutting where 0 <= across <= min(along, end) { depth: across; }
+            region end as punch cutting where 0 <= end <= min(along, across) { depth: end; }
+            niceness cutting: 1;
+        }
+    }
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    for (quaternion, width) in [([0.0, 0.0, 0.0, 1.0], 2.0), ([0.0, 0.0, half, half], 3.0)] {
+        let mut stock = block([0.0, -10.0, -10.0], [40.0, 10.0, 0.0], 0.5);
+        let [from, to] = [-300.0, 300.0]
+            .map(|x| Pose::from_quaternion(Point3::new(x, 0.0, -2.0), quaternion).expect("a pose"));
+        let motion = Motion::with_spin(&from, &to).expect("a motion");
+        let travel = stock.max_travel(&Punch, &motion);
+        let feed = MotionMode::Feed;
+        let contacts = stock.advance(&Punch, &|time| motion.pose(time), travel, feed, 0.0);
+        assert_eq!(contacts, Ok(vec![]));
+        for (at, is_left) in nodes(&stock) {
+            assert_eq!(is_left, at[1].abs() > width || at[2] < -2.0, "{at:?}");
+        }
+    }
 }
 
 /// A motion that is far away, or passes the stock in front, removes nothing; one in the next place cuts.

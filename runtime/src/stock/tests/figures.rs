@@ -1,4 +1,5 @@
-//! Times and sizes, printed with `--nocapture`. Their limits are far above what is measured, for slow machines.
+//! Times and sizes, printed with `--nocapture`. Their limits are far above what is measured, for slow
+//! machines.
 
 use super::*;
 use crate::certify::TriangleBvh;

@@ -16,7 +16,8 @@ fn distance_of_cube(point: Point3<f64>, low: f64, high: f64) -> f64 {
     if out.max() <= 0.0 { out.max() } else { out.map(|c| c.max(0.0)).norm() }
 }
 
-/// The mesh is closed, has the volume of the cells, and is as near to the surface of what was cut as is stated.
+/// The mesh is closed, has the volume of the cells, and is as near to the surface of what was cut as is
+/// stated.
 #[test]
 fn the_remaining_mesh_is_within_its_deviation() {
     let mut stock = block([-5.0; 3], [5.0; 3], 0.3);
@@ -30,7 +31,8 @@ fn the_remaining_mesh_is_within_its_deviation() {
     let diagnostics = mesh.diagnostics();
     assert!(diagnostics.is_solid(), "{diagnostics}");
     assert!((diagnostics.volume / stock.volume() - 1.0).abs() < 1e-12, "{diagnostics}");
-    // The greatest depth in any of the balls (which are cut, unlike the shanks above them), or above the block.
+    // The greatest depth in any of the balls (which are cut, unlike the shanks above them), or above the
+    // block.
     let signed = |p: Point3<f64>| {
         let ball = tips.map(|[x, y, z]| (p - Point3::new(x, y, z + 3.0)).norm() - 3.0);
         distance_of_cube(p, -5.0, 5.0).max(ball.into_iter().map(|d| -d).fold(f64::MIN, f64::max))
@@ -72,7 +74,8 @@ fn cells_that_touch_along_an_edge_are_closed() {
     assert_eq!((diagnostics.volume, diagnostics.area, diagnostics.triangles), (2.0, 12.0, 24));
 }
 
-/// Distances are within the spacing of points that are spread over all triangles, and those of a cube have a closed form.
+/// Distances are within the spacing of points that are spread over all triangles, and those of a cube have a
+/// closed form.
 #[test]
 fn nearest_triangles_agree_with_brute_force() {
     let mut random = Random(3);
