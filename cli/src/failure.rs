@@ -128,6 +128,9 @@ pub(crate) enum Failure {
     /// A machine's file is refused, or no machine has that name.
     #[error(transparent)]
     Machine(#[from] touchoff::machine::MachineError),
+    /// The machine has no such link.
+    #[error(transparent)]
+    Joint(#[from] touchoff::machine::JointError),
     /// The stock cannot be made or cut.
     #[error(transparent)]
     Stock(#[from] touchoff::stock::StockError),

@@ -46,10 +46,13 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
     let Approach {
         part, program: tips, travel, distance, line, diameter, proved_clearance, ..
     } = report.approach;
+    if report.moves == 0 {
+        return;
+    }
     message!("part: {} in {unit}", extent(part, unit));
     message!(
         "program: {} positions, tips in {} in {unit}, {} in feed and {} in rapid traverse",
-        report.motions + 1,
+        report.moves,
         extent(tips, unit),
         format_length(travel[0], unit),
         format_length(travel[1], unit),

@@ -204,7 +204,9 @@ impl Job {
             if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
                 *tool = folder.join(&*tool).display().to_string();
             }
-            entries.insert(number, entry);
+            if entries.insert(number, entry).is_some() {
+                return Err(fault(format!("tool {number} is given twice: keep one of both")));
+            }
         }
         let machine = job.machine.map(|machine| {
             if machine.ends_with(".toml") { folder.join(machine).into() } else { machine.into() }

@@ -11,7 +11,7 @@ pub(super) struct MachineFinding {
     pub(super) line: usize,
     kind: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    axis: Option<String>,
+    joint: Option<String>,
     /// The register of the length offset, and the tool in the spindle.
     #[serde(skip_serializing_if = "Option::is_none")]
     register: Option<u32>,
@@ -25,8 +25,8 @@ pub(super) struct MachineFinding {
     /// The turn of the axis, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     turn: Option<f64>,
-    #[serde(skip)]
-    is_rotary: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
 }
 
 impl MachineFinding {
@@ -37,13 +37,13 @@ impl MachineFinding {
             file: file.to_owned(),
             line,
             kind,
-            axis: letter.map(|letter| letter.to_string()),
+            joint: letter.map(|letter| letter.to_string()),
+            unit: letter.map(|letter| if letter.is_rotary() { "degrees" } else { "mm" }),
             register: None,
             tool_number: None,
             value: None,
             limit: None,
             turn: None,
-            is_rotary: letter.is_some_and(Letter::is_rotary),
         };
         let lengths = summary.other_lengths.iter().map(|(line, register, tool)| MachineFinding {
             register: Some(*register),
@@ -80,8 +80,8 @@ impl MachineFinding {
                  the job"
             );
         }
-        let unit = if self.is_rotary { "°" } else { " mm" };
-        let axis = self.axis.as_deref().unwrap_or_default();
+        let unit = if self.unit == Some("degrees") { "°" } else { " mm" };
+        let axis = self.joint.as_deref().unwrap_or_default();
         match (self.value, self.limit, self.turn) {
             (Some(value), Some(limit), _) => {
                 format!("{axis} goes to {value:.4}{unit}, beyond its limit of {limit}{unit}")

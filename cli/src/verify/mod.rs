@@ -94,7 +94,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let mut pairs = Vec::new();
     for tool in &tools {
         for body in &bodies {
-            pairs.push(check(&job, &program, tool, body, &progress)?);
+            pairs.push(check(&job, (&program, &tools), tool, body, &progress)?);
         }
     }
     drop(progress);
@@ -139,10 +139,6 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         }
     }
     out.flush()?;
-    if let Some(sarif) = sarif {
-        let stock: Vec<&StockFinding> = in_stock().collect();
-        write_file(&sarif, sarif::log(&pairs, &machine, &stock, &job)?)?;
-    }
     program.print(&pairs, job.unit);
     for pair in &pairs {
         message!("{}", summary(pair));
@@ -160,6 +156,11 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
              work offsets in a job, or accept the rest with `--anyway`"
         );
         status = NOT_CHECKED;
+    }
+    if let Some(file) = sarif {
+        let stock: Vec<&StockFinding> = in_stock().collect();
+        let log = sarif::log(&pairs, &machine, &stock, &job, status != NOT_CHECKED)?;
+        write_file(&file, log)?;
     }
     Ok(ExitCode::from(status))
 }
@@ -179,7 +180,7 @@ fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
         }
         let link = match moves_with {
             None => None,
-            Some(axis) => Some(program.link(axis)?),
+            Some(axis) => program.link(axis, job)?,
         };
         let bvh = TriangleBvh::new(&part::mesh(mesh, job.unit, "verify")?);
         bodies.push(Body { name: name.clone(), bvh, link, margin: Some(*margin) });
@@ -190,7 +191,7 @@ fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
 /// Checks the motions of a tool against a body.
 fn check<'a>(
     job: &Job,
-    program: &CheckedProgram,
+    (program, tools): (&CheckedProgram, &[ProgramTool]),
     tool: &'a ProgramTool,
     body: &'a Body,
     progress: &Progress,
@@ -207,8 +208,9 @@ fn check<'a>(
         None => {
             verifier = verifier.with_tolerance(job.tolerance)?;
             for (surface, allowed) in &job.allow {
-                // An allowance of a job holds for the tools that have the surface.
-                if tool.number.is_none() || info.surface_named(surface).is_some() {
+                // An allowance of a job holds for the tools that have the surface, and one has to have it.
+                let has = |tool: &ProgramTool| tool.tool().info().surface_named(surface).is_some();
+                if has(tool) || !tools.iter().any(has) {
                     verifier = verifier.with_allowance(surface, *allowed)?;
                 }
             }
@@ -220,7 +222,7 @@ fn check<'a>(
     if let Some(resolution) = job.resolution {
         verifier = verifier.with_resolution(resolution)?;
     }
-    let moves = program.moves(tool, body.link, job.unit);
+    let moves = program.moves(tool, body.link, job.unit)?;
     let report = verifier.check_moves(moves, &|count| progress.advance(count))?;
     let groups = FindingGroup::join(&report.findings);
     let lifts = groups.iter().map(|group| verifier.lift(&group.worst)).collect();
@@ -234,6 +236,14 @@ fn status(pairs: &[CheckedPair<'_>], job: &Job, mut status: u8) -> u8 {
         message!("not verified: {text}");
         status = NOT_CHECKED;
     };
+    if pairs.iter().all(|pair| pair.report.moves == 0) {
+        refuse(
+            "no motion could be checked, since only the machine knows where each starts or ends: state tool lengths and \
+             work offsets in a job"
+                .to_owned(),
+        );
+        return status;
+    }
     for pair in pairs {
         let CheckedPair { scope, report, .. } = pair;
         if !report.inside_known && !job.surface_only {

@@ -22,7 +22,15 @@ struct Log {
 #[derive(Serialize)]
 struct Run {
     tool: Tool,
+    invocations: [Invocation; 1],
     results: Vec<Finding>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Invocation {
+    /// Set if there is a verdict.
+    execution_successful: bool,
 }
 
 #[derive(Serialize)]
@@ -100,12 +108,13 @@ const RULES: [(&str, &str); 9] = [
     ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
 ];
 
-/// Returns the findings of all checks as a SARIF log.
+/// Returns the findings of all checks as a SARIF log. `is_verified` is set if there is a verdict.
 pub(super) fn log(
     pairs: &[CheckedPair<'_>],
     machine: &[MachineFinding],
     stock: &[&StockFinding],
     job: &Job,
+    is_verified: bool,
 ) -> Result<Vec<u8>, serde_json::Error> {
     let uri = uri(&job.program);
     let finding = |rule_id, violation: bool, text: String, lines: [usize; 2]| Finding {
@@ -147,7 +156,11 @@ pub(super) fn log(
     let log = Log {
         schema: "https://json.schemastore.org/sarif-2.1.0.json",
         version: "2.1.0",
-        runs: [Run { tool: Tool { driver }, results }],
+        runs: [Run {
+            tool: Tool { driver },
+            invocations: [Invocation { execution_successful: is_verified }],
+            results,
+        }],
     };
     serde_json::to_vec_pretty(&log)
 }

@@ -6,6 +6,7 @@ use super::machine::MachineFinding;
 use super::tools::{self, ProgramTool};
 use crate::failure::Failure;
 use crate::program;
+use std::iter;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
 use touchoff::machine::{Machine, Side};
@@ -107,13 +108,15 @@ impl CheckedProgram {
         tool: &ProgramTool,
         link: Option<usize>,
         unit: Unit,
-    ) -> Box<dyn Iterator<Item = Move> + 'a> {
-        match self {
+    ) -> Result<Box<dyn Iterator<Item = Move> + 'a>, Failure> {
+        Ok(match self {
             CheckedProgram::Locations(program) => {
                 Box::new(program_moves(program, tool.tool().info().symmetry))
             }
-            CheckedProgram::Machine(program) => Box::new(program.moves(tool.selection, link, unit)),
-        }
+            CheckedProgram::Machine(program) => {
+                Box::new(program.moves(tool.selection, link, unit)?)
+            }
+        })
     }
 
     /// Returns all motions in the order of the program, each with its tool.
@@ -121,9 +124,11 @@ impl CheckedProgram {
         &'a self,
         tools: &'a [ProgramTool],
         unit: Unit,
-    ) -> Box<dyn Iterator<Item = (&'a ProgramTool, Move)> + 'a> {
+    ) -> Result<Box<dyn Iterator<Item = (&'a ProgramTool, Move)> + 'a>, Failure> {
         let tool_of = |number: Option<u32>| {
-            tools.iter().find(|tool| tool.number == number).or_else(|| tools.first())
+            let is_its =
+                |tool: &&ProgramTool| tool.selection == ToolSelection::All || tool.number == number;
+            tools.iter().find(is_its)
         };
         let moves: Box<dyn Iterator<Item = Move>> = match self {
             CheckedProgram::Locations(program) => {
@@ -131,28 +136,37 @@ impl CheckedProgram {
                 Box::new(symmetry.into_iter().flat_map(|symmetry| program_moves(program, symmetry)))
             }
             CheckedProgram::Machine(program) => {
-                Box::new(program.moves(ToolSelection::All, None, unit))
+                Box::new(program.moves(ToolSelection::All, None, unit)?)
             }
         };
-        Box::new(moves.filter_map(move |step| Some((tool_of(step.tool)?, step))))
+        Ok(Box::new(moves.filter_map(move |step| Some((tool_of(step.tool)?, step)))))
     }
 
-    /// Returns the link of the table that moves with an axis, or `base`.
+    /// Returns the link of the table that moves with an axis, or `base`; `None` for the one that carries the part.
     ///
     /// # Errors
-    /// If the program is not for a machine, or its table has no such axis.
-    pub(super) fn link(&self, axis: &str) -> Result<usize, Failure> {
+    /// If the program is not for a machine, its table has no such axis, or the part is turned in its frame.
+    pub(super) fn link(&self, axis: &str, job: &Job) -> Result<Option<usize>, Failure> {
         let CheckedProgram::Machine(program) = self else {
             return Err(Failure::Usage("`moves_with` is for programs on a machine"));
         };
-        if axis == "base" {
-            return Ok(0);
+        let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
+        let links: Vec<String> =
+            iter::once("base".to_owned()).chain(axes.map(|axis| axis.letter.to_string())).collect();
+        match links.iter().position(|link| link == axis) {
+            // The last link carries the part.
+            Some(link) if link + 1 == links.len() => Ok(None),
+            Some(link) => match job.work_offsets()?[0] {
+                Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
+                _ => Err(Failure::Usage(
+                    "`moves_with` another axis than the part's needs the origin of G54 in `work_offsets`, without rotary \
+                     offsets",
+                )),
+            },
+            None => {
+                Err(Failure::Usage("`moves_with` names an axis of the machine's table, or `base`"))
+            }
         }
-        let table = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
-        let position = table.map(|axis| axis.letter.to_string()).position(|letter| letter == axis);
-        position
-            .map(|position| position + 1)
-            .ok_or(Failure::Usage("`moves_with` names an axis of the machine's table, or `base`"))
     }
 
     /// Prints what is known about the program before any finding.
@@ -170,7 +184,7 @@ impl CheckedProgram {
 /// Returns the motions of a program of cutter locations.
 fn program_moves(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
     let locations = &program.locations;
-    let before = std::iter::once(None).chain(locations.iter().map(Some));
+    let before = iter::once(None).chain(locations.iter().map(Some));
     before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
 }
 

@@ -32,6 +32,7 @@ pub(super) struct StockFinding {
     surface: String,
     cutting: bool,
     /// Depth of a point of material in the tool.
+    #[serde(rename = "stock_depth")]
     depth: f64,
     point: [f64; 3],
 }
@@ -66,7 +67,7 @@ pub(super) fn cut(
     let mut findings: Vec<StockFinding> = Vec::new();
     // The index in `findings` of the contact that each surface goes on with.
     let mut open: Vec<(usize, usize)> = Vec::new();
-    for (tool, step) in program.moves_in_order(tools, job.unit) {
+    for (tool, step) in program.moves_in_order(tools, job.unit)? {
         let info = tool.tool().info();
         let max_speed = step.path.max_speed(info, job.unit);
         let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };

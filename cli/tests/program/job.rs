@@ -170,7 +170,7 @@ fn a_wrong_job_is_refused() {
         ("A-C trunnion", "none.toml", "cannot be read"),
         ("ball6.tool", "ball7.tool", "ball7.tool"),
         ("moves_with = \"C\"", "moves_with = \"B\"", "`moves_with` names an axis"),
-        ("spacing = 1", "spacing = 0.001", "coarser"),
+        ("spacing = 1", "spacing = 0.001", "give a spacing of"),
         ("bracket.nc", "none.nc", "cannot be read"),
     ] {
         assert!(text.contains(from), "{from}");

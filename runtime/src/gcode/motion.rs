@@ -138,8 +138,9 @@ impl Control {
         axes
     }
 
-    /// Takes the axis words of a block as the end of a motion, with the axes that it commands.
-    fn take_end(&self, block: &mut Block) -> (Position, [bool; 6]) {
+    /// Takes the axis words of a block as the end of a motion, with the axes that they name and those that they command.
+    /// An increment of 0 commands nothing.
+    fn take_end(&self, block: &mut Block) -> (Position, [bool; 6], [bool; 6]) {
         let axes = self.take_axes(block);
         let mut end = self.position;
         for (coordinate, value) in end.iter_mut().zip(axes) {
@@ -148,7 +149,9 @@ impl Control {
                 *coordinate = origin.map(|origin| origin + value);
             }
         }
-        (end, axes.map(|value| value.is_some()))
+        let incremental = self.modal.incremental;
+        let commanded = axes.map(|value| value.is_some_and(|value| !incremental || value != 0.0));
+        (end, axes.map(|value| value.is_some()), commanded)
     }
 
     fn straight(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
@@ -158,7 +161,7 @@ impl Control {
         }
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
-        let (mut end, mut commanded) = self.take_end(block);
+        let (mut end, _, mut commanded) = self.take_end(block);
         if turns {
             end[3..].fill(None);
             commanded[3..].fill(true);
@@ -215,7 +218,7 @@ impl Control {
                 .unwrap_or(1),
             unit: self.modal.unit,
         };
-        let (end, commanded) = self.take_end(block);
+        let (end, _, commanded) = self.take_end(block);
         let path = arc::path(&words, self.position, end)?;
         self.push(false, end, commanded, path);
         Ok(())
@@ -297,14 +300,14 @@ impl Control {
             block.take_whole('P', 2, 2, "P2, or no P")?;
         }
         self.check_tilted(block)?;
-        let (end, mut commanded) = self.take_end(block);
-        if commanded.contains(&true) {
+        let (end, mut named, commanded) = self.take_end(block);
+        if named.contains(&true) {
             self.push(true, end, commanded, StepPath::Line);
         } else {
-            commanded = [true; 6];
+            named = [true; 6];
         }
         let home = if word == "G28" { self.home } else { self.second_home };
-        self.move_machine(true, commanded, home.map_or([None; 6], |home| home.map(Some)));
+        self.move_machine(true, named, home.map_or([None; 6], |home| home.map(Some)));
         Ok(())
     }
 

@@ -189,6 +189,13 @@ impl Chain {
         Ok(chain)
     }
 
+    /// Returns the chain without the limits of its linear axes: for joint values that are known up to a displacement.
+    pub(crate) fn without_linear_limits(&self) -> Chain {
+        let mut chain = *self;
+        chain.limits[..3].fill([f64::NEG_INFINITY, f64::INFINITY]);
+        chain
+    }
+
     /// Checks that joint values are in range, and that no axis is moved that the machine lacks.
     pub(super) fn check(&self, joints: &Joints) -> Result<(), JointError> {
         for letter in Letter::ALL {

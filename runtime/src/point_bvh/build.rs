@@ -5,10 +5,22 @@ use crate::bvh::{Bounds, BuildItem, Frame, WIDTH, levels, order, outward};
 use crate::cloud::Cloud;
 
 pub(super) fn build(cloud: &Cloud) -> PointBvh {
-    let points = cloud.points().iter().map(|p| [p.x, p.y, p.z]).zip(0u32..);
-    let (tree, items) = arrange(points);
+    let points = || cloud.points().iter().map(|p| [p.x, p.y, p.z]);
+    let frame = Frame::around(points());
+    let mut items: Vec<BuildItem> = points()
+        .zip(0u32..)
+        .map(|(point, index)| BuildItem { at: frame.inside(point), index })
+        .collect();
+    order(&mut items);
+    let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(build_leaf).unzip();
+    let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
+    let levels = levels(boxes);
     let weight = cloud.weights().iter().fold(0.0, |max: f64, weight| max.max(*weight));
     PointBvh {
+        frame,
+        levels,
+        leaves,
+        leaf_size,
         attributes: items
             .chunks(WIDTH)
             .map(|items| leaf_attributes(items, cloud, weight))
@@ -16,37 +28,8 @@ pub(super) fn build(cloud: &Cloud) -> PointBvh {
         weight,
         triangles: items.iter().map(|item| cloud.triangles()[item.index as usize].0).collect(),
         covering_radius: cloud.covering_radius(),
-        ..tree
-    }
-}
-
-/// Builds the tree of points without attributes, each with its id.
-pub(super) fn build_bare(points: impl Iterator<Item = ([f64; 3], u32)> + Clone) -> PointBvh {
-    let (tree, items) = arrange(points);
-    PointBvh { triangles: items.iter().map(|item| item.index).collect(), ..tree }
-}
-
-/// Builds the boxes and leaves of points with distinct ids. Returns the tree without ids and attributes, and the
-/// points in its order.
-fn arrange(points: impl Iterator<Item = ([f64; 3], u32)> + Clone) -> (PointBvh, Vec<BuildItem>) {
-    let frame = Frame::around(points.clone().map(|(point, _)| point));
-    let mut items: Vec<BuildItem> =
-        points.map(|(point, index)| BuildItem { at: frame.inside(point), index }).collect();
-    order(&mut items);
-    let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(build_leaf).unzip();
-    let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
-    let tree = PointBvh {
-        frame,
-        levels: levels(boxes),
-        leaves,
-        leaf_size,
-        attributes: Vec::new(),
-        weight: 0.0,
-        triangles: Vec::new(),
-        covering_radius: None,
         removed: 0,
-    };
-    (tree, items)
+    }
 }
 
 /// Returns a leaf and the bounding box of its points as they are stored. Slots without a point stay NaN.

@@ -15,9 +15,7 @@ impl PointBvh {
             let offset = &mut leaves[leaf].offset;
             if !offset[0][lane].is_nan() {
                 offset.iter_mut().for_each(|list| list[lane] = f32::NAN);
-                if let Some(attributes) = attributes.get_mut(leaf) {
-                    attributes.weight[lane] = 0.0;
-                }
+                attributes[leaf].weight[lane] = 0.0;
                 self.removed += 1;
                 touched.push(leaf);
             }

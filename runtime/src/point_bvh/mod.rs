@@ -51,7 +51,7 @@ pub struct PointBvh {
     pub(crate) leaves: Vec<Leaf>,
     /// The largest half extent of a leaf's box, in the tree's unit.
     pub(crate) leaf_size: f32,
-    /// Attributes of each leaf; empty for points without normals and weights.
+    /// Attributes of each leaf.
     pub(crate) attributes: Vec<LeafAttributes>,
     /// The largest weight; the leaves' weights are fractions of it.
     pub(crate) weight: f64,
@@ -66,14 +66,6 @@ impl PointBvh {
     /// Builds the tree of a cloud.
     pub fn new(cloud: &Cloud) -> PointBvh {
         build::build(cloud)
-    }
-
-    /// Builds the tree of points without normals and weights, each with an id of its own, which
-    /// [`PointBvh::triangle`] returns. The iterator is run twice, so that no list of the points is needed.
-    pub(crate) fn without_attributes(
-        points: impl Iterator<Item = ([f64; 3], u32)> + Clone,
-    ) -> PointBvh {
-        build::build_bare(points)
     }
 
     /// Multiplies every length by a factor.

@@ -1,6 +1,7 @@
 //! Errors of stocks.
 
 use super::MAX_POINTS;
+use crate::cloud::CloudError;
 use crate::mesh::{LARGEST_COORDINATE, MeshError};
 use crate::unit::Unit;
 
@@ -98,6 +99,9 @@ pub enum StockError {
     /// Nothing of the stock is left.
     #[error("nothing of the stock is left, so it has no surface")]
     NothingLeft,
+    /// The points are no cloud.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
     /// The surface of what is left is no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),

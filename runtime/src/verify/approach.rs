@@ -18,7 +18,7 @@ pub struct Approach {
     pub part: [Point3<f64>; 2],
     /// Lowest and highest corner of the bounding box of all tips at the ends of motions.
     pub program: [Point3<f64>; 2],
-    /// Length that the tip travels in feed and in rapid traverse. Curved ways are measured along 16 chords.
+    /// Length that the tip travels in feed and in rapid traverse. Curved paths are measured along 16 chords.
     pub travel: [f64; 2],
     /// The factor by which all positions in feed, which lie outside the part's box, would fit into it: a sign that the
     /// program or the part is in another unit.
@@ -132,12 +132,13 @@ impl<'a> ApproachSearch<'a> {
     fn add_move(&mut self, step: &Move) {
         let max_travel = step.path.max_travel(self.reach, self.symmetry);
         let end = step.path.pose(1.0);
-        let bound = self
-            .last
-            .map_or(0.0, |(low, _)| low - max_travel - 4.0 * f64::EPSILON * (low + max_travel));
+        // A position by itself is not reached from the last one.
+        let last = self.last.filter(|_| step.from.is_some());
+        let bound =
+            last.map_or(0.0, |(low, _)| low - max_travel - 4.0 * f64::EPSILON * (low + max_travel));
         let bound = if bound > self.distance { bound } else { self.query(&end, step.line) };
         if let Some(clearance) = self.clearance {
-            let over_motion = match (&step.path, self.last) {
+            let over_motion = match (&step.path, last) {
                 // An ambiguous motion is a finding; only its end is checked.
                 (MovePath::Ambiguous(..), _) | (_, None) => Some(bound),
                 (path, Some((first, _))) => {
@@ -220,10 +221,10 @@ impl<'a> ApproachSearch<'a> {
     }
 }
 
-/// Number of chords that measure a curved way.
+/// Number of chords that measure a curved path.
 const CHORDS: u32 = 16;
 
-/// Returns the length of the tip's way, along chords where it is curved.
+/// Returns the length of the tip's path, along chords where it is curved.
 fn path_length(path: &MovePath) -> f64 {
     match path {
         MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.displacement().norm(),

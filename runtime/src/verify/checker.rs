@@ -76,17 +76,21 @@ impl<'a> Checker<'a> {
                     step.path.max_travel(self.free_space.reach, self.free_space.symmetry);
                 let poses = [0.0, 0.5].map(|at| motion.pose(at));
                 if !self.free_space.contains(poses, max_travel, margin) {
-                    found = self.motion(step.rapid, motion, 0.0);
+                    found = self.motion(step.rapid, motion);
                 }
             }
             MovePath::Joints(joints) => {
-                self.joints(step.rapid, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found)
+                // A resolution below the part of the deviation that halving does not reduce is taken as that.
+                let floor =
+                    joints.deviation_floor(self.free_space.reach) * self.verifier.lipschitz();
+                let resolution = self.verifier.resolution.max(2.0 * floor / DEVIATION_SHARE);
+                let task = (step.rapid, resolution);
+                self.joints(task, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found);
             }
             MovePath::Ambiguous(error, rest) => {
                 found.push((1.0, FindingKind::Ambiguous(*error)));
-                found.extend(
-                    self.motion(step.rapid, rest, 0.0).into_iter().map(|(_, kind)| (1.0, kind)),
-                );
+                found
+                    .extend(self.motion(step.rapid, rest).into_iter().map(|(_, kind)| (1.0, kind)));
             }
         }
         let finding = |(time, kind)| Finding {
@@ -101,17 +105,17 @@ impl<'a> Checker<'a> {
         found.into_iter().map(finding).collect()
     }
 
-    fn motion(&mut self, rapid: bool, motion: &Motion, slack: f64) -> Vec<(f64, FindingKind)> {
-        self.modes[usize::from(rapid)].motion(motion, self.verifier.resolution, slack)
+    fn motion(&mut self, rapid: bool, motion: &Motion) -> Vec<(f64, FindingKind)> {
+        self.modes[usize::from(rapid)].motion(motion, self.verifier.resolution, 0.0)
     }
 
     /// Adds the findings of a span of a joint motion, the deepest per kind and surface.
     ///
     /// The span is halved until nothing is near it, or until the motion between its ends deviates so little that the
-    /// deviation can be counted within the resolution.
+    /// deviation can be counted within the resolution. The task is the mode and the resolution.
     fn joints(
         &mut self,
-        rapid: bool,
+        task @ (rapid, resolution): (bool, f64),
         joints: &JointPath,
         ([from, to], halvings): ([f64; 2], u32),
         found: &mut Vec<(f64, FindingKind)>,
@@ -127,8 +131,9 @@ impl<'a> Checker<'a> {
         }
         let slack = deviation * self.verifier.lipschitz();
         match motion {
-            Ok(motion) if slack <= DEVIATION_SHARE * self.verifier.resolution => {
-                for (time, kind) in self.motion(rapid, &motion, slack) {
+            Ok(motion) if slack <= DEVIATION_SHARE * resolution => {
+                let mode = &mut self.modes[usize::from(rapid)];
+                for (time, kind) in mode.motion(&motion, resolution, slack) {
                     merge(found, (from + time * (to - from), kind));
                 }
             }
@@ -137,22 +142,17 @@ impl<'a> Checker<'a> {
                 (0..self.verifier.allowed.len()).for_each(|k| merge(found, undecided(k)));
             }
             _ => {
-                self.joints(rapid, joints, ([from, middle], halvings - 1), found);
-                self.joints(rapid, joints, ([middle, to], halvings - 1), found);
+                self.joints(task, joints, ([from, middle], halvings - 1), found);
+                self.joints(task, joints, ([middle, to], halvings - 1), found);
             }
         }
     }
 }
 
-/// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both. A depth and a short
-/// distance count as the same kind.
+/// Adds a finding, or keeps the worse one of the same kind and surface, with a bound over both.
 fn merge(found: &mut Vec<(f64, FindingKind)>, mut new: (f64, FindingKind)) {
-    let is_measured =
-        |kind: &FindingKind| matches!(kind, FindingKind::Deep { .. } | FindingKind::Near { .. });
     let same = |(_, kind): &&mut (f64, FindingKind)| {
-        let is_same_kind = mem::discriminant(kind) == mem::discriminant(&new.1)
-            || is_measured(kind) && is_measured(&new.1);
-        is_same_kind && kind.surface() == new.1.surface()
+        mem::discriminant(kind) == mem::discriminant(&new.1) && kind.surface() == new.1.surface()
     };
     let Some(known) = found.iter_mut().find(same) else {
         found.push(new);

@@ -33,7 +33,9 @@ pub enum VerifyError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct VerifyReport {
-    /// Number of motions: one less than cutter locations.
+    /// Number of moves that were checked, the first position among them.
+    pub moves: usize,
+    /// Number of motions: one less than moves.
     pub motions: usize,
     /// Findings in the program's order; those of one motion in the order of the tool's surfaces.
     pub findings: Vec<Finding>,

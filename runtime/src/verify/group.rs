@@ -15,7 +15,7 @@ pub struct FindingGroup {
     pub worst: Finding,
     /// The finding of the last motion.
     pub last: Finding,
-    /// Number of motions.
+    /// Number of blocks or cutter locations.
     pub motions: usize,
 }
 
@@ -48,7 +48,8 @@ impl FindingGroup {
     }
 
     fn add(&mut self, finding: &Finding) {
-        self.motions += usize::from(finding.location != self.last.location);
+        // A block may have several moves, and a first position by itself.
+        self.motions += usize::from(finding.line != self.last.line);
         self.last = *finding;
         let other = if finding.kind.severity(&self.worst.kind) == Ordering::Greater {
             mem::replace(&mut self.worst, *finding)

@@ -9,9 +9,12 @@
 
 use super::moves::{JointPath, Move, MovePath};
 use crate::gcode::{ControlSetup, GcodeError, Interpreter, Note, Step};
-use crate::machine::{JointMotion, Letter, LimitViolation, Machine, SingularPass};
+use crate::machine::{
+    JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
+};
 use crate::motion::Motion;
 use crate::unit::Unit;
+use nalgebra::Vector3;
 use resolve::{Resolved, Resolver};
 use std::collections::BTreeMap;
 
@@ -35,9 +38,9 @@ pub struct MachineProgram {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MachineSummary {
-    /// The tools in the order of their first use.
+    /// The tools in the order of their first motion that is checked.
     pub tools: Vec<ToolUse>,
-    /// Motions that are not checked, since only the machine knows where they start or end.
+    /// Motions that are not checked, since only the machine knows where they start or end, or what positions mean.
     pub unknown: Option<UnknownMotions>,
     /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
     pub other_lengths: Vec<(usize, u32, u32)>,
@@ -108,17 +111,9 @@ impl MachineProgram {
         mut setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
         let is_placed = setup.work_offsets[0].is_some();
-        let origin = setup.work_offsets[0].unwrap_or_default();
         let home = machine.home();
-        for (index, letter) in Letter::ALL.into_iter().enumerate() {
-            match machine.axis(letter) {
-                None => setup.start[index] = Some(0.0),
-                Some(_) if is_placed => {
-                    setup.start[index] = home[index].map(|value| value - origin[index]);
-                }
-                Some(_) => (),
-            }
-        }
+        // Where the machine stands before the program is unknown; axes that it lacks are at 0.
+        setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
         if is_placed
             && home.iter().zip(machine_axes(&machine)).all(|(home, has)| home.is_some() || !has)
         {
@@ -142,31 +137,41 @@ impl MachineProgram {
     }
 
     /// Returns the motions with one tool relative to a link of the table (`None` for the part), in a unit of length. Links
-    /// are numbered as by [`Chain::relative_to`](crate::machine::Chain::relative_to).
+    /// are numbered as by [`Chain::relative_to`](crate::machine::Chain::relative_to). The frame of a link is that of the
+    /// part while all axes, X, Y and Z included, are at 0.
     ///
     /// A motion of which only the end is known is given as a rest at that end.
+    ///
+    /// # Errors
+    /// [`JointError::NoLink`] if the machine has no such link.
     pub fn moves(
         &self,
         tool: ToolSelection,
         link: Option<usize>,
         unit: Unit,
-    ) -> impl Iterator<Item = Move> + '_ {
+    ) -> Result<impl Iterator<Item = Move> + '_, JointError> {
+        if let Some(link) = link {
+            self.machine.chain(&Setup::default())?.relative_to(link)?;
+        }
+        let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
+        let frame = MoveFrame { link, origin: Vector3::new(x, y, z), unit };
         let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
         let mut resolver = Resolver::new(&self.machine, &self.setup);
         let mut from = None;
-        // The first run has shown that every step can be read and resolved.
-        steps.map_while(Result::ok).flat_map(move |step| {
-            let resolved = resolver.resolve(&step).unwrap_or(Resolved::Unknown);
+        // The first run has read and resolved every step.
+        let steps = steps.map(|step| step.expect("a step that was read before"));
+        Ok(steps.flat_map(move |step| {
+            let resolved = resolver.resolve(&step).expect("a step that was resolved before");
             if !tool.contains(step.state.tool) {
                 from = None;
                 return Vec::new();
             }
-            let moves = moves_of(&step, resolved, (link, unit), from);
+            let moves = moves_of(&step, resolved, frame, from);
             if !moves.is_empty() {
                 from = Some(step.line);
             }
             moves
-        })
+        }))
     }
 
     fn error(&self, error: GcodeError) -> MachineProgramError {
@@ -189,12 +194,6 @@ impl MachineProgram {
                 line: step.line,
                 fault,
             })?;
-            let number = step.state.tool;
-            let index = *uses.entry(number).or_insert_with(|| {
-                summary.tools.push(ToolUse { number, line: step.line, motions: 0 });
-                summary.tools.len() - 1
-            });
-            summary.tools[index].motions += 1;
             let motions = match resolved {
                 Resolved::Unknown | Resolved::Arrival(_) => {
                     let unknown = UnknownMotions { count: 0, line: step.line, feed_line: None };
@@ -207,6 +206,12 @@ impl MachineProgram {
                 }
                 Resolved::Motions(motions) => motions,
             };
+            let number = step.state.tool;
+            let index = *uses.entry(number).or_insert_with(|| {
+                summary.tools.push(ToolUse { number, line: step.line, motions: 0 });
+                summary.tools.len() - 1
+            });
+            summary.tools[index].motions += 1;
             let other = resolver.other_length(&step.state).filter(|_| !step.rapid);
             if let Some((register, tool)) = other
                 && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
@@ -249,17 +254,24 @@ fn add_violation(found: &mut Vec<(usize, LimitViolation)>, line: usize, violatio
     }
 }
 
+/// The frame of moves.
+#[derive(Clone, Copy)]
+struct MoveFrame {
+    /// The link of the table; `None` for the part.
+    link: Option<usize>,
+    /// Origin of the part in machine coordinates, in mm.
+    origin: Vector3<f64>,
+    unit: Unit,
+}
+
 /// Returns the moves of a step.
-fn moves_of(
-    step: &Step,
-    resolved: Resolved,
-    (link, unit): (Option<usize>, Unit),
-    from: Option<usize>,
-) -> Vec<Move> {
-    let related = |motion: JointMotion| match link {
-        // The links of the machine were checked when the bodies were read.
-        Some(link) => motion.relative_to(link).unwrap_or(motion),
-        None => motion,
+fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
+    let path = |motion: JointMotion, error: f64| match frame.link {
+        Some(link) => {
+            let related = motion.relative_to(link).expect("a link of the machine");
+            JointPath::new(related, frame.unit, error).relative_to(frame.origin)
+        }
+        None => JointPath::new(motion, frame.unit, error),
     };
     let as_move = |from: Option<usize>, path: MovePath| Move {
         line: step.line,
@@ -269,7 +281,7 @@ fn moves_of(
         path,
     };
     let rest = |motion: JointMotion, at: f64| {
-        let pose = JointPath::new(related(motion), unit, 0.0).pose(at);
+        let pose = path(motion, 0.0).pose(at);
         Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
     };
     match resolved {
@@ -282,8 +294,8 @@ fn moves_of(
             let start = start.and_then(|(motion, _)| rest(*motion, 0.0));
             let start = start.map(|path| as_move(None, path));
             let motions = motions.into_iter().map(|(motion, error)| {
-                let path = JointPath::new(related(motion), unit, error);
-                as_move(Some(from.unwrap_or(step.line)), MovePath::Joints(Box::new(path)))
+                let path = MovePath::Joints(Box::new(path(motion, error)));
+                as_move(Some(from.unwrap_or(step.line)), path)
             });
             start.into_iter().chain(motions).collect()
         }

@@ -242,11 +242,12 @@ impl<'a> Verifier<'a> {
             count += batch.len();
         }
         Ok(VerifyReport {
+            moves: count,
             motions: count.saturating_sub(1),
             approach: approach.finish(),
             findings,
             inside_known: self.bvh.has_inside(),
-            unrestricted: !self.restricts(modes, &max_depths),
+            unrestricted: count > 0 && !self.restricts(modes, &max_depths),
         })
     }
 

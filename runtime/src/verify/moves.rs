@@ -7,7 +7,7 @@ use crate::pose::Pose;
 use crate::program::CutterLocation;
 use crate::tool::{Symmetry, ToolInfo};
 use crate::unit::Unit;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 /// A motion of a program.
 #[derive(Clone, Debug)]
@@ -20,11 +20,11 @@ pub struct Move {
     pub rapid: bool,
     /// Number of the tool in the spindle, if the program states it.
     pub tool: Option<u32>,
-    /// The way of the tool, in the frame and unit of the part.
+    /// The path of the tool, in the frame and unit of the part.
     pub path: MovePath,
 }
 
-/// The way of the tool during a motion.
+/// The path of the tool during a motion.
 #[derive(Clone, Debug)]
 pub enum MovePath {
     /// The tip moves on a straight line, and the axis turns at constant speed.
@@ -43,26 +43,45 @@ pub struct JointPath {
     scale: f64,
     /// Bound on the distance of the motion from the one that the control makes, in millimetres.
     error: f64,
+    /// Origin of the frame of poses, in that of the motion and in millimetres.
+    origin: Vector3<f64>,
 }
 
 impl JointPath {
     /// Creates the path of a joint motion that differs from that of the control by at most `error`, in millimetres.
     pub fn new(motion: JointMotion, unit: Unit, error: f64) -> JointPath {
-        JointPath { motion, scale: Unit::Millimetre.factor_to(unit), error }
+        let (scale, origin) = (Unit::Millimetre.factor_to(unit), Vector3::zeros());
+        JointPath { motion, scale, error, origin }
+    }
+
+    /// Returns the path relative to an origin, in millimetres and the frame of the motion.
+    #[must_use]
+    pub fn relative_to(self, origin: Vector3<f64>) -> JointPath {
+        JointPath { origin, ..self }
     }
 
     /// Returns the pose at a fraction of the motion, from 0 to 1.
     pub fn pose(&self, fraction: f64) -> Pose {
         let pose = self.motion.pose(fraction);
-        if self.scale == 1.0 {
+        if self.scale == 1.0 && self.origin == Vector3::zeros() {
             return pose;
         }
-        Pose::turned(*pose.rotation(), pose.tip() * self.scale, true)
+        Pose::turned(*pose.rotation(), (pose.tip() - self.origin) * self.scale, true)
     }
 
-    /// Adds to a bound on the deviation, in millimetres, the error of the motion and the rounding of scaled coordinates.
+    /// Returns the part of the deviation that does not decrease with the length of a span: the error of the motion, and
+    /// rounding.
+    pub(super) fn deviation_floor(&self, reach: f64) -> f64 {
+        let rounding = self.motion.rounding();
+        let unscaled = rounding.tip + 2.0 * rounding.rotation * reach / self.scale;
+        let [from, to] = [0.0, 1.0].map(|at| self.scaled(unscaled, &self.pose(at).tip(), reach));
+        from.max(to)
+    }
+
+    /// Adds to a bound on the deviation, in millimetres, the error of the motion and the rounding of the coordinates.
     fn scaled(&self, deviation: f64, tip: &Point3<f64>, reach: f64) -> f64 {
-        let rounding = f64::EPSILON * (tip.coords.norm() + reach);
+        let size = tip.coords.norm() + reach + self.origin.norm() * self.scale;
+        let rounding = 2.0 * f64::EPSILON * size;
         (deviation + self.error) * self.scale + rounding
     }
 }

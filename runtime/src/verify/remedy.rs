@@ -24,10 +24,14 @@ impl Verifier<'_> {
             } else {
                 Pose::from_axis(tip, finding.pose.axis())
             };
-            let found = pose
-                .ok()
-                .and_then(|pose| certifier.deepest_on(surface, &pose, 0.5 * self.resolution).ok());
-            found.is_some_and(|found| found.depth.high <= allowed + self.resolution)
+            let Ok(pose) = pose else { return false };
+            let tolerance = 0.5 * self.resolution;
+            if allowed < 0.0 {
+                let found = certifier.clearance_of(&[surface], &pose, tolerance);
+                return found.is_ok_and(|found| found.distance.low >= -allowed - self.resolution);
+            }
+            let found = certifier.deepest_on(surface, &pose, tolerance);
+            found.is_ok_and(|found| found.depth.high <= allowed + self.resolution)
         };
         let excess = (depth.high - allowed).max(self.resolution);
         let longest = 2.0 * self.reach();

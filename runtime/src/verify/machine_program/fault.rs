@@ -57,12 +57,28 @@ pub enum StepFault {
     /// The head turns, and the length of the tool is unknown.
     #[error("the head turns, and so the length of the tool matters: state it in the job")]
     NoLength,
-    /// The table turns without tool centre point control, and the place of the part on it is unknown.
+    /// The table turns without tool centre point control, and the position of the part on it is unknown.
     #[error(
-        "the table turns without tool centre point control, and so the place of the part on it matters: state the origin \
-         of G54 in the job's `work_offsets`"
+        "the table turns without tool centre point control, and so the position of the part on it matters: state the \
+         origin of G54 in the job's `work_offsets`"
     )]
-    NoPlace,
+    NoPartPosition,
+    /// The program sets or turns G54, which is the frame of the part.
+    #[error(
+        "the program sets G54, which is the frame of the part, to other values than the job: state its origin in the job's \
+         `work_offsets`, or remove the block"
+    )]
+    MovedPart,
+    /// An arc in a tilted plane has too many turns.
+    #[error(
+        "an arc in a tilted plane turns by {degrees:.0} degrees, more than {limit:.0}: divide it"
+    )]
+    LongArc {
+        /// The angle, in degrees.
+        degrees: f64,
+        /// The greatest angle at this radius, in degrees.
+        limit: f64,
+    },
     /// The origin of a work offset is unknown.
     #[error(
         "the origin of {offset} is unknown: state it, and that of G54, in the job's `work_offsets`"
@@ -71,7 +87,7 @@ pub enum StepFault {
         /// The work offset.
         offset: String,
     },
-    /// A work offset is turned against that of the part while the program states tips.
+    /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
     #[error(
         "{offset} is turned against G54 while tool centre point control is on, which is not read"
     )]

@@ -1,14 +1,15 @@
 //! Paths of steps, mapped to joints or to the part's frame.
 
+use super::StepFault;
 use crate::gcode::{Plane, StepPath};
 use crate::machine::{self, LinearPath};
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest distance between an arc and its chords, in mm, where the arc's plane is not parallel to two axes.
-const CHORD_TOLERANCE: f64 = 1e-4;
+const CHORD_TOLERANCE: f64 = 2e-5;
 
-/// Tolerance of components within which a plane is parallel to two axes.
-const PLANE_TOLERANCE: f64 = 1e-12;
+/// Largest number of chords of an arc.
+const MAX_CHORDS: f64 = 100_000.0;
 
 /// A map p ↦ R p + o of program coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +24,9 @@ impl Map {
     }
 }
 
-/// A piece of a mapped path: the fractions of the step at which it begins and ends, and a bound on its distance from
+/// A segment of a mapped path: the fractions of the step at which it begins and ends, and a bound on its distance from
 /// the step's path at the same time, in mm.
-pub(super) struct Piece {
+pub(super) struct Segment {
     pub(super) fractions: [f64; 2],
     pub(super) path: LinearPath,
     pub(super) error: f64,
@@ -34,18 +35,23 @@ pub(super) struct Piece {
 /// Maps the path of a step between two positions in program coordinates.
 ///
 /// Arcs in planes that are parallel to two axes stay arcs. Others become chords.
-pub(super) fn map(path: &StepPath, [start, end]: [[f64; 3]; 2], map: &Map) -> Vec<Piece> {
+pub(super) fn map(
+    path: &StepPath,
+    [start, end]: [[f64; 3]; 2],
+    map: &Map,
+) -> Result<Vec<Segment>, StepFault> {
     let [from, to] = [start, end].map(|position| map.apply(position));
     let StepPath::Arc { plane, centre, sweep } = *path else {
         let path = LinearPath::Line { start: from, end: to };
-        return vec![Piece { fractions: [0.0, 1.0], path, error: 0.0 }];
+        return Ok(vec![Segment { fractions: [0.0, 1.0], path, error: 0.0 }]);
     };
     let [first, second] = plane.axes();
     let mut middle = start;
     (middle[first], middle[second]) = (centre[0], centre[1]);
     let middle = map.apply(middle);
     let normal: [f64; 3] = map.rotation.column(plane.normal()).into();
-    let parallel = (0..3).find(|k| 1.0 - normal[*k].abs() <= PLANE_TOLERANCE);
+    // Rotations by quarter turns are exact.
+    let parallel = (0..3).find(|k| normal[*k].abs() == 1.0);
     if let Some(axis) = parallel {
         let plane = [Plane::Yz, Plane::Zx, Plane::Xy][axis];
         let [first, second] = plane.axes();
@@ -60,7 +66,7 @@ pub(super) fn map(path: &StepPath, [start, end]: [[f64; 3]; 2], map: &Map) -> Ve
             centre: [middle[first], middle[second]],
             sweep: sweep.copysign(sweep * normal[axis]),
         };
-        return vec![Piece { fractions: [0.0, 1.0], path, error: 0.0 }];
+        return Ok(vec![Segment { fractions: [0.0, 1.0], path, error: 0.0 }]);
     }
     chords(plane, centre, sweep, [start, end], map)
 }
@@ -73,7 +79,7 @@ fn chords(
     sweep: f64,
     [start, end]: [[f64; 3]; 2],
     map: &Map,
-) -> Vec<Piece> {
+) -> Result<Vec<Segment>, StepFault> {
     let ([first, second], normal) = (plane.axes(), plane.normal());
     let radius =
         |position: [f64; 3]| (position[first] - centre[0]).hypot(position[second] - centre[1]);
@@ -81,6 +87,10 @@ fn chords(
     let largest = from.max(to);
     let angle = (8.0 * CHORD_TOLERANCE / largest).sqrt().clamp(1e-3, 0.5);
     let count = (sweep.abs() / angle).ceil().max(1.0);
+    if count > MAX_CHORDS {
+        let [degrees, limit] = [sweep.abs(), MAX_CHORDS * angle].map(f64::to_degrees);
+        return Err(StepFault::LongArc { degrees, limit });
+    }
     let begin = (start[second] - centre[1]).atan2(start[first] - centre[0]);
     let position = |k: f64| {
         let at = k / count;
@@ -98,12 +108,12 @@ fn chords(
     // The change of the radius adds 2 |r'| Δ to the second derivative.
     let step = sweep.abs() / count;
     let error = step * (largest * step + 2.0 * (to - from).abs() / count) / 8.0;
-    let mut pieces = Vec::new();
+    let mut segments = Vec::new();
     let mut k = 0.0;
     while k < count {
         let path = LinearPath::Line { start: position(k), end: position(k + 1.0) };
-        pieces.push(Piece { fractions: [k / count, (k + 1.0) / count], path, error });
+        segments.push(Segment { fractions: [k / count, (k + 1.0) / count], path, error });
         k += 1.0;
     }
-    pieces
+    Ok(segments)
 }

@@ -3,9 +3,9 @@
 use super::StepFault;
 use super::path::{self, Map};
 use crate::gcode::{
-    ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, Tcp, WorkOffset,
+    ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, WorkOffset,
 };
-use crate::machine::{Chain, JointMotion, Joints, LinearPath, Machine, Setup, Side};
+use crate::machine::{Chain, JointMotion, Joints, Letter, LinearPath, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use std::collections::BTreeMap;
 
@@ -30,8 +30,10 @@ pub(super) struct Resolver<'a> {
     origin: [f64; 6],
     /// Set if a rotary axis carries the tool.
     has_head: bool,
-    /// Set if a rotary axis turns the part, whose place on the machine is unknown.
-    is_loose: bool,
+    /// Set if the origin of the part on the machine is given.
+    is_placed: bool,
+    /// Set if it is not, and a rotary axis turns the part.
+    part_position_unknown: bool,
     /// The chain for the last tool length.
     chain: Option<(f64, Chain)>,
     /// The joint values after the last step, as far as they are known.
@@ -47,6 +49,15 @@ struct Frame {
     rotary: [f64; 3],
     /// Set if the map leads to the tip.
     is_tip: bool,
+    /// Set if a rotary axis carries the tool, whose length is unknown.
+    has_unknown_lever: bool,
+}
+
+/// The length of the tool in the spindle and the length offset, in mm.
+struct Lengths {
+    length: f64,
+    offset: f64,
+    is_known: bool,
 }
 
 impl<'a> Resolver<'a> {
@@ -64,7 +75,8 @@ impl<'a> Resolver<'a> {
             lengths: &setup.lengths,
             origin,
             has_head: has_rotary(Side::Tool),
-            is_loose: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
+            is_placed: setup.work_offsets[0].is_some(),
+            part_position_unknown: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
             chain: None,
             joints,
         }
@@ -75,64 +87,67 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        let Some(lengths) = self.lengths(&step.state)? else {
-            // A length offset of another tool puts Z at an unknown height.
-            self.joints[2] = None;
-            if step.state.turns_with_workpiece() {
-                self.joints[..2].fill(None);
-            }
+        let Some(frame) = self.frame(&step.state)? else {
+            // Only the machine knows what positions mean.
+            self.joints = self.joints.map(|_| None);
             return Ok(Resolved::Unknown);
         };
-        let frame = self.frame(&step.state, lengths)?;
-        let stands = self.stands(&frame);
+        if matches!(step.path, StepPath::Align) {
+            return self.align(&frame, &step.state);
+        }
+        let current = self.current_position(&frame);
         let mut ends = [step.start, step.end];
         for k in 0..6 {
-            // The machine stands where it stands, whatever the program knows of it.
-            ends[0][k] = stands[k].or(ends[0][k]);
+            // The machine knows where it is, also where the program does not.
+            ends[0][k] = current[k].or(ends[0][k]);
             if ends[1][k].is_none() && !step.commanded[k] {
                 ends[1][k] = ends[0][k];
             }
         }
-        if matches!(step.path, StepPath::Align) {
-            return self.align(&frame, &step.state);
-        }
-        let near = self.joints.map(Option::unwrap_or_default);
-        let [start, end] = ends.map(|position| known(&position));
-        if let (Some(axis), Some(end)) = (step.tool_vector, end.or(linear_only(&ends[1]))) {
+        if let (Some(axis), Some(end)) = (step.tool_vector, linear_only(&ends[1])) {
+            let near = self.joints.map(Option::unwrap_or_default);
             let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
-            let found = frame.chain.inverse(&tip, &Vector3::from(axis), &near)?;
+            let chain = self.limited(&frame.chain);
+            let found = chain.inverse(&tip, &Vector3::from(axis), &near)?;
             for k in 3..6 {
                 ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]);
             }
         }
-        let end = known(&ends[1]).or(end);
+        let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
             return Ok(Resolved::Unknown);
         };
-        if self.is_loose && !frame.is_tip {
-            let turns =
-                |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
-            if turns(end) || start.is_some_and(turns) {
-                return Err(StepFault::NoPlace);
+        let turns = |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
+        if !frame.is_tip && (turns(end) || start.is_some_and(turns)) {
+            if self.part_position_unknown {
+                return Err(StepFault::NoPartPosition);
+            }
+            if frame.has_unknown_lever {
+                return Err(StepFault::NoLength);
             }
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined);
-        match start.filter(|_| is_determined) {
-            Some(start) => {
-                let motions = frame.motions(&step.path, [start, end])?;
-                if let Some((last, _)) = motions.last() {
-                    self.joints = last.joints(1.0).map(Some);
-                }
-                Ok(Resolved::Motions(motions))
-            }
+        let resolved = match start.filter(|_| is_determined) {
+            Some(start) => Resolved::Motions(frame.motions(&step.path, [start, end])?),
             None => {
                 let mut motions = frame.motions(&StepPath::Line, [end, end])?;
                 let (rest, _) = motions.swap_remove(0);
-                self.joints = rest.joints(1.0).map(Some);
-                Ok(Resolved::Arrival(Box::new(rest)))
+                Resolved::Arrival(Box::new(rest))
             }
+        };
+        let last = match &resolved {
+            Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
+            Resolved::Arrival(rest) => Some(&**rest),
+            Resolved::Unknown => None,
+        };
+        if let Some(last) = last {
+            self.joints = last.joints(1.0).map(Some);
         }
+        if frame.is_tip && frame.has_unknown_lever {
+            self.joints[..3].fill(None);
+        }
+        Ok(resolved)
     }
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
@@ -141,25 +156,35 @@ impl<'a> Resolver<'a> {
             Rotation::Tilted { frame, .. } => frame.rotation.column(2).into_owned(),
             Rotation::Off | Rotation::Plane { .. } => Vector3::z(),
         };
-        let Some(joints) = known(&self.joints) else { return Ok(Resolved::Unknown) };
-        let tip = frame.chain.pose(&joints)?.tip();
-        // The linear joints of the solution are those of the tip, which does not rest.
-        let found = frame.chain.inverse(&tip, &axis, &joints)?.joints;
+        let near = self.joints.map(Option::unwrap_or_default);
+        // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
+        let chain = frame.chain.without_linear_limits();
+        let found = chain.inverse(&Point3::origin(), &axis, &near)?.joints;
+        let before = known(&self.joints);
+        (3..6).for_each(|k| self.joints[k] = Some(found[k]));
+        let Some(joints) = before else { return Ok(Resolved::Unknown) };
+        if self.part_position_unknown || frame.has_unknown_lever {
+            return Ok(Resolved::Unknown);
+        }
         let rest = [joints[0], joints[1], joints[2]];
         let rotary = [[joints[3], joints[4], joints[5]], [found[3], found[4], found[5]]];
         let motion =
             JointMotion::new(&frame.chain, rotary, &LinearPath::Line { start: rest, end: rest })?;
-        self.joints = motion.joints(1.0).map(Some);
         Ok(Resolved::Motions(vec![(motion, 0.0)]))
     }
 
-    /// Returns the mapping of a state's coordinates.
-    fn frame(
-        &mut self,
-        state: &ControlState,
-        (length, offset): (f64, f64),
-    ) -> Result<Frame, StepFault> {
+    /// Returns a chain without the limits of linear axes if the position of the part on the machine is unknown.
+    fn limited(&self, chain: &Chain) -> Chain {
+        if self.is_placed { *chain } else { chain.without_linear_limits() }
+    }
+
+    /// Returns the mapping of a state's coordinates; `None` if only the machine knows it.
+    fn frame(&mut self, state: &ControlState) -> Result<Option<Frame>, StepFault> {
         let is_tip = state.turns_with_workpiece();
+        let Some(Lengths { length, offset, is_known }) = self.lengths(state)? else {
+            return Ok(None);
+        };
+        let Some(shift) = self.known_in_machine(&state.shift) else { return Ok(None) };
         let chain = match &self.chain {
             Some((known, chain)) if *known == length => *chain,
             _ => {
@@ -169,25 +194,32 @@ impl<'a> Resolver<'a> {
                 chain
             }
         };
-        let name = || state.work_offset.to_string();
-        let is_part = state.work_offset == WorkOffset::Standard(1);
-        let origin = match known(&state.origin) {
-            Some(origin) => origin,
-            None if is_part => self.origin,
-            None => return Err(StepFault::NoOrigin { offset: name() }),
+        let offset_name = || state.work_offset.to_string();
+        let origin = if state.work_offset == WorkOffset::Standard(1) {
+            let differs = |k: usize| match state.origin[k] {
+                Some(value) => !self.is_placed || value != self.origin[k],
+                None => false,
+            };
+            if state.origin_rotation != 0.0 || (0..6).any(differs) {
+                return Err(StepFault::MovedPart);
+            }
+            self.origin
+        } else {
+            match self.known_in_machine(&state.origin).filter(|_| self.is_placed) {
+                Some(origin) => origin,
+                None => return Err(StepFault::NoOrigin { offset: offset_name() }),
+            }
         };
-        let shift = known(&state.shift).unwrap_or_default();
         let (turn, about) = match state.rotation.frame() {
             Some(frame) => (frame.rotation, frame.origin),
             None => (Matrix3::identity(), Vector3::zeros()),
         };
         let about = about + Vector3::new(shift[0], shift[1], shift[2]);
-        let turned =
-            Rotation3::from_axis_angle(&Vector3::z_axis(), state.origin_rotation.to_radians());
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
         if is_tip {
-            if state.origin_rotation != 0.0 || origin[3..] != self.origin[3..] {
-                return Err(StepFault::TurnedOffset { offset: name() });
+            let is_turned = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
+            if state.origin_rotation != 0.0 || is_turned {
+                return Err(StepFault::TurnedOffset { offset: offset_name() });
             }
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
         } else {
@@ -196,35 +228,46 @@ impl<'a> Resolver<'a> {
         let map = if state.origin_rotation == 0.0 {
             Map { rotation: turn, origin: about + linear }
         } else {
+            let angle = state.origin_rotation.to_radians();
+            let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
             Map { rotation: turned.matrix() * turn, origin: turned * about + linear }
         };
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
-        Ok(Frame { chain, map, rotary, is_tip })
+        let has_unknown_lever = self.has_head && !is_known;
+        Ok(Some(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
     }
 
-    /// Returns the length of the tool in the spindle and the length offset, in mm; `None` if the offset is that of another
-    /// tool and one of both is unknown. If neither is known, both count as 0: the tip is then where the program says.
-    fn lengths(&self, state: &ControlState) -> Result<Option<(f64, f64)>, StepFault> {
-        let length = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
-        let (lengths, is_known) = match (state.length, length) {
-            (LengthOffset::Off, Some(length)) => ((length, 0.0), true),
-            (LengthOffset::Off, None) => ((0.0, 0.0), false),
+    /// Returns the coordinates, if those of all axes of the machine are known. Others are 0.
+    fn known_in_machine(&self, position: &Position) -> Option<[f64; 6]> {
+        let mut values = *position;
+        for (value, letter) in values.iter_mut().zip(Letter::ALL) {
+            if self.machine.axis(letter).is_none() {
+                *value = value.or(Some(0.0));
+            }
+        }
+        known(&values)
+    }
+
+    /// Returns the length of the tool in the spindle and the length offset; `None` if the offset is that of another tool
+    /// and one of both is unknown. If neither is known, both count as 0: the tip is then where the program says.
+    fn lengths(&self, state: &ControlState) -> Result<Option<Lengths>, StepFault> {
+        let known = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
+        let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
+        let lengths = match (state.length, known) {
+            (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
+            (LengthOffset::Off, None) => of(0.0, 0.0, false),
             (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
-                ((length, offset), true)
+                of(length, offset, true)
             }
             (LengthOffset::On { register, length: offset }, length) => {
                 if state.tool.is_some_and(|tool| tool != register) {
                     return Ok(None);
                 }
                 let known = offset.or(length);
-                ((known.unwrap_or(0.0), known.unwrap_or(0.0)), known.is_some())
+                of(known.unwrap_or(0.0), known.unwrap_or(0.0), known.is_some())
             }
         };
-        let turns = self.joints[3..].iter().any(|angle| *angle != Some(0.0));
-        if self.has_head && !is_known && state.tcp == Tcp::Off && turns {
-            return Err(StepFault::NoLength);
-        }
-        let (length, offset) = lengths;
+        let Lengths { length, offset, .. } = lengths;
         if let (LengthOffset::On { register, .. }, Some(tool)) = (state.length, state.tool)
             && state.turns_with_workpiece()
             && (length - offset).abs() > LENGTH_TOLERANCE
@@ -246,12 +289,15 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the position of the machine in program coordinates, as far as it is known.
-    fn stands(&self, frame: &Frame) -> Position {
+    fn current_position(&self, frame: &Frame) -> Position {
         let mut position = [None; 6];
         for k in 3..6 {
             position[k] = self.joints[k].map(|angle| angle - frame.rotary[k - 3]);
         }
         let back = frame.map.rotation.transpose();
+        if frame.is_tip && frame.has_unknown_lever {
+            return position;
+        }
         if frame.is_tip {
             if let Some(pose) =
                 known(&self.joints).and_then(|joints| frame.chain.pose(&joints).ok())
@@ -297,16 +343,15 @@ impl Frame {
                 value + self.rotary[k - 3]
             })
         };
-        let pieces = path::map(path, linear, &self.map);
-        let motion = |piece: path::Piece| {
-            let rotary = piece.fractions.map(angles);
+        let motion = |segment: path::Segment| {
+            let rotary = segment.fractions.map(angles);
             let motion = match self.is_tip {
-                true => JointMotion::with_tcp(&self.chain, rotary, &piece.path)?,
-                false => JointMotion::new(&self.chain, rotary, &piece.path)?,
+                true => JointMotion::with_tcp(&self.chain, rotary, &segment.path)?,
+                false => JointMotion::new(&self.chain, rotary, &segment.path)?,
             };
-            Ok((motion, piece.error))
+            Ok((motion, segment.error))
         };
-        pieces.into_iter().map(motion).collect()
+        path::map(path, linear, &self.map)?.into_iter().map(motion).collect()
     }
 }
 

@@ -17,7 +17,7 @@ use crate::expr::{Id, Node};
 use crate::formula::{ANY_SIGN, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
-use order::{ExcessBesideLine, LowerByLinear};
+use order::LowerByLinear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -83,8 +83,8 @@ pub(super) struct BorderProver<'m> {
     /// The curves that are not polynomials but sums of roots.
     sums: Vec<Option<RootSum>>,
     differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
-    /// For a depth, whether it is the greater of two, a straight curve, and the side below it: its excess there.
-    beside_line: HashMap<(usize, bool, CurveIndex, bool), Option<ExcessBesideLine>>,
+    /// Straight curves with a gradient of length 1.
+    lines: HashMap<CurveIndex, Option<Polynomial>>,
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
@@ -107,8 +107,6 @@ pub(super) struct BorderProver<'m> {
     contacts: HashMap<(CurveIndex, CurveIndex), ContactSearch>,
     tangencies: HashMap<(Pair, CurveIndex), Option<Tangency>>,
     values: Evaluator<'m>,
-    /// The point at which depths were evaluated last.
-    evaluated_at: Option<[f64; 3]>,
     /// The current box.
     cell: Cell,
 }
@@ -153,8 +151,7 @@ impl<'m> BorderProver<'m> {
             excluded: HashMap::new(),
             no_deeper: HashMap::new(),
             excesses: HashMap::new(),
-            beside_line: HashMap::new(),
-            evaluated_at: None,
+            lines: HashMap::new(),
             contacts: HashMap::new(),
             tangencies: HashMap::new(),
             cell,
