@@ -51,8 +51,8 @@ N400 T2 M6
 N410 S9000 M3
 N420 G0 X-30. Y40.
 N430 A-80. C0.
-N440 G43.4 H2 Z60.
-N450 G0 X-40. Y40. Z30.
+N440 G43.4 H2 X-40. Y40. Z60.
+N450 G0 Z30.
 N460 Y19.2 Z1.62
 N470 G1 X40. F1000.
 N480 G0 Y40. Z40.
@@ -66,7 +66,7 @@ N520 M30
 /// A ball end mill in a nut, whose stick-out is a param.
 const BALL: &str = "tool Ball6 \"6 mm ball end mill in a nut\" { units mm; param stickout = 35; profile { start (0, 0); \
                     arc to (3, 3) center (0, 3) as ball cutting; line to (3, 12) as flute cutting; line to (3, \
-                    stickout) as shank; line to (14, stickout), (14, stickout + 30), (0, stickout + 30) as nut; } \
+                    stickout) as shank; line to (16, stickout), (16, stickout + 30), (0, stickout + 30) as nut; } \
                     niceness cutting: 1; }";
 
 /// Returns an end mill of a diameter.

@@ -43,6 +43,8 @@ const RUNTIME: &[&str] = &[
     "mesh",
     "pose",
     "motion",
+    "machine",
+    "gcode",
     "tool",
     "import",
     "export",
