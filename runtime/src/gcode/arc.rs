@@ -1,5 +1,6 @@
 //! Arcs: centre, sweep and the check of radii.
 
+use super::modal::centre_letters;
 use super::{Plane, Position, StepPath};
 use crate::unit::Unit;
 use std::f64::consts::{SQRT_2, TAU};
@@ -113,21 +114,18 @@ const CHORD_TOLERANCE: f64 = 0.00005 * 25.4;
 /// one turn is within 2⁻⁴⁹ (1 + D / r) of exact, for the radius r and the largest coordinate D.
 pub(super) fn path(words: &ArcWords, start: Position, end: Position) -> Result<StepPath, ArcFault> {
     let [first, second] = words.plane.axes();
-    let centre_letters = words.plane.centre_letters();
+    let letters = centre_letters(words.plane);
     let normal = words.plane.normal();
     // Posts that always write I, J and K give 0 for the third.
     let other = words.offsets[normal].filter(|offset| words.absolute || *offset != 0.0);
     if other.is_some() {
-        return Err(ArcFault::OtherPlane {
-            letter: ['I', 'J', 'K'][normal],
-            centre: centre_letters,
-        });
+        return Err(ArcFault::OtherPlane { letter: ['I', 'J', 'K'][normal], centre: letters });
     }
     let offsets = [words.offsets[first], words.offsets[second]];
     let at = |position: Position| Some([position[first]?, position[second]?]);
     let known = at(start).zip(at(end));
     match (words.radius, offsets) {
-        (None, [None, None]) => Err(ArcFault::NoCentre { centre: centre_letters }),
+        (None, [None, None]) => Err(ArcFault::NoCentre { centre: letters }),
         (Some(_), [None, None]) if known.is_none() => Ok(StepPath::Undetermined),
         (Some(radius), [None, None]) => match known {
             Some((start, end)) => by_radius(words, radius, start, end),
@@ -135,7 +133,7 @@ pub(super) fn path(words: &ArcWords, start: Position, end: Position) -> Result<S
         },
         (Some(_), _) => Err(ArcFault::CentreAndRadius),
         (None, [None, _] | [_, None]) if words.absolute => {
-            Err(ArcFault::HalfCentre { centre: centre_letters })
+            Err(ArcFault::HalfCentre { centre: letters })
         }
         (None, [i, j]) => match known {
             Some((start, end)) => {
@@ -181,7 +179,7 @@ fn by_radius(
     let chord = [end[0] - start[0], end[1] - start[1]];
     let half = 0.5 * chord[0].hypot(chord[1]);
     if 2.0 * half < SAME_POINT {
-        return Err(ArcFault::SamePoint { centre: words.plane.centre_letters() });
+        return Err(ArcFault::SamePoint { centre: centre_letters(words.plane) });
     }
     if radius.abs() < LEAST_RADIUS {
         return Err(ArcFault::ZeroRadius);

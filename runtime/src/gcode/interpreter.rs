@@ -1,11 +1,12 @@
 //! The interpreter: reads blocks, executes them in order, and returns their motions.
 
+use super::Plane;
 use super::block::Block;
 use super::code::{Code, Group};
 use super::expression::Parameters;
 use super::flow::Flow;
 use super::label::{Label, Role};
-use super::modal::{FeedMode, Plane};
+use super::modal::FeedMode;
 use super::motion::Control;
 use super::note::{Note, Subject};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};

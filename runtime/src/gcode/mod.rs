@@ -65,9 +65,10 @@ pub use arc::ArcFault;
 pub use error::{GcodeError, GcodeFault};
 pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
-pub use modal::Plane;
 pub use note::{Note, NoteKind};
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+
+pub use crate::machine::Plane;
 
 use crate::unit::Unit;
 use std::collections::BTreeMap;

@@ -1,44 +1,14 @@
 //! Modal settings that a motion depends on and that are no part of [`ControlState`](super::ControlState).
 
+use crate::machine::Plane;
 use crate::unit::Unit;
 
-/// Plane of arcs and canned cycles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plane {
-    /// G17: first axis X, second Y, normal Z.
-    Xy,
-    /// G18: first axis Z, second X, normal Y.
-    Zx,
-    /// G19: first axis Y, second Z, normal X.
-    Yz,
-}
-
-impl Plane {
-    /// Returns the indices of the first and the second axis (X is 0).
-    pub const fn axes(self) -> [usize; 2] {
-        match self {
-            Plane::Xy => [0, 1],
-            Plane::Zx => [2, 0],
-            Plane::Yz => [1, 2],
-        }
-    }
-
-    /// Returns the index of the normal (X is 0).
-    pub const fn normal(self) -> usize {
-        match self {
-            Plane::Xy => 2,
-            Plane::Zx => 1,
-            Plane::Yz => 0,
-        }
-    }
-
-    /// Returns the letters of a centre in the plane.
-    pub(super) const fn centre_letters(self) -> &'static str {
-        match self {
-            Plane::Xy => "I and J",
-            Plane::Zx => "I and K",
-            Plane::Yz => "J and K",
-        }
+/// Returns the letters of a centre in a plane.
+pub(super) const fn centre_letters(plane: Plane) -> &'static str {
+    match plane {
+        Plane::Xy => "I and J",
+        Plane::Zx => "I and K",
+        Plane::Yz => "J and K",
     }
 }
 

@@ -1,10 +1,11 @@
 //! The control, and its motions: lines, arcs, returns to reference positions, machine coordinates.
 
+use super::Plane;
 use super::arc::{self, ArcWords};
 use super::block::Block;
 use super::code::Group;
 use super::cycle::Cycle;
-use super::modal::{FeedMode, Modal, Motion, Plane};
+use super::modal::{FeedMode, Modal, Motion};
 use super::note::{Notes, Subject};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Step, StepPath};

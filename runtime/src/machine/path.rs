@@ -19,6 +19,18 @@ pub enum Plane {
 }
 
 impl Plane {
+    /// Returns the indices of the first and the second coordinate (x is 0).
+    pub const fn axes(self) -> [usize; 2] {
+        let [first, second, _] = self.indices();
+        [first, second]
+    }
+
+    /// Returns the index of the normal (x is 0).
+    pub const fn normal(self) -> usize {
+        let [_, _, normal] = self.indices();
+        normal
+    }
+
     /// Returns the indices of the first and the second coordinate and of the normal.
     const fn indices(self) -> [usize; 3] {
         match self {

@@ -3,6 +3,7 @@
 
 mod cases;
 mod joints;
+mod machines;
 mod oracle;
 
 use nalgebra::Point3;

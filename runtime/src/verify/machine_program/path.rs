@@ -1,8 +1,8 @@
 //! Paths of steps, mapped to joints or to the part's frame.
 
 use super::StepFault;
-use crate::gcode::{Plane, StepPath};
-use crate::machine::{self, LinearPath};
+use crate::gcode::StepPath;
+use crate::machine::{LinearPath, Plane};
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest distance between an arc and its chords, in mm, where the arc's plane is not parallel to two axes.
@@ -58,11 +58,7 @@ pub(super) fn map(
         let path = LinearPath::Arc {
             start: from,
             end: to,
-            plane: match plane {
-                Plane::Xy => machine::Plane::Xy,
-                Plane::Zx => machine::Plane::Zx,
-                Plane::Yz => machine::Plane::Yz,
-            },
+            plane,
             centre: [middle[first], middle[second]],
             sweep: sweep.copysign(sweep * normal[axis]),
         };

@@ -109,9 +109,7 @@ impl<'a> Resolver<'a> {
             let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
             let chain = self.limited(&frame.chain);
             let found = chain.inverse(&tip, &Vector3::from(axis), &near)?;
-            for k in 3..6 {
-                ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]);
-            }
+            (3..6).for_each(|k| ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]));
         }
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
@@ -290,46 +288,40 @@ impl<'a> Resolver<'a> {
 
     /// Returns the position of the machine in program coordinates, as far as it is known.
     fn current_position(&self, frame: &Frame) -> Position {
-        let mut position = [None; 6];
-        for k in 3..6 {
-            position[k] = self.joints[k].map(|angle| angle - frame.rotary[k - 3]);
-        }
-        let back = frame.map.rotation.transpose();
-        if frame.is_tip && frame.has_unknown_lever {
-            return position;
-        }
+        let angle = |k: usize| self.joints[k].map(|angle| angle - frame.rotary[k - 3]);
+        let with_linear = |[x, y, z]: [Option<f64>; 3]| [x, y, z, angle(3), angle(4), angle(5)];
+        let back = |position: Vector3<f64>| -> [Option<f64>; 3] {
+            let linear = frame.map.rotation.transpose() * (position - frame.map.origin);
+            [0, 1, 2].map(|k| Some(linear[k]))
+        };
         if frame.is_tip {
-            if let Some(pose) =
-                known(&self.joints).and_then(|joints| frame.chain.pose(&joints).ok())
-            {
-                let linear = back * (pose.tip().coords - frame.map.origin);
-                (0..3).for_each(|k| position[k] = Some(linear[k]));
-            }
-        } else if frame.map.rotation == Matrix3::identity() {
-            for k in 0..3 {
-                position[k] = self.joints[k].map(|value| value - frame.map.origin[k]);
-            }
-        } else if let Some([x, y, z, ..]) = linear_only(&self.joints) {
-            let linear = back * (Vector3::new(x, y, z) - frame.map.origin);
-            (0..3).for_each(|k| position[k] = Some(linear[k]));
+            let joints = known(&self.joints).filter(|_| !frame.has_unknown_lever);
+            let pose = joints.and_then(|joints| frame.chain.pose(&joints).ok());
+            return with_linear(pose.map_or([None; 3], |pose| back(pose.tip().coords)));
         }
-        position
+        if frame.is_plain() {
+            let linear = |k: usize| self.joints[k].map(|value| value - frame.map.origin[k]);
+            return with_linear([0, 1, 2].map(linear));
+        }
+        let linear = linear_only(&self.joints);
+        with_linear(linear.map_or([None; 3], |[x, y, z, ..]| back(Vector3::new(x, y, z))))
     }
 
     /// Keeps the joints that are known at an end that is not known in all axes.
     fn forget(&mut self, frame: &Frame, end: &Position) {
-        for k in 3..6 {
-            self.joints[k] = end[k].map(|angle| angle + frame.rotary[k - 3]);
-        }
-        let is_plain = !frame.is_tip && frame.map.rotation == Matrix3::identity();
-        for k in 0..3 {
-            let value = end[k].filter(|_| is_plain);
-            self.joints[k] = value.map(|value| value + frame.map.origin[k]);
-        }
+        self.joints = [0, 1, 2, 3, 4, 5].map(|k| match k {
+            0..3 => end[k].filter(|_| frame.is_plain()).map(|value| value + frame.map.origin[k]),
+            _ => end[k].map(|angle| angle + frame.rotary[k - 3]),
+        });
     }
 }
 
 impl Frame {
+    /// Returns whether each linear joint depends on one coordinate alone.
+    fn is_plain(&self) -> bool {
+        !self.is_tip && self.map.rotation == Matrix3::identity()
+    }
+
     /// Returns the motions between two positions in program coordinates.
     fn motions(
         &self,
