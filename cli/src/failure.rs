@@ -168,6 +168,54 @@ pub(crate) enum Failure {
     /// No path could be planned.
     #[error(transparent)]
     Path(#[from] touchoff::postures::path::PathError),
+    /// A program is not proved as it would be written.
+    #[error(
+        "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
+         written: {reason}: raise `--tolerance`, or sweep and plan again with another stepover or `--max-tilt`"
+    )]
+    NotProved {
+        /// The file that would be written, with the line if there is one.
+        file: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The finding.
+        reason: String,
+    },
+    /// The machine does not reach a cutter location.
+    #[error(
+        "`{machine}` does not reach cutter location {location}, with the axis {:.6},{:.6},{:.6}: {source}",
+        .axis[0], .axis[1], .axis[2]
+    )]
+    Unreachable {
+        /// The machine.
+        machine: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The tool axis.
+        axis: [f64; 3],
+        /// The reason.
+        source: touchoff::machine::InverseError,
+    },
+    /// A work offset or a tool length is out of range for a machine.
+    #[error(transparent)]
+    Joint(#[from] touchoff::machine::JointError),
+    /// An axis of the machine leaves its limits on the way to a cutter location.
+    #[error(
+        "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
+         correct `--work-offset`, or limit the axis with `--max-tilt`"
+    )]
+    AxisLimit {
+        /// The machine.
+        machine: String,
+        /// The planned cutter location, from 1.
+        location: usize,
+        /// The axis.
+        letter: touchoff::machine::Letter,
+        /// The joint value, in mm or degrees.
+        value: f64,
+        /// The limit, in mm or degrees.
+        limit: f64,
+    },
     /// A program could not be written.
     #[error(transparent)]
     Write(#[from] touchoff::program::WriteError),
@@ -181,7 +229,7 @@ pub(crate) enum Failure {
     },
     /// No format of a program has this file extension.
     #[error(
-        "a program is written as `.apt` or `.csv`, and `{file}` is neither: change its extension"
+        "a program is written as `.apt`, `.csv` or `.nc`, and `{file}` is none of them: change its extension"
     )]
     ProgramFormat {
         /// The requested file.

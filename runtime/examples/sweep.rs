@@ -82,6 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         directions: &directions,
         accessibility: &access,
         pattern: &pattern,
+        max_tilt: std::f64::consts::PI,
     }
     .plan()?;
     println!(

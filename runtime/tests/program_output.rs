@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
-use touchoff::program::{AptHeader, Cutter, Program, WriteError};
+use touchoff::program::{AptHeader, Cutter, Decimals, Program, WriteError};
 use touchoff::tool::Tool;
 use touchoff::{Pose, Unit};
 
@@ -91,7 +91,7 @@ fn writes_programs_in_the_usual_form() {
     ];
     let program = Program::new("made", Some(Unit::Inch), poses).expect("two poses");
     let cutter = Cutter::of(Flat.info(), Unit::Inch);
-    let text = apt(&program, &AptHeader { part: "WALL $ 1; 2", cutter });
+    let text = apt(&program, &AptHeader { part: "WALL $ 1; 2", cutter, ..AptHeader::default() });
     assert_eq!(
         text,
         "PARTNO/WALL $ 1; 2\nUNITS/INCHES\nMULTAX/ON\nCUTTER/0.47244094488188976,0\nRAPID\n\
@@ -110,6 +110,57 @@ fn writes_programs_in_the_usual_form() {
 }
 
 #[test]
+fn writes_the_words_of_tool_spindle_and_feed_with_few_decimals() {
+    let axis = Vector3::new(1.0, 2.0, 3.0).normalize();
+    let poses = [
+        (pose([1.0 / 3.0, -2e-6, 100.0], [0.0, 0.0, 1.0]), true),
+        (pose([2.0 / 3.0, -2.5, 1e-4], axis.into()), false),
+    ];
+    let header = |unit| AptHeader {
+        part: "A",
+        tool_number: Some(7),
+        spindle: Some(8000.0),
+        feed: Some(600.5),
+        decimals: Some(Decimals::of(unit)),
+        ..AptHeader::default()
+    };
+    let program = Program::new("made", Some(Unit::Millimetre), poses).expect("two poses");
+    let text = apt(&program, &header(Unit::Millimetre));
+    assert_eq!(
+        text,
+        "PARTNO/A\nUNITS/MM\nMULTAX/ON\nLOADTL/7\nSPINDL/8000,CLW\nFEDRAT/600.5,MMPM\nRAPID\n\
+         GOTO/0.33333,0,100,0,0,1\nGOTO/0.66667,-2.5,0.0001,0.267261242,0.534522484,0.801783726\nFINI\n"
+    );
+    let read = Program::parse(&text, "again.cl").expect("it is a program");
+    let words: Vec<&str> = read.ignored.iter().map(|(_, word)| word.as_str()).collect();
+    assert_eq!(words, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
+    assert_eq!(read.locations[1].pose.tip(), Point3::new(0.66667, -2.5, 0.0001));
+    assert!((read.locations[1].pose.axis() - axis).amax() < 1e-9);
+    // What was read and is written again is the same text.
+    assert_eq!(apt(&read, &header(Unit::Millimetre)), text);
+
+    let inch = Program::new("made", Some(Unit::Inch), poses).expect("two poses");
+    let text = apt(&inch, &header(Unit::Inch));
+    assert!(
+        text.contains("FEDRAT/600.5,IPM\n") && text.contains("GOTO/0.3333333,-0.000002,100,"),
+        "{text}"
+    );
+    let refused = |program: &Program, header: &AptHeader<'_>| {
+        program.write_apt(&mut Vec::new(), header).expect_err("it is refused")
+    };
+    let unknown = Program::new("made", None, poses).expect("two poses");
+    assert!(matches!(refused(&unknown, &header(Unit::Inch)), WriteError::FeedUnit));
+    for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for header in [
+            AptHeader { feed: Some(rate), ..AptHeader::default() },
+            AptHeader { spindle: Some(rate), ..AptHeader::default() },
+        ] {
+            assert!(matches!(refused(&inch, &header), WriteError::Rate { .. }));
+        }
+    }
+}
+
+#[test]
 fn rejects_programs_that_apt_cannot_express() {
     let poses = [(pose([0.0; 3], [0.0, 0.0, 1.0]), false)];
     let metre = Program::new("made", Some(Unit::Metre), poses).expect("a pose");
@@ -120,7 +171,7 @@ fn rejects_programs_that_apt_cannot_express() {
     );
     let program = Program::new("made", None, poses).expect("a pose");
     for part in ["A\nGOTO/1,2,3", "A\r", "\u{1b}[2J"] {
-        let header = AptHeader { part, cutter: None };
+        let header = AptHeader { part, ..AptHeader::default() };
         let error = program.write_apt(&mut Vec::new(), &header).expect_err("no line");
         assert!(matches!(error, WriteError::Part { .. }), "{error}");
     }
@@ -168,7 +219,7 @@ proptest! {
     fn written_programs_are_read_back(poses in poses(), inches in any::<Option<bool>>()) {
         let unit = inches.map(|inches| if inches { Unit::Inch } else { Unit::Millimetre });
         let program = Program::new("made", unit, poses).expect("a pose at least");
-        let text = apt(&program, &AptHeader { part: "A", cutter: None });
+        let text = apt(&program, &AptHeader { part: "A", ..AptHeader::default() });
         prop_assert!(text.lines().all(|line| line.len() <= 72), "{}", text);
         let read = Program::parse(&text, "again").expect("it is a program");
         prop_assert_eq!(read.unit, unit);
@@ -183,7 +234,7 @@ proptest! {
             }
         }
         // A program that was read once is written the same, except for that rounding of an axis.
-        let read_twice = Program::parse(apt(&read, &AptHeader { part: "A", cutter: None }), "again");
+        let read_twice = Program::parse(apt(&read, &AptHeader { part: "A", ..AptHeader::default() }), "again");
         let read_twice = read_twice.expect("it is a program");
         for (original, copy) in read.locations.iter().zip(&read_twice.locations) {
             prop_assert_eq!((original.line, original.rapid), (copy.line, copy.rapid));

@@ -1,7 +1,8 @@
 //! The arguments of the posture commands.
 
 use super::values::{
-    allowance, direction, direction_count, finite, positive_length, posture_count,
+    allowance, direction, direction_count, finite, point, positive, positive_length, posture_count,
+    tilt, tool_number,
 };
 use super::{MeshFile, ToolArguments};
 use clap::{Args, ValueEnum};
@@ -99,11 +100,41 @@ pub(crate) struct Path {
     /// Largest distance between points on a line, in the part's unit [default: half the stepover].
     #[arg(long, value_name = "LENGTH", value_parser = positive_length)]
     pub(crate) forward_step: Option<f64>,
+    /// Largest angle between the tool axis and +z of the part, in degrees, above 0 and up to 180 [default: 180, any
+    /// axis]. With 90 no tool axis points below the table.
+    #[arg(long, value_name = "DEGREES", value_parser = tilt)]
+    pub(crate) max_tilt: Option<f64>,
+    /// Number of the tool: `LOADTL` in `.apt`, `T`, `M6` and `H` in `.nc`, which needs it.
+    #[arg(long, value_name = "NUMBER", value_parser = tool_number)]
+    pub(crate) tool_number: Option<u32>,
+    /// Feed per minute, in the part's unit: `FEDRAT` in `.apt`, `F` in `.nc`, which needs it.
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    pub(crate) feed: Option<f64>,
+    /// Spindle speed in revolutions per minute, clockwise: `SPINDL` in `.apt`, `S` and `M3` in `.nc`.
+    #[arg(long, value_name = "RPM", value_parser = positive)]
+    pub(crate) spindle: Option<f64>,
+    #[command(flatten)]
+    pub(crate) machine: MachineArguments,
     /// Check only the part's surface where its mesh leaks or is inside out, so that its inside is unknown. Without
     /// this option, such a part ends with status 2.
     #[arg(long)]
     pub(crate) surface_only: bool,
-    /// Output file for the program.
-    #[arg(short, long, value_name = "OUT.apt|.csv")]
+    /// Output file for the program: APT-CL in `.apt`, a table in `.csv`, G-code for a machine in `.nc`.
+    #[arg(short, long, value_name = "OUT.apt|.csv|.nc")]
     pub(crate) output: PathBuf,
+}
+
+/// The machine of a G-code program.
+#[derive(Args)]
+pub(crate) struct MachineArguments {
+    /// Machine of `.nc`, which needs it: a built-in one by name, such as `A-C trunnion`, or a file.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) machine: Option<PathBuf>,
+    /// Origin of the part in machine coordinates (G54), in the part's unit. With it the limits of the linear axes and
+    /// the way from the home position are checked; needs `--tool-length`.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, requires_all = ["machine", "tool_length"])]
+    pub(crate) work_offset: Option<Point3<f64>>,
+    /// Distance from the tip to the gauge point of the spindle, in the part's unit; needs `--work-offset`.
+    #[arg(long, value_name = "LENGTH", value_parser = positive_length, requires = "work_offset")]
+    pub(crate) tool_length: Option<f64>,
 }

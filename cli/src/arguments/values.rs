@@ -98,6 +98,19 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a largest tilt in degrees.
+pub(super) fn tilt(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        value if value > 0.0 && value <= 180.0 => Ok(value),
+        _ => Err("give an angle in degrees above 0 and up to 180, such as 90".to_owned()),
+    }
+}
+
+/// Parses the number of a tool.
+pub(super) fn tool_number(text: &str) -> Result<u32, String> {
+    whole(text, 0..=99_999_999).map(|value| value as u32)
+}
+
 /// Parses a finite number.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     match number(text)? {

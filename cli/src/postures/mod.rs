@@ -1,9 +1,12 @@
 //! The commands `sweep`, `map` and `path`: try tool postures at every triangle, print or draw the result, and plan a
-//! path over it. `picture` and `render` draw a map on its part.
+//! path over it. `picture` and `render` draw a map on its part; `post` and `joints` write G-code, and `prove` checks what is written.
 
+mod joints;
 pub(crate) mod map;
 pub(crate) mod path;
 mod picture;
+mod post;
+mod prove;
 mod render;
 pub(crate) mod sweep;
 

@@ -1,6 +1,8 @@
 //! `touchoff path`: a program over all that a tool reaches.
 
 use super::map::read_part;
+use super::post::{Post, Words};
+use super::prove::{Location, Prover, planning_rules};
 use crate::arguments::postures::Path as Arguments;
 use crate::failure::Failure;
 use crate::loaded_tool::LoadedTool;
@@ -13,15 +15,20 @@ use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::path::{PathRequest, Pattern};
 use touchoff::postures::{Directions, PostureMap, Rules};
-use touchoff::program::{AptHeader, Cutter, apt_unit};
-use touchoff::{Motion, Pose, Program};
+use touchoff::program::{AptHeader, Cutter, Decimals, apt_unit};
+use touchoff::{Motion, Program};
 
 #[derive(Serialize)]
 struct Summary {
     unit: &'static str,
     locations: usize,
     contact_points: usize,
+    /// Number of intermediate cutter locations that a machine needs.
+    inserted_locations: usize,
+    /// The sum of the next two.
     points_left_out: usize,
+    points_not_reached: usize,
+    points_without_motion: usize,
     retracts: usize,
     /// The root mean square turn of the axis from point to point, in degrees, before and after smoothing.
     turn_before_smoothing_degrees: f64,
@@ -34,22 +41,66 @@ struct Summary {
     first_upside_down_location: Option<usize>,
 }
 
-/// Plans a path of a tool over a part, and writes the program.
+/// The format of the program.
+enum Format<'a> {
+    Apt,
+    Table,
+    /// For a machine.
+    Gcode(&'a Path, Words),
+}
+
+impl<'a> Format<'a> {
+    /// Returns the format that the output's extension names, if the options fit it.
+    fn of(arguments: &'a Arguments) -> Result<Format<'a>, Failure> {
+        let Arguments { tool_number, feed, spindle, .. } = *arguments;
+        let machine = arguments.machine.machine.as_deref();
+        let extension = extension(&arguments.output);
+        if machine.is_some() && extension.as_deref() != Some("nc") {
+            return Err(Failure::Usage(
+                "a machine is for G-code: write the program to a file that ends in `.nc`, or leave `--machine` out",
+            ));
+        }
+        match (extension.as_deref(), machine) {
+            (Some("apt"), _) => Ok(Format::Apt),
+            (Some("csv"), _) if tool_number.is_some() || feed.is_some() || spindle.is_some() => {
+                Err(Failure::Usage(
+                    "a table has no place for `--tool-number`, `--feed` and `--spindle`: leave them out, or write `.apt`",
+                ))
+            }
+            (Some("csv"), _) => Ok(Format::Table),
+            (Some("nc"), None) => Err(Failure::Usage(
+                "G-code is for a machine: name one with `--machine`, or write `.apt`",
+            )),
+            (Some("nc"), Some(machine)) => {
+                let (Some(tool_number), Some(feed)) = (tool_number, feed) else {
+                    return Err(Failure::Usage(
+                        "G-code states the tool and the feed: give `--tool-number` and `--feed`",
+                    ));
+                };
+                Ok(Format::Gcode(machine, Words { tool_number, feed, spindle }))
+            }
+            _ => Err(Failure::ProgramFormat { file: arguments.output.display().to_string() }),
+        }
+    }
+}
+
+/// Plans a path of a tool over a part, proves the program as it is written, and writes it.
 pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
-    let apt = match extension(&arguments.output).as_deref() {
-        Some("apt") => true,
-        Some("csv") => false,
-        _ => return Err(Failure::ProgramFormat { file: arguments.output.display().to_string() }),
-    };
+    let format = Format::of(arguments)?;
     refuse_inputs(
         [&*arguments.output],
-        [&*arguments.map, &arguments.part, Path::new(&arguments.tool)],
+        [&*arguments.map, &arguments.part, Path::new(&arguments.tool)]
+            .into_iter()
+            .chain(arguments.machine.machine.as_deref()),
     )?;
     let map = PostureMap::read(&arguments.map)?;
     let unit = map.identity().part.unit;
-    if apt {
-        apt_unit(unit)?;
-    }
+    let is_apt = matches!(format, Format::Apt);
+    let post = match format {
+        Format::Apt => apt_unit(unit).map(|_| None)?,
+        Format::Table => None,
+        Format::Gcode(machine, words) => Some(Post::new(&arguments.machine, machine, words, unit)?),
+    };
     let loaded = LoadedTool::load(&arguments.tool, &arguments.params)?;
     let (tool, identity) = (loaded.tool(), map.identity());
     let index = identity.tool(tool.info()).ok_or_else(|| Failure::OtherTool {
@@ -75,43 +126,70 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     part::require_inside(&bvh, &arguments.part, arguments.surface_only)?;
     let directions = Directions::from(identity.directions.clone());
     let progress = Progress::spinner("planning", json);
+    let name = arguments.output.display().to_string();
+    let prover = Prover::new(&bvh, tool, &rules, &name)?;
     let request = PathRequest {
         mesh: &mesh,
         bvh: &bvh,
         tool,
-        rules: &rules,
+        rules: &planning_rules(&rules),
         directions: &directions,
         accessibility: &access,
         pattern: &pattern,
+        max_tilt: arguments.max_tilt.unwrap_or(180.0).to_radians(),
     };
     let path = request.plan()?;
+    let planned = path.locations.len();
+    let part = arguments.part.file_stem().unwrap_or_default().to_string_lossy();
+    let header = AptHeader {
+        part: &part,
+        tool_number: arguments.tool_number,
+        cutter: Cutter::of(tool.info(), unit),
+        spindle: arguments.spindle,
+        feed: arguments.feed,
+        decimals: Some(Decimals::of(unit)),
+    };
+    let written = |locations: &[Location]| {
+        let program = Program::new(&name, Some(unit), locations.iter().copied())?;
+        let mut text = Vec::new();
+        if post.is_some() {
+            return Ok((program, text));
+        }
+        if is_apt {
+            program.write_apt(&mut text, &header)?;
+        } else {
+            program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
+        }
+        Ok((Program::parse(&text, &name)?, text))
+    };
+    let (locations, text) = prover.settle(path.locations, written)?;
+    let (text, locations) = match &post {
+        Some(post) => {
+            let (text, locations) = post.program(&prover, &locations, &name)?;
+            (text.into_bytes(), locations)
+        }
+        None => (text, locations),
+    };
     drop(progress);
-    let below = |(pose, _): &(Pose, bool)| pose.axis().z < 0.0;
+    let below = |(pose, _): &Location| pose.axis().z < 0.0;
     let [before, after] = path.turns.map(f64::to_degrees);
-    let [feed_length, rapid_length] = lengths(&path.locations);
+    let [feed_length, rapid_length] = lengths(&locations);
     let summary = Summary {
         unit: unit.symbol(),
-        locations: path.locations.len(),
+        locations: locations.len(),
         contact_points: path.contact_points,
-        points_left_out: path.left_out,
+        inserted_locations: locations.len() - planned,
+        points_left_out: path.unreached + path.unlinked,
+        points_not_reached: path.unreached,
+        points_without_motion: path.unlinked,
         retracts: path.retracts,
         turn_before_smoothing_degrees: before,
         turn_degrees: after,
         feed_length,
         rapid_length,
-        upside_down_locations: path.locations.iter().filter(|location| below(location)).count(),
-        first_upside_down_location: path.locations.iter().position(below),
+        upside_down_locations: locations.iter().filter(|location| below(location)).count(),
+        first_upside_down_location: locations.iter().position(below),
     };
-    let name = arguments.output.display().to_string();
-    let program = Program::new(&name, Some(unit), path.locations)?;
-    let mut text = Vec::new();
-    if apt {
-        let part = arguments.part.file_stem().unwrap_or_default().to_string_lossy();
-        let heading = AptHeader { part: &part, cutter: Cutter::of(tool.info(), unit) };
-        program.write_apt(&mut text, &heading)?;
-    } else {
-        program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
-    }
     write_file(&arguments.output, text)?;
     let mut out = Output::lines();
     if json {
@@ -131,7 +209,18 @@ fn print_text(out: &mut impl Write, output: &Path, summary: &Summary) -> std::io
         "{}: {locations} cutter locations, {contact_points} of them on the surface",
         output.display()
     )?;
-    writeln!(out, "{} points left out; {retracts} retracts", summary.points_left_out)?;
+    if summary.inserted_locations > 0 {
+        writeln!(
+            out,
+            "{} cutter locations inserted where the joints of the machine would lead the tool too deep",
+            summary.inserted_locations
+        )?;
+    }
+    writeln!(
+        out,
+        "{} points left out ({} not reached, {} without a proved motion); {retracts} retracts",
+        summary.points_left_out, summary.points_not_reached, summary.points_without_motion
+    )?;
     writeln!(out, "{feed:.1} {unit} in feed, {rapid:.1} {unit} in rapid traverse")?;
     writeln!(
         out,
@@ -151,7 +240,7 @@ fn print_text(out: &mut impl Write, output: &Path, summary: &Summary) -> std::io
 }
 
 /// Returns the length of the tip's path in feed and in rapid traverse.
-fn lengths(locations: &[(Pose, bool)]) -> [f64; 2] {
+fn lengths(locations: &[Location]) -> [f64; 2] {
     let mut lengths = [0.0; 2];
     for pair in locations.windows(2) {
         let [(from, _), (to, rapid)] = [pair[0], pair[1]];

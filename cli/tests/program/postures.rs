@@ -186,7 +186,7 @@ fn a_map_of_something_else_is_refused() {
         ])
     };
     refused(&path("BallEr16", &program), &["not swept with this `BallEr16`"]);
-    refused(&path("D2Ball", &tube.place("p.nc")), &[".apt", "p.nc"]);
+    refused(&path("D2Ball", &tube.place("p.txt")), &[".apt", "p.txt"]);
     assert!(rows() == before, "a refusal changes nothing");
 }
 
@@ -229,4 +229,155 @@ fn a_program_that_cannot_be_written_leaves_the_file_as_it_was() {
     let path = ["path", &tube.map, "--part", &tube.part, "--tool", "D2Ball", "--stepover", "1"];
     refused(&touchoff(&[&path[..], &["-o", &program]].concat()), &["no word for m", "table"]);
     assert_eq!(std::fs::read_to_string(&program).expect("a file"), "GOTO/1,2,3\n");
+}
+
+/// Plans a path over the tube with the ball, in planes of a normal.
+fn path_across(normal: &str, tube: &Tube, output: &str, more: &[&str]) -> Output {
+    let all = ["path", &tube.map, "--part", &tube.part, "--tool", "D2Ball"];
+    let pattern = ["--plane-normal", normal, "--stepover", "3", "-o", output, "--json"];
+    touchoff(&[&all[..], &pattern, more].concat())
+}
+
+/// Plans a path over the tube with the ball, in horizontal planes.
+fn path(tube: &Tube, output: &str, more: &[&str]) -> Output {
+    path_across("0,0,1", tube, output, more)
+}
+
+fn verified(tube: &Tube, program: &str, more: &[&str]) {
+    let all = ["verify", "--part", &tube.part, "--unit", "mm", "--tool", "D2Ball"];
+    let more =
+        [&["--program", program, "--tolerance", "0.05", "--allow", "shank=0.00625"], more].concat();
+    let checked = touchoff(&[&all[..], &more].concat());
+    assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
+}
+
+#[test]
+fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let output = tube.place("words.apt");
+    let words = ["--tool-number", "7", "--feed", "600.5", "--spindle", "8000"];
+    let free = object(&path(&tube, &output, &words));
+    let text = std::fs::read_to_string(&output).expect("a program");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines[..7],
+        [
+            "PARTNO/tube",
+            "UNITS/MM",
+            "MULTAX/ON",
+            "LOADTL/7",
+            "CUTTER/2,1",
+            "SPINDL/8000,CLW",
+            "FEDRAT/600.5,MMPM"
+        ]
+    );
+    let longest = |range: std::ops::Range<usize>| {
+        let numbers = lines.iter().filter_map(|line| line.strip_prefix("GOTO/"));
+        let numbers =
+            numbers.flat_map(|row| row.split(',').enumerate().filter(|(k, _)| range.contains(k)));
+        numbers.map(|(_, number)| number.split_once('.').map_or(0, |(_, d)| d.len())).max()
+    };
+    assert_eq!((longest(0..3), longest(3..6)), (Some(5), Some(9)), "{text}");
+    verified(&tube, &output, &[]);
+    let sum = |told: &Value| {
+        told["points_not_reached"].as_u64().expect("a number")
+            + told["points_without_motion"].as_u64().expect("a number")
+    };
+    assert_eq!(free["points_left_out"].as_u64(), Some(sum(&free)), "{free}");
+    let lowest = |text: &str| {
+        let program = touchoff::Program::parse(text, "words.apt").expect("a program");
+        program.locations.iter().map(|location| location.pose.axis().z).fold(1.0, f64::min)
+    };
+    let limit = 30f64.to_radians().cos();
+    assert!(lowest(&text) < limit - 0.1, "without a limit the axis tilts more");
+
+    let tilted = object(&path(&tube, &output, &["--max-tilt", "30"]));
+    assert_eq!(tilted["points_left_out"].as_u64(), Some(sum(&tilted)), "{tilted}");
+    let text = std::fs::read_to_string(&output).expect("a program");
+    assert!(lowest(&text) >= limit - 1e-9, "{}", lowest(&text));
+    assert!(!["LOADTL", "SPINDL", "FEDRAT"].iter().any(|word| text.contains(word)), "{text}");
+    verified(&tube, &output, &[]);
+    for angle in ["0", "-5", "180.5", "nan"] {
+        let refused = path(&tube, &output, &["--max-tilt", angle]);
+        assert_eq!(refused.status.code(), Some(2), "{angle}: {}", stderr(&refused));
+    }
+    let table = path(&tube, &tube.place("words.csv"), &words);
+    assert_eq!(table.status.code(), Some(2), "{}", stderr(&table));
+    assert!(stderr(&table).contains("a table has no place"), "{}", stderr(&table));
+}
+
+#[test]
+fn a_path_that_rounding_ruins_is_not_written() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let output = tube.place("kept.apt");
+    std::fs::write(&output, "kept").expect("a writable folder");
+    // Tips are rounded to 1e-5 mm, so that the ball is up to 5e-6 mm deep where it touches a plane.
+    let fine = ["--tolerance", "1e-6", "--max-tilt", "90", "--forward-step", "12"];
+    refused(
+        &path(&tube, &output, &fine),
+        &["kept.apt:", "as it would be written", "raise `--tolerance`"],
+    );
+    assert_eq!(std::fs::read_to_string(&output).expect("a file"), "kept");
+}
+
+#[test]
+fn a_path_for_a_machine_is_proved_on_its_joints() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let output = tube.place("tube.nc");
+    let words = ["--tool-number", "3", "--feed", "500", "--spindle", "9000", "--max-tilt", "90"];
+    for machine in ["A-C trunnion", "A-C fork head"] {
+        let told = object(&path(&tube, &output, &[&words[..], &["--machine", machine]].concat()));
+        let text = std::fs::read_to_string(&output).expect("a program");
+        assert!(text.starts_with("G21 G90 G94 G54\nT3 M6\nS9000 M3\nG43.4 H3\nG0 X"), "{text}");
+        assert!(text.ends_with("\nM30\n") && text.contains(" F500.\n"), "{text}");
+        let motions =
+            text.lines().filter(|line| line.starts_with("G0 X") || line.starts_with("G1 X"));
+        assert_eq!(told["locations"].as_u64(), Some(motions.count() as u64), "{told}");
+        assert!(told["contact_points"].as_u64() > Some(20), "{told}");
+        verified(&tube, &output, &["--machine", machine]);
+        println!("{machine}: {told}");
+    }
+    // Around the bore C comes to a limit, and large turns of the axis need cutter locations between.
+    let across = |normal: &str, more: &[&str]| {
+        object(&path_across(normal, &tube, &output, &[&words[..6], more].concat()))
+    };
+    let limited = include_str!("../../../runtime/src/machine/machines/a-c-trunnion.toml")
+        .replace("letter = \"C\"", "letter = \"C\"\nlimits = [-190, 190]");
+    let machine = tube.bench.write("limited.toml", &limited);
+    let limited = across("0,0,1", &["--machine", &machine, "--max-tilt", "90"]);
+    println!("at a limit: {limited}");
+    verified(&tube, &output, &["--machine", &machine]);
+    let coarse = ["--forward-step", "6", "--tolerance", "0.001", "--max-tilt", "60"];
+    let coarse = across("1,0,0", &[&coarse[..], &["--machine", "B-C table-table"]].concat());
+    println!("coarse: {coarse}");
+    verified(&tube, &output, &["--machine", "B-C table-table"]);
+    let inserted = [&limited, &coarse].map(|told| told["inserted_locations"].as_u64());
+    assert!(inserted.iter().all(|count| *count > Some(0)), "{inserted:?}");
+    std::fs::remove_file(&output).expect("the program");
+
+    let more = |more: &[&'static str]| path(&tube, &output, &[&words[..], more].concat());
+    refused(
+        &more(&["--machine", "3-axis"]),
+        &["`3-axis` does not reach cutter location", "the axis"],
+    );
+    let far = ["--machine", "A-C trunnion", "--work-offset", "0,0,-2000", "--tool-length", "100"];
+    refused(&more(&far), &["`A-C trunnion` does not reach cutter location", "outside its limits"]);
+    assert!(!std::path::Path::new(&output).exists(), "a refusal writes nothing");
+    let near = ["--machine", "A-C trunnion", "--work-offset", "0,0,-480", "--tool-length", "100"];
+    object(&more(&near));
+    std::fs::remove_file(&output).expect("the program");
+    for (wrong, words) in [
+        (path(&tube, &output, &["--feed", "5", "--tool-number", "1"]), "name one with `--machine`"),
+        (path(&tube, &output, &["--machine", "3-axis"]), "give `--tool-number` and `--feed`"),
+        (path(&tube, &tube.place("t.apt"), &["--machine", "3-axis"]), "ends in `.nc`"),
+        (more(&["--machine", "lathe"]), "`lathe` is no machine"),
+        (more(&["--machine", "3-axis", "--work-offset", "0,0,0"]), "--tool-length"),
+    ] {
+        assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
+        assert!(stderr(&wrong).contains(words), "{words}: {}", stderr(&wrong));
+    }
+    assert!(!std::path::Path::new(&output).exists(), "a refusal writes nothing");
 }

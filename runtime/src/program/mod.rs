@@ -14,10 +14,12 @@
 mod apt;
 mod csv;
 mod cutter;
+mod decimals;
 mod error;
 mod words;
 mod write;
 
+pub use decimals::Decimals;
 pub use error::{ProgramError, ProgramFault};
 pub use write::{AptHeader, Cutter, WriteError, apt_unit};
 

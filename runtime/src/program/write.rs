@@ -2,10 +2,11 @@
 //!
 //! Numbers are the shortest decimals that give back the same bits, without exponents, since not every
 //! post-processor reads those. A tip is read back exactly. An axis is normalised once more when it is read,
-//! which may change its components by a unit of roundoff.
+//! which may change its components by a unit of roundoff. APT-CL can also be rounded to [`Decimals`].
 
 use super::Program;
 use super::csv::{END, HEAD};
+use super::decimals::{Decimals, rounded};
 use crate::pose::Pose;
 use crate::tool::{ProfileSegment, ToolInfo};
 use crate::unit::Unit;
@@ -28,18 +29,38 @@ pub enum WriteError {
         /// The name.
         name: String,
     },
+    /// A feed or a spindle speed is not finite or not above 0.
+    #[error("{what} of {value} is not a rate above 0: give one per minute")]
+    Rate {
+        /// The name of the rate.
+        what: &'static str,
+        /// The given value.
+        value: f64,
+    },
+    /// A feed is given, and the unit of the program is unknown.
+    #[error("a feed needs the program's unit: state the unit of the program, or write no feed")]
+    FeedUnit,
     /// The output could not be written.
     #[error("the program could not be written whole: {0}")]
     Output(#[from] io::Error),
 }
 
-/// The statements before the positions of an APT-CL program.
+/// The statements before the positions of an APT-CL program, and the decimals of the positions. Nothing is
+/// written for a statement that is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AptHeader<'a> {
     /// The text of `PARTNO`. Nothing is written for an empty one.
     pub part: &'a str,
+    /// The number of the tool, for `LOADTL`.
+    pub tool_number: Option<u32>,
     /// The arguments of `CUTTER`, in the program's unit.
     pub cutter: Option<Cutter>,
+    /// The spindle speed in revolutions per minute, clockwise, for `SPINDL`.
+    pub spindle: Option<f64>,
+    /// The feed per minute, in the program's unit, for `FEDRAT`.
+    pub feed: Option<f64>,
+    /// The decimals to which positions are rounded; `None` for the shortest that give back the same bits.
+    pub decimals: Option<Decimals>,
 }
 
 /// A cutter as described by APT's `CUTTER/diameter,radius`, in the program's unit: a flat end with rounded
@@ -107,13 +128,24 @@ pub fn apt_unit(unit: Unit) -> Result<&'static str, WriteError> {
     }
 }
 
+/// Returns the word of APT-CL for a feed per minute in a unit.
+fn feed_unit(unit: Option<Unit>) -> Result<&'static str, WriteError> {
+    match unit {
+        Some(Unit::Millimetre) => Ok("MMPM"),
+        Some(Unit::Inch) => Ok("IPM"),
+        Some(unit @ Unit::Metre) => Err(WriteError::Unit { unit }),
+        None => Err(WriteError::FeedUnit),
+    }
+}
+
 impl Program {
-    /// Writes the program as APT-CL: `PARTNO`, `UNITS` if the unit is known, `MULTAX/ON`, `CUTTER`, one `GOTO`
-    /// per cutter location, `RAPID` before those that are reached in rapid traverse, `FINI`. Spins are not
-    /// written, since APT has none.
+    /// Writes the program as APT-CL: `PARTNO`, `UNITS` if the unit is known, `MULTAX/ON`, `LOADTL`, `CUTTER`,
+    /// `SPINDL`, `FEDRAT`, one `GOTO` per cutter location, `RAPID` before those that are reached in rapid
+    /// traverse, `FINI`. Spins are not written, since APT has none.
     ///
     /// # Errors
-    /// If the unit is the metre, if the part's name contains a control character, or if `out` fails.
+    /// If the unit is the metre, if the part's name contains a control character, if a rate is not above 0 or
+    /// a feed has no unit, or if `out` fails.
     pub fn write_apt(
         &self,
         out: &mut impl Write,
@@ -123,6 +155,12 @@ impl Program {
         if heading.part.contains(char::is_control) {
             return Err(WriteError::Part { name: heading.part.to_owned() });
         }
+        for (what, rate) in [("a feed", heading.feed), ("a spindle speed", heading.spindle)] {
+            if let Some(value) = rate.filter(|rate| !(*rate > 0.0 && rate.is_finite())) {
+                return Err(WriteError::Rate { what, value });
+            }
+        }
+        let feed_unit = heading.feed.map(|_| feed_unit(self.unit)).transpose()?;
         if !heading.part.is_empty() {
             writeln!(out, "PARTNO/{}", heading.part)?;
         }
@@ -130,14 +168,23 @@ impl Program {
             writeln!(out, "UNITS/{unit}")?;
         }
         writeln!(out, "MULTAX/ON")?;
+        if let Some(number) = heading.tool_number {
+            writeln!(out, "LOADTL/{number}")?;
+        }
         if let Some(Cutter { diameter, corner }) = heading.cutter {
             writeln!(out, "CUTTER/{diameter},{corner}")?;
+        }
+        if let Some(speed) = heading.spindle {
+            writeln!(out, "SPINDL/{speed},CLW")?;
+        }
+        if let Some((feed, unit)) = heading.feed.zip(feed_unit) {
+            writeln!(out, "FEDRAT/{feed},{unit}")?;
         }
         for location in &self.locations {
             if location.rapid {
                 writeln!(out, "RAPID")?;
             }
-            writeln!(out, "{}", statement(&location.pose))?;
+            writeln!(out, "{}", statement(&location.pose, heading.decimals))?;
         }
         writeln!(out, "FINI")?;
         Ok(())
@@ -168,11 +215,16 @@ impl Program {
 }
 
 /// Formats `GOTO/x,y,z,i,j,k`, continued where a line would have too many columns.
-fn statement(pose: &Pose) -> String {
+fn statement(pose: &Pose, decimals: Option<Decimals>) -> String {
     let TipAxis(tip, axis) = TipAxis::of(pose);
     let mut statement = String::from("GOTO/");
     let mut columns = statement.len();
     for (k, number) in tip.iter().chain(&axis).enumerate() {
+        let number = match decimals {
+            None => number.to_string(),
+            Some(Decimals { tip, .. }) if k < 3 => rounded(*number, tip),
+            Some(Decimals { axis, .. }) => rounded(*number, axis),
+        };
         let number = format!("{number}{}", if k < 5 { "," } else { "" });
         if columns + number.len() >= MAX_COLUMNS {
             statement.push_str("$\n");

@@ -2,6 +2,7 @@
 
 use crate::{HOLDER, Mill, NECK, cutting_distance, is_inside, polyline_distance};
 use nalgebra::{Point3, Rotation3, Vector3};
+use std::f64::consts::PI;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
@@ -64,6 +65,7 @@ impl Case {
             directions: &self.directions,
             accessibility: &self.access,
             pattern,
+            max_tilt: PI,
         }
     }
 
@@ -177,7 +179,7 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
         "{} locations, {} contact points, {} left out, {} retracts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
         path.locations.len(),
         path.contact_points,
-        path.left_out,
+        path.unreached + path.unlinked,
         path.retracts,
         path.turns
     );
@@ -196,9 +198,9 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
 fn covers_a_sphere() {
     let path = plan_and_check(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
     assert!(
-        path.left_out * 20 < path.contact_points,
+        (path.unreached + path.unlinked) * 20 < path.contact_points,
         "{} of {}",
-        path.left_out,
+        path.unreached + path.unlinked,
         path.contact_points
     );
     // The tool rolls over the edges between triangles that meet at up to 10 degrees.
@@ -313,7 +315,7 @@ fn covers_a_single_triangle() {
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a mesh");
     let case = Case::new(mesh, &Mill);
     let path = case.plan_over_planes(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
-    assert_eq!(path.left_out, 0);
+    assert_eq!(path.unreached + path.unlinked, 0);
     // Planes parallel to the triangle do not cut it.
     let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
     assert_eq!(case.plan(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
@@ -326,9 +328,52 @@ fn a_tool_larger_than_the_part_reaches_it() {
     let path = case.plan_over_planes(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
     // Five circles of 250 mm together, with a point every 2 mm.
     assert!(
-        path.contact_points >= 120 && path.left_out == 0,
+        path.contact_points >= 120 && path.unreached + path.unlinked == 0,
         "{} of {}",
-        path.left_out,
+        path.unreached + path.unlinked,
         path.contact_points
     );
+}
+
+#[test]
+fn no_axis_exceeds_the_largest_tilt() {
+    let case = Case::new(sphere(), &Mill);
+    let pattern = Pattern { normal: [0.0, 0.3, 1.0], stepover: 2.0, step: 1.0 };
+    let plan = |max_tilt: f64| PathRequest { max_tilt, ..case.request(&Mill, &pattern) }.plan();
+    let lowest = |path: &ToolPath| {
+        // Between two axes the lowest lies on their great circle.
+        let pairs = path.locations.windows(2);
+        let axes = pairs.flat_map(|pair| {
+            let [from, to] = [pair[0].0.axis(), pair[1].0.axis()];
+            (0..=20).map(move |k| from.slerp(&to, f64::from(k) / 20.0).z)
+        });
+        axes.fold(1.0, f64::min)
+    };
+    let free = plan(PI).expect("a path");
+    assert!(lowest(&free) < -0.9, "a sphere is reached from below: {}", lowest(&free));
+    let mut unreached = 0;
+    for degrees in [120.0f64, 90.0, 45.0] {
+        let tilted = plan(degrees.to_radians()).expect("a path");
+        let [feed, rapid] = max_depths(&case, &tilted);
+        let max_depth = feed.into_iter().chain(rapid).fold(0.0, f64::max);
+        println!(
+            "{degrees}: {} contact points, {} unreached, {} unlinked, lowest axis {}",
+            tilted.contact_points,
+            tilted.unreached,
+            tilted.unlinked,
+            lowest(&tilted)
+        );
+        assert!(max_depth <= TOLERANCE + 1e-9, "{max_depth}");
+        assert!(lowest(&tilted) >= degrees.to_radians().cos() - 1e-9, "{degrees}");
+        assert_eq!(
+            tilted.contact_points + tilted.unreached + tilted.unlinked,
+            free.contact_points + free.unreached + free.unlinked
+        );
+        unreached = tilted.unreached;
+    }
+    assert!(unreached > free.unreached + 50, "some points need a larger tilt: {unreached}");
+    for invalid in [0.0, -1.0, 4.0, f64::NAN, f64::INFINITY] {
+        let error = plan(invalid).expect_err("no limit");
+        assert!(matches!(error, PathError::Tilt(_)), "{error}");
+    }
 }

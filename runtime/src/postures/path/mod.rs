@@ -14,8 +14,10 @@
 //! the tool moves out, around the part, and in.
 
 mod axes;
+mod drawn;
 mod retract;
 mod slice;
+mod tilt;
 
 use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use super::{Directions, Rules, Validator, ValidatorError};
@@ -26,10 +28,12 @@ use crate::motion::Motion;
 use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::Tool;
-use axes::{PathPosture, PostureRun};
+use axes::PathPosture;
+use drawn::DrawnPath;
 use nalgebra::Vector3;
-use retract::{RetractLeg, RetractSphere};
+use retract::RetractSphere;
 use slice::{SlicePoint, length_of_lines, slices};
+use tilt::TiltLimit;
 
 /// The pattern of lines that covers a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,13 +77,16 @@ pub enum PathError {
         /// Largest number allowed.
         limit: usize,
     },
+    /// The largest tilt is no angle that limits the tool axis.
+    #[error("a tilt of {0} rad is no limit: give an angle above 0 and up to π (180°)")]
+    Tilt(f64),
     /// The rules are invalid, or the tool cannot be validated.
     #[error(transparent)]
     Validator(#[from] ValidatorError),
     /// No posture was found for the path.
     #[error(
-        "the tool reaches none of the places where the planes cut the part: sweep with it first, or take \
-         planes of another normal"
+        "the tool reaches none of the places where the planes cut the part: sweep with it first, take planes \
+         of another normal, or allow the axis a larger tilt"
     )]
     NoPosture,
 }
@@ -93,9 +100,11 @@ pub struct ToolPath {
     pub locations: Vec<(Pose, bool)>,
     /// Number of points at which the part is touched.
     pub contact_points: usize,
-    /// Number of points on the lines that are left out: the tool does not reach them, or no motion to them was
-    /// proved.
-    pub left_out: usize,
+    /// Number of points on the lines that are left out because no posture at them is proved acceptable, within
+    /// the largest tilt.
+    pub unreached: usize,
+    /// Number of points on the lines that are left out because no motion to them is proved acceptable.
+    pub unlinked: usize,
     /// Number of times that the tool leaves the surface.
     pub retracts: usize,
     /// Root mean square turn of the axis from point to point along the lines, in radians, before and after
@@ -109,8 +118,9 @@ const MAX_PLANES: usize = 100_000;
 /// Largest number of points, estimated from the length of the lines: some gigabytes, and weeks on any machine.
 const MAX_POINTS: usize = 20_000_000;
 
-/// Fraction of the tolerance reserved for motions between cutter locations.
-const MOTION_TOLERANCE_FRACTION: f64 = 1.0 / 8.0;
+/// Fraction of the tolerance reserved for motions between cutter locations. During these, a surface that does not
+/// cut may be that deep.
+pub const MOTION_TOLERANCE_FRACTION: f64 = 1.0 / 8.0;
 
 /// Number of lines per unit of parallel work.
 const LINES_PER_TASK: usize = 8;
@@ -123,6 +133,7 @@ pub(super) struct PathPlanner<'a> {
     placement: ToolPlacement<'a>,
     validator: Validator<'a>,
     rules: &'a Rules,
+    tilt: TiltLimit,
     postures: Vec<CandidatePosture>,
 }
 
@@ -144,6 +155,9 @@ pub struct PathRequest<'a> {
     pub accessibility: &'a [Vec<u64>],
     /// The lines to follow.
     pub pattern: &'a Pattern,
+    /// Largest angle of the tool axis from +z of the part, in radians, at cutter locations and between them:
+    /// above 0; π for any axis.
+    pub max_tilt: f64,
 }
 
 debug!([] PathRequest<'_>, "PathRequest", |this| { tool: this.tool.info().name, rules: this.rules, pattern: this.pattern });
@@ -156,7 +170,8 @@ impl PathRequest<'_> {
     /// # Errors
     /// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
     pub fn plan(&self) -> Result<ToolPath, PathError> {
-        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern } = *self;
+        let PathRequest { mesh, bvh, tool, rules, directions, accessibility, pattern, max_tilt } =
+            *self;
         for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(PathError::Pattern { what, value });
@@ -175,7 +190,16 @@ impl PathRequest<'_> {
         if points > MAX_POINTS as f64 {
             return Err(PathError::TooFine { points, limit: MAX_POINTS });
         }
-        let mut planner = PathPlanner::new(bvh, tool, rules)?;
+        let tilt = TiltLimit::new(max_tilt).ok_or(PathError::Tilt(max_tilt))?;
+        let steep;
+        let accessibility = match tilt.is_limited() {
+            true => {
+                steep = tilt.filter(directions, accessibility);
+                &steep[..]
+            }
+            false => accessibility,
+        };
+        let mut planner = PathPlanner::new(bvh, tool, (rules, tilt))?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());
         let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
         let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
@@ -185,17 +209,16 @@ impl PathRequest<'_> {
             .collect();
         let runs = parallel::ranges(lines.len(), LINES_PER_TASK, |range| {
             // Errors were reported for the planner above.
-            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
+            let Ok(mut planner) = PathPlanner::new(bvh, tool, (rules, tilt)) else {
+                return Vec::new();
+            };
             let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
                 planner.validator.certifier.clear_caches();
                 (*plane, planner.runs(mesh, (directions, accessibility), line))
             };
             lines[range].iter().map(run).collect()
         });
-        let mut path = DrawnPath {
-            point_count: lines.iter().map(|(_, line)| line.len()).sum(),
-            ..DrawnPath::default()
-        };
+        let mut path = DrawnPath::new(lines.iter().map(|(_, line)| line.len()).sum());
         let mut runs = runs.into_iter().flatten().peekable();
         while let Some((plane, mut plane_runs)) = runs.next() {
             while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
@@ -219,7 +242,7 @@ impl<'a> PathPlanner<'a> {
     fn new(
         bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
-        rules: &'a Rules,
+        (rules, tilt): (&'a Rules, TiltLimit),
     ) -> Result<PathPlanner<'a>, ValidatorError> {
         let location_rules = Rules {
             tolerance: rules.tolerance * (1.0 - MOTION_TOLERANCE_FRACTION),
@@ -228,7 +251,7 @@ impl<'a> PathPlanner<'a> {
         let mut validator = Validator::new(bvh, tool, &location_rules)?;
         validator.certifier = validator.certifier.with_budget(QUERY_BUDGET);
         let placement = ToolPlacement::new(tool, bvh.unit());
-        Ok(PathPlanner { placement, validator, rules, postures: Vec::new() })
+        Ok(PathPlanner { placement, validator, rules, tilt, postures: Vec::new() })
     }
 
     /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
@@ -237,6 +260,9 @@ impl<'a> PathPlanner<'a> {
         surface_point: &SurfacePoint,
         axis: Vector3<f64>,
     ) -> Option<PathPosture> {
+        if !self.tilt.allows(&axis) {
+            return None;
+        }
         self.placement.list(*surface_point, [axis], &mut self.postures);
         let nice = self.postures.iter().filter(|posture| posture.niceness > self.rules.niceness);
         let mut poses = nice.filter_map(|posture| Pose::from_axis(posture.tip, axis).ok());
@@ -245,8 +271,11 @@ impl<'a> PathPlanner<'a> {
     }
 
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion (`true`), or to be
-    /// deeper (`false`); `None` if neither is proved or the motion is ambiguous.
+    /// deeper (`false`); `None` if neither is proved, the motion is ambiguous, or the axis exceeds the largest tilt.
     fn check_motion(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
+        if !self.tilt.allows_turn(&from.axis(), &to.axis()) {
+            return None;
+        }
         let motion = Motion::new(from, to).ok()?;
         let more = MOTION_TOLERANCE_FRACTION * self.rules.tolerance;
         match self.validator.certifier.check_motion(&motion, more) {
@@ -259,168 +288,5 @@ impl<'a> PathPlanner<'a> {
     /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
     fn is_clear(&mut self, from: &Pose, to: &Pose) -> bool {
         self.check_motion(from, to) == Some(true)
-    }
-}
-
-/// A path under construction.
-#[derive(Default)]
-struct DrawnPath {
-    locations: Vec<(Pose, bool)>,
-    /// The last approach from outside: the index of its cutter location on the surface, and its leg.
-    last_approach: Option<(usize, RetractLeg)>,
-    /// The last posture on the surface.
-    last: Option<PathPosture>,
-    point_count: usize,
-    contact_points: usize,
-    dropped: usize,
-    retracts: usize,
-    steps: usize,
-    squared_turns: [f64; 2],
-}
-
-impl DrawnPath {
-    fn count(&mut self, run: &PostureRun) {
-        self.contact_points += run.postures.len();
-        self.steps += run.postures.len() - 1;
-        self.squared_turns[0] += run.squared_turns;
-        self.squared_turns[1] += run.turns();
-    }
-
-    /// Returns the index of the run with the nearest end, and whether that is its last posture.
-    fn nearest(&self, runs: &[PostureRun]) -> Option<(usize, bool)> {
-        let from = self.last.as_ref().map(|last| last.pose.tip());
-        let distance_to =
-            |posture: &PathPosture| from.map_or(0.0, |from| (posture.pose.tip() - from).norm());
-        let ends = runs.iter().enumerate().filter_map(|(index, run)| {
-            let (first, last) = (run.postures.first()?, run.postures.last()?);
-            Some([(distance_to(first), index, false), (distance_to(last), index, true)])
-        });
-        let nearest = ends.flatten().min_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.map(|(_, index, reverse)| (index, reverse))
-    }
-
-    fn push_location(&mut self, pose: Pose, rapid: bool) {
-        self.locations.push((pose, rapid));
-    }
-
-    /// Moves to a run and along it. Two points that cannot be joined on the surface are joined above it or
-    /// around the part; a point that cannot be joined at all is dropped.
-    fn follow(
-        &mut self,
-        planner: &mut PathPlanner<'_>,
-        sphere: &RetractSphere,
-        run: &PostureRun,
-        max_link: f64,
-    ) {
-        for (index, posture) in run.postures.iter().enumerate() {
-            let links = match (index.checked_sub(1), &self.last) {
-                // The pose tells whether the previous posture of the run was reached or dropped.
-                (Some(before), Some(last)) if run.postures[before].pose == last.pose => {
-                    run.links[before].clone()
-                }
-                (_, Some(last))
-                    if (posture.surface_point.point - last.surface_point.point).norm()
-                        <= max_link =>
-                {
-                    planner.link(last, posture, &[])
-                }
-                _ => None,
-            };
-            if let Some(locations) = links {
-                locations.into_iter().for_each(|pose| self.push_location(pose, false));
-            } else if !self.hop(planner, sphere, posture)
-                && !self.move_around(planner, sphere, posture)
-            {
-                self.dropped += 1;
-                continue;
-            }
-            self.push_location(posture.pose, false);
-            self.last = Some(*posture);
-        }
-    }
-
-    /// Retracts a little from the surface, moves across, and comes down to a posture. Does nothing and returns
-    /// `false` if that is not proved.
-    fn hop(
-        &mut self,
-        planner: &mut PathPlanner<'_>,
-        sphere: &RetractSphere,
-        posture: &PathPosture,
-    ) -> bool {
-        let Some(last) = &self.last else { return false };
-        let (from, to) = (last.pose, posture.pose);
-        let (Some(up), Some(over)) = (sphere.retracted(&from), sphere.retracted(&to)) else {
-            return false;
-        };
-        let proved = planner.is_clear(&from, &up)
-            && planner.is_clear(&up, &over)
-            && planner.is_clear(&over, &to);
-        if proved {
-            self.push_location(up, false);
-            self.push_location(over, true);
-            self.retracts += 1;
-        }
-        proved
-    }
-
-    /// Leaves the surface, and comes to a posture from outside. Returns `false` if that is not proved.
-    fn move_around(
-        &mut self,
-        planner: &mut PathPlanner<'_>,
-        sphere: &RetractSphere,
-        posture: &PathPosture,
-    ) -> bool {
-        let Some(leg) = sphere.leg(planner, &posture.pose) else { return false };
-        let location_count = self.locations.len();
-        if let Some(from) = self.leave(planner, sphere) {
-            let Some(locations) = sphere.between(planner, &from, &leg.outer) else {
-                self.locations.truncate(location_count);
-                return false;
-            };
-            locations.into_iter().for_each(|pose| self.push_location(pose, true));
-            self.retracts += 1;
-        }
-        self.push_location(leg.outer, true);
-        self.push_location(leg.lead_end, true);
-        self.last_approach = Some((self.locations.len(), leg));
-        true
-    }
-
-    /// Leaves the surface and returns the outer pose; `None` if nothing was touched yet. Where the leg from the
-    /// last cutter location is not proved, the tool first goes back along the earlier ones, hops included, at
-    /// most to the last one that was approached from outside.
-    fn leave(&mut self, planner: &mut PathPlanner<'_>, sphere: &RetractSphere) -> Option<Pose> {
-        let (first, last_approach) = self.last_approach?;
-        let mut index = self.locations.len() - 1;
-        let leg = loop {
-            if index == first {
-                break last_approach;
-            }
-            if let Some(leg) = sphere.leg(planner, &self.locations[index].0) {
-                break leg;
-            }
-            index -= 1;
-            self.push_location(self.locations[index].0, false);
-        };
-        self.push_location(leg.lead_end, false);
-        self.push_location(leg.outer, true);
-        Some(leg.outer)
-    }
-
-    fn end(
-        mut self,
-        planner: &mut PathPlanner<'_>,
-        sphere: &RetractSphere,
-    ) -> Result<ToolPath, PathError> {
-        self.leave(planner, sphere).ok_or(PathError::NoPosture)?;
-        let steps = self.steps.max(1) as f64;
-        let contact_points = self.contact_points - self.dropped;
-        Ok(ToolPath {
-            contact_points,
-            left_out: self.point_count - contact_points,
-            retracts: self.retracts,
-            turns: self.squared_turns.map(|squared_turns| (squared_turns / steps).sqrt()),
-            locations: self.locations,
-        })
     }
 }

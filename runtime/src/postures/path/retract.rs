@@ -23,6 +23,18 @@ pub(super) struct RetractLeg {
     pub(super) outer: Pose,
 }
 
+/// Returns directions on a great circle from one to another, at most 60 degrees apart, both ends included.
+fn around(first: Vector3<f64>, last: Vector3<f64>) -> Vec<Vector3<f64>> {
+    let turn = first.angle(&last);
+    let axis = Unit::try_new(first.cross(&last), 1e-9)
+        .or_else(|| Unit::try_new(first.cross(&Vector3::x()), 1e-3))
+        .unwrap_or_else(Vector3::y_axis);
+    let segments = (turn / FRAC_PI_3).ceil().max(1.0);
+    let direction =
+        |k: usize| nalgebra::Rotation3::from_axis_angle(&axis, turn * k as f64 / segments) * first;
+    (0..=segments as usize).map(direction).collect()
+}
+
 /// Length of the lead in feed, as a fraction of half the diagonal of the part's box.
 const LEAD: f64 = 1.0 / 32.0;
 
@@ -57,7 +69,8 @@ impl RetractSphere {
     }
 
     /// Returns the poses between two poses on the sphere, without these: upright, around, and over to the
-    /// second axis. Returns `None` if a motion is not proved.
+    /// second axis. Where the outward direction exceeds the largest tilt, the axis stays at that tilt, and the way
+    /// leads over the top. Returns `None` if a motion is not proved.
     pub(super) fn between(
         &self,
         planner: &mut PathPlanner<'_>,
@@ -65,18 +78,17 @@ impl RetractSphere {
         to: &Pose,
     ) -> Option<Vec<Pose>> {
         let [first, last] = [from, to].map(|pose| (pose.tip() - self.centre) / self.radius);
-        let turn = first.angle(&last);
-        let axis = Unit::try_new(first.cross(&last), 1e-9)
-            .or_else(|| Unit::try_new(first.cross(&Vector3::x()), 1e-3))
-            .unwrap_or_else(Vector3::y_axis);
-        let segments = (turn / FRAC_PI_3).ceil().max(1.0);
-        let upright = |k: usize| {
-            let rotation = nalgebra::Rotation3::from_axis_angle(&axis, turn * k as f64 / segments);
-            let direction = rotation * first;
-            Pose::from_axis(self.centre + direction * self.radius, direction).ok()
+        let mut directions = around(first, last);
+        if !directions.iter().all(|direction| planner.tilt.allows(direction)) {
+            let top = Vector3::z();
+            directions = around(first, top);
+            directions.extend(around(top, last).into_iter().skip(1));
+        }
+        let upright = |direction: &Vector3<f64>| {
+            let tip = self.centre + direction * self.radius;
+            Pose::from_axis(tip, planner.tilt.clamped(direction)).ok()
         };
-        let poses: Option<Vec<Pose>> = (0..=segments as usize).map(upright).collect();
-        let poses = poses?;
+        let poses: Vec<Pose> = directions.iter().map(upright).collect::<Option<_>>()?;
         let mut current = *from;
         for next in poses.iter().chain([to]) {
             if !planner.is_clear(&current, next) {

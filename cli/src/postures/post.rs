@@ -1,0 +1,360 @@
+//! G-code for a machine: the rotary axes follow from its inverse kinematics, and the tip is programmed in the frame of
+//! the part, with tool centre point control.
+
+use super::joints::{Target, rotary_travel, sequence};
+use super::prove::{Location, Prover};
+use crate::arguments::postures::MachineArguments;
+use crate::failure::Failure;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::Path;
+use touchoff::gcode::ControlSetup;
+use touchoff::machine::{Axis, Chain, Joints, Letter, Machine, MachineError, Setup, Side};
+use touchoff::program::Decimals;
+use touchoff::verify::{MachineProgram, ToolSelection};
+use touchoff::{Motion, Pose, Unit};
+
+/// Largest number of times that the motion between two cutter locations is halved.
+const MAX_HALVINGS: u32 = 8;
+
+/// Number of halvings after which a motion with much travel of the rotary axes is led away from the part.
+const HALVINGS_BEFORE_REWIND: u32 = 3;
+
+/// Angle in radians from the great circle beyond which a motion is halved without a check.
+const ASTRAY: f64 = 0.1;
+
+/// Travel of the rotary axes, in degrees, that makes a motion a turn at a limit.
+const REWIND_TRAVEL: f64 = 60.0;
+
+/// Decimals of rotary words: half of 1e-6° moves a point at 300 mm from the tip by 3e-6 mm.
+const ANGLE_DECIMALS: usize = 6;
+
+/// Words of a program besides its motions.
+pub(super) struct Words {
+    pub(super) tool_number: u32,
+    /// Feed per minute, in the part's unit.
+    pub(super) feed: f64,
+    /// Revolutions per minute.
+    pub(super) spindle: Option<f64>,
+}
+
+/// A post-processor for a machine.
+pub(super) struct Post {
+    machine: Machine,
+    /// The chain of the inverse kinematics.
+    chain: Chain,
+    control: ControlSetup,
+    unit: Unit,
+    words: Words,
+}
+
+/// A cutter location of the program.
+#[derive(Clone, Copy)]
+struct PostedLocation {
+    pose: Pose,
+    rapid: bool,
+    /// Index of the planned cutter location at which the motion ends.
+    planned: usize,
+    /// Number of times that the planned motion was halved.
+    halvings: u32,
+}
+
+/// The text of a program.
+struct PostedText {
+    text: String,
+    /// Number of lines before the first motion. Then each cutter location has one line.
+    header_lines: usize,
+}
+
+impl Post {
+    /// Creates a post-processor for a part in a unit of length.
+    ///
+    /// # Errors
+    /// If there is no such machine, its file is refused, or an offset is out of range.
+    pub(super) fn new(
+        arguments: &MachineArguments,
+        name: &Path,
+        words: Words,
+        unit: Unit,
+    ) -> Result<Post, Failure> {
+        let machine = read_machine(name)?;
+        let mut control = ControlSetup::default();
+        let in_mm = unit.millimetres();
+        let chain = match (&arguments.work_offset, arguments.tool_length) {
+            (Some(offset), Some(length)) => {
+                let [x, y, z] = [offset.x, offset.y, offset.z].map(|value| value * in_mm);
+                let work_offset = [x, y, z, 0.0, 0.0, 0.0];
+                control.work_offsets[0] = Some(work_offset);
+                control.lengths = BTreeMap::from([(words.tool_number, length * in_mm)]);
+                machine.chain(&Setup { work_offset, tool_length: length * in_mm })
+            }
+            _ => without_linear_limits(&machine)?.chain(&Setup::default()),
+        };
+        Ok(Post { machine, chain: chain?, control, unit, words })
+    }
+
+    /// Returns the text of the program for cutter locations, and the cutter locations that it has.
+    ///
+    /// Between two cutter locations the control interpolates joints, so that the tool axis leaves the great circle. A
+    /// motion in which it is therefore too deep is halved on the great circle. If the rotary axes turn far in it
+    /// nevertheless, since one of them is at a limit, the tool turns away from the part.
+    ///
+    /// # Errors
+    /// If the machine does not reach a cutter location, if a motion leaves the limits of an axis, or if a motion is not
+    /// proved.
+    pub(super) fn program(
+        &self,
+        prover: &Prover<'_>,
+        locations: &[Location],
+        file: &str,
+    ) -> Result<(String, Vec<Location>), Failure> {
+        let posted = |(planned, (pose, rapid)): (usize, &Location)| PostedLocation {
+            pose: *pose,
+            rapid: *rapid,
+            planned,
+            halvings: 0,
+        };
+        let mut locations: Vec<PostedLocation> = locations.iter().enumerate().map(posted).collect();
+        loop {
+            let joints = self.joints(&locations)?;
+            let astray = self.astray(&locations, &joints, prover)?;
+            if !astray.is_empty() {
+                let failure = |index: usize| {
+                    let reason =
+                        "the rotary axes turn far, and there is no way out along the tool axis";
+                    prover.refusal(None, locations[index].planned, reason.to_owned())
+                };
+                locations = refined(&locations, &joints, &astray, (prover, &failure))?;
+                continue;
+            }
+            let PostedText { text, header_lines } = self.text(&locations, &joints);
+            let program = MachineProgram::new(
+                file,
+                text.clone(),
+                self.machine.clone(),
+                self.control.clone(),
+            )?;
+            let index =
+                |line: usize| line.saturating_sub(header_lines + 1).min(locations.len() - 1);
+            if let Some((line, violation)) = program.summary().limits.first() {
+                return Err(Failure::AxisLimit {
+                    machine: self.machine.name().to_owned(),
+                    location: locations[index(*line)].planned + 1,
+                    letter: violation.letter,
+                    value: violation.value,
+                    limit: violation.limit,
+                });
+            }
+            let findings = prover.findings(program.moves(ToolSelection::All, None, self.unit))?;
+            if findings.is_empty() {
+                let locations =
+                    locations.iter().map(|location| (location.pose, location.rapid)).collect();
+                return Ok((text, locations));
+            }
+            let mut found = BTreeMap::new();
+            for finding in &findings {
+                found.entry(index(finding.line)).or_insert(finding);
+            }
+            let failure = |index: usize| prover.failure(found[&index], locations[index].planned);
+            let too_deep = found.keys().copied().collect();
+            locations = refined(&locations, &joints, &too_deep, (prover, &failure))?;
+        }
+    }
+
+    /// Returns the motions near the part in whose middle the tool axis is far off the great circle, by the indices of
+    /// the cutter locations at which they end, as far as they can be halved. To check them would take long, and would
+    /// find them too deep.
+    fn astray(
+        &self,
+        locations: &[PostedLocation],
+        joints: &[Joints],
+        prover: &Prover<'_>,
+    ) -> Result<BTreeSet<usize>, Failure> {
+        let mut astray = BTreeSet::new();
+        for index in 1..locations.len() {
+            let [from, to] = [&locations[index - 1], &locations[index]];
+            let is_free = prover.is_away(&from.pose) && prover.is_away(&to.pose);
+            if is_free || to.halvings >= MAX_HALVINGS {
+                continue;
+            }
+            let middle: Joints =
+                std::array::from_fn(|k| 0.5 * (joints[index - 1][k] + joints[index][k]));
+            let axis = self.chain.pose(&middle)?.axis();
+            let motion = Motion::new(&from.pose, &to.pose).map_err(Failure::Motion)?;
+            if axis.angle(&motion.pose(0.5).axis()) > ASTRAY {
+                astray.insert(index);
+            }
+        }
+        Ok(astray)
+    }
+
+    /// Writes the program.
+    fn text(&self, locations: &[PostedLocation], joints: &[Joints]) -> PostedText {
+        let Words { tool_number, feed, spindle } = &self.words;
+        // G-code has no metres.
+        let unit = if self.unit == Unit::Inch { Unit::Inch } else { Unit::Millimetre };
+        let scale = self.unit.factor_to(unit);
+        let decimals = Decimals::of(unit).tip;
+        let rotary: Vec<Letter> = Letter::ALL
+            .into_iter()
+            .filter(|l| l.is_rotary() && self.machine.axis(*l).is_some())
+            .collect();
+        let system = if unit == Unit::Inch { "G20" } else { "G21" };
+        let mut text = format!("{system} G90 G94 G54\nT{tool_number} M6\n");
+        if let Some(speed) = spindle {
+            let _ = writeln!(text, "S{speed} M3");
+        }
+        let length = if rotary.is_empty() { "G43" } else { "G43.4" };
+        let _ = writeln!(text, "{length} H{tool_number}");
+        let header_lines = text.lines().count();
+        let mut has_feed = false;
+        for (location, joints) in locations.iter().zip(joints) {
+            let tip = location.pose.tip() * scale;
+            text += if location.rapid { "G0" } else { "G1" };
+            for (letter, value) in [Letter::X, Letter::Y, Letter::Z].into_iter().zip(tip.iter()) {
+                let _ = write!(text, " {letter}{}", word(*value, decimals));
+            }
+            for letter in &rotary {
+                let _ = write!(text, " {letter}{}", word(joints[letter.index()], ANGLE_DECIMALS));
+            }
+            if !location.rapid && !std::mem::replace(&mut has_feed, true) {
+                let _ = write!(text, " F{}", word(feed * scale, decimals));
+            }
+            text.push('\n');
+        }
+        text += "M30\n";
+        PostedText { text, header_lines }
+    }
+
+    /// Returns the joint values of cutter locations.
+    fn joints(&self, locations: &[PostedLocation]) -> Result<Vec<Joints>, Failure> {
+        let target = |location: &PostedLocation| Target {
+            tip: location.pose.tip() * self.unit.millimetres(),
+            axis: location.pose.axis(),
+            rapid: location.rapid,
+        };
+        let targets: Vec<Target> = locations.iter().map(target).collect();
+        let home = self.machine.home().map(|value| value.unwrap_or(0.0));
+        sequence(&self.chain, &targets, home).map_err(|(index, source)| Failure::Unreachable {
+            machine: self.machine.name().to_owned(),
+            location: locations[index].planned + 1,
+            axis: targets[index].axis.into(),
+            source,
+        })
+    }
+}
+
+/// Inserts cutter locations into motions, given by the indices of the cutter locations at which they end.
+///
+/// # Errors
+/// The given failure, if a motion was halved as often as allowed, or cannot be.
+fn refined(
+    locations: &[PostedLocation],
+    joints: &[Joints],
+    motions: &BTreeSet<usize>,
+    (prover, failure): (&Prover<'_>, &dyn Fn(usize) -> Failure),
+) -> Result<Vec<PostedLocation>, Failure> {
+    let mut refined = Vec::with_capacity(locations.len() + motions.len());
+    for (index, location) in locations.iter().enumerate() {
+        if !motions.contains(&index) {
+            refined.push(*location);
+            continue;
+        }
+        let failure = || failure(index);
+        let from = index.checked_sub(1).ok_or_else(failure)?;
+        if location.halvings >= MAX_HALVINGS {
+            return Err(failure());
+        }
+        let (before, travel) = (&locations[from], rotary_travel(&joints[from], &joints[index]));
+        if location.halvings >= HALVINGS_BEFORE_REWIND && travel > REWIND_TRAVEL {
+            let last = PostedLocation { halvings: MAX_HALVINGS, ..*location };
+            let [out, back] = [before, location].map(|l| prover.away(&l.pose));
+            let ([lead, outer], [lead_back, outer_back]) = out.zip(back).ok_or_else(failure)?;
+            let inserted = [(lead, false), (outer, true), (outer_back, true), (lead_back, true)];
+            refined.extend(inserted.into_iter().map(|(pose, rapid)| PostedLocation {
+                pose,
+                rapid,
+                ..last
+            }));
+            refined.push(last);
+        } else {
+            let motion = Motion::new(&before.pose, &location.pose).map_err(Failure::Motion)?;
+            let last = PostedLocation { halvings: location.halvings + 1, ..*location };
+            refined.extend([PostedLocation { pose: motion.pose(0.5), ..last }, last]);
+        }
+    }
+    Ok(refined)
+}
+
+/// Formats the number of a word: with a decimal point, since some controls count numbers without one in thousandths.
+fn word(value: f64, decimals: usize) -> String {
+    let fixed = format!("{value:.decimals$}");
+    let short = fixed.trim_end_matches('0');
+    if short == "-0." { "0.".to_owned() } else { short.to_owned() }
+}
+
+/// Returns the machine without limits of its linear axes: without a work offset these joints are known up to a
+/// displacement only.
+fn without_linear_limits(machine: &Machine) -> Result<Machine, MachineError> {
+    let mut text = String::from("name = \"without linear limits\"\n");
+    for Axis { letter, side, direction, point, limits, .. } in machine.axes() {
+        let (kind, carries) = (
+            if letter.is_rotary() { "rotary" } else { "linear" },
+            if *side == Side::Table { "table" } else { "tool" },
+        );
+        let _ = writeln!(
+            text,
+            "[[axis]]\nletter = \"{letter}\"\nkind = \"{kind}\"\ncarries = \"{carries}\""
+        );
+        if letter.is_rotary() {
+            let [[i, j, k], [x, y, z]] = [(*direction).into(), point.coords.into()];
+            let _ =
+                writeln!(text, "direction = [{i:?}, {j:?}, {k:?}]\npoint = [{x:?}, {y:?}, {z:?}]");
+            if let Some([low, high]) = limits {
+                let _ = writeln!(text, "limits = [{low:?}, {high:?}]");
+            }
+        }
+    }
+    Machine::parse(&text, machine.name())
+}
+
+/// Reads a machine by its name, or from a file.
+fn read_machine(name: &Path) -> Result<Machine, Failure> {
+    if name.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(Machine::named(&name.to_string_lossy())?);
+    }
+    let file = name.display().to_string();
+    let text = std::fs::read_to_string(name)
+        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
+    Ok(Machine::parse(&text, &file)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_have_a_point_and_no_negative_zero() {
+        for (value, text) in [(10.0, "10."), (-0.000_001, "0."), (-2.5, "-2.5"), (1e7, "10000000.")]
+        {
+            assert_eq!(word(value, 5), text);
+        }
+    }
+
+    #[test]
+    fn only_the_limits_of_linear_axes_go() {
+        for name in Machine::names() {
+            let machine = Machine::named(name).expect("a machine");
+            let free = without_linear_limits(&machine).expect("a machine");
+            assert_eq!(free.axes().len(), machine.axes().len());
+            for (one, other) in machine.axes().iter().zip(free.axes()) {
+                let limits = one.limits.filter(|_| one.letter.is_rotary());
+                assert_eq!(
+                    (one.letter, one.side, limits),
+                    (other.letter, other.side, other.limits)
+                );
+                assert_eq!((one.direction, one.point), (other.direction, other.point));
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Proof of a program as it is written: its text is read back, and every motion is checked with the allowances of the
+//! planner.
+
+use crate::failure::Failure;
+use nalgebra::Point3;
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::Rules;
+use touchoff::postures::path::MOTION_TOLERANCE_FRACTION;
+use touchoff::tool::Tool;
+use touchoff::verify::{Finding, FindingKind, Move, Verifier};
+use touchoff::{Interval, Pose, Program};
+
+/// A cutter location, with a flag that is set if the tool arrives in rapid traverse.
+pub(super) type Location = (Pose, bool);
+
+/// Fraction of the tolerance that the planner leaves to the rounding of coordinates.
+const ROUNDING_FRACTION: f64 = 1.0 / 16.0;
+
+/// Length of a lead off the part in feed, as a fraction of half the diagonal of the part's box.
+const LEAD: f64 = 1.0 / 32.0;
+
+/// Resolution of the proof, as a fraction of the tolerance. The limits of the proof are lower by this, so that no
+/// excess below the resolution exceeds the rules.
+const RESOLUTION_FRACTION: f64 = 1.0 / 256.0;
+
+/// Returns the rules for the planner, so that its path meets `rules` after rounding.
+pub(super) fn planning_rules(rules: &Rules) -> Rules {
+    Rules { tolerance: rules.tolerance * (1.0 - ROUNDING_FRACTION), ..rules.clone() }
+}
+
+/// Proves programs of a tool.
+pub(super) struct Prover<'a> {
+    verifier: Verifier<'a>,
+    /// The centre of the part's box, half its diagonal, and the radius of the sphere that holds the tips of all tools
+    /// that touch the part.
+    near: (Point3<f64>, f64, f64),
+    /// Name of the output file.
+    file: &'a str,
+}
+
+impl<'a> Prover<'a> {
+    /// Creates a prover with the rules of a path. A cutting surface may be as deep as the tolerance. During motions any
+    /// other surface may exceed its allowance by the planner's share of the tolerance.
+    pub(super) fn new(
+        bvh: &'a TriangleBvh,
+        tool: &'a dyn Tool,
+        rules: &Rules,
+        file: &'a str,
+    ) -> Result<Prover<'a>, Failure> {
+        let resolution = rules.tolerance * RESOLUTION_FRACTION;
+        let motion = rules.tolerance * MOTION_TOLERANCE_FRACTION - resolution;
+        let mut verifier = Verifier::new(bvh, tool)?
+            .with_tolerance(rules.tolerance - resolution)?
+            .with_resolution(resolution)?;
+        for surface in tool.info().surfaces.iter() {
+            let stated = rules.allowed.iter().rev().find(|(name, _)| *name == surface.name);
+            let allowed = match stated {
+                Some((_, allowed)) => allowed + motion,
+                None if surface.cutting => continue,
+                None => motion,
+            };
+            verifier = verifier.with_allowance(&surface.name, allowed)?;
+        }
+        let info = tool.info();
+        let Interval { low, high } = info.reach();
+        let reach = low.abs().max(high.abs()).hypot(info.radius());
+        let [low, high] = bvh.bounds();
+        let half = 0.5 * (high - low).norm();
+        let near = half + reach * info.unit.factor_to(bvh.unit());
+        Ok(Prover { verifier, near: (nalgebra::center(&low, &high), half, near), file })
+    }
+
+    /// Proves a program, which `write` makes of cutter locations and reads back. In rapid traverse no surface may be
+    /// deeper than the tolerance, whatever its allowance. A motion in which one is changes to feed.
+    ///
+    /// # Errors
+    /// If a motion is not proved in feed either.
+    pub(super) fn settle<T>(
+        &self,
+        mut locations: Vec<Location>,
+        write: impl Fn(&[Location]) -> Result<(Program, T), Failure>,
+    ) -> Result<(Vec<Location>, T), Failure> {
+        loop {
+            let (program, written) = write(&locations)?;
+            let findings = self.verifier.check(&program)?.findings;
+            let Some(first) = findings.first() else { return Ok((locations, written)) };
+            let rapid: Vec<&Finding> = findings.iter().filter(|finding| finding.rapid).collect();
+            if rapid.is_empty() {
+                return Err(self.failure(first, first.location));
+            }
+            rapid.iter().for_each(|finding| locations[finding.location].1 = false);
+        }
+    }
+
+    /// Returns the findings in motions.
+    pub(super) fn findings(
+        &self,
+        moves: impl IntoIterator<Item = Move>,
+    ) -> Result<Vec<Finding>, Failure> {
+        Ok(self.verifier.check_moves(moves, &|_| ())?.findings)
+    }
+
+    /// Returns two poses on the way off the part along the tool axis: a lead, and one from which the tool reaches the
+    /// part in no direction. The latter is on a sphere about the part, twice as large as one that holds the tips of all
+    /// tools that touch it. `None` for a pose beyond that.
+    pub(super) fn away(&self, pose: &Pose) -> Option<[Pose; 2]> {
+        let (centre, half, near) = self.near;
+        let radius = 2.0 * near;
+        let (from, axis) = (pose.tip() - centre, pose.axis());
+        let height = from.dot(&axis);
+        let exit = (height * height + radius * radius - from.norm_squared()).sqrt() - height;
+        let lead = pose.translated(axis * exit.min(LEAD * half)).ok()?;
+        Some([lead, pose.translated(axis * exit).ok()?])
+    }
+
+    /// Returns whether the tool reaches the part in no direction of its axis.
+    pub(super) fn is_away(&self, pose: &Pose) -> bool {
+        let (centre, _, near) = self.near;
+        (pose.tip() - centre).norm() > near
+    }
+
+    /// Returns the failure for a finding in the motion to a cutter location.
+    pub(super) fn failure(&self, finding: &Finding, location: usize) -> Failure {
+        let name = |surface| format!("{}", self.verifier.info().surface(surface).name);
+        let reason = match finding.kind {
+            FindingKind::Deep { surface, allowed, max_depth, .. } => {
+                format!(
+                    "{} is up to {max_depth:.6} deep, and {allowed:.6} is allowed",
+                    name(surface)
+                )
+            }
+            FindingKind::Near { surface, margin, min_distance, .. } => format!(
+                "{} comes as near as {min_distance:.6}, and has to keep {margin:.6}",
+                name(surface)
+            ),
+            FindingKind::Inside { .. } => "the tool is inside the material".to_owned(),
+            FindingKind::Undecided { surface } => {
+                format!("rounding decides whether {} is too deep", name(surface))
+            }
+            FindingKind::Ambiguous(error) => error.to_string(),
+        };
+        self.refusal(Some(finding.line), location, reason)
+    }
+
+    /// Returns the failure for the motion to a cutter location, with its line in the program if it has one.
+    pub(super) fn refusal(&self, line: Option<usize>, location: usize, reason: String) -> Failure {
+        let file = match line {
+            Some(line) => format!("{}:{line}", self.file),
+            None => self.file.to_owned(),
+        };
+        Failure::NotProved { file, location: location + 1, reason }
+    }
+}
