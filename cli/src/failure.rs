@@ -128,9 +128,6 @@ pub(crate) enum Failure {
     /// A machine's file is refused, or no machine has that name.
     #[error(transparent)]
     Machine(#[from] touchoff::machine::MachineError),
-    /// The machine has no such link.
-    #[error(transparent)]
-    Joint(#[from] touchoff::machine::JointError),
     /// The stock cannot be made or cut.
     #[error(transparent)]
     Stock(#[from] touchoff::stock::StockError),
@@ -196,7 +193,7 @@ pub(crate) enum Failure {
         /// The reason.
         source: touchoff::machine::InverseError,
     },
-    /// A work offset or a tool length is out of range for a machine.
+    /// A work offset or a tool length is out of range for a machine, or it has no such link.
     #[error(transparent)]
     Joint(#[from] touchoff::machine::JointError),
     /// An axis of the machine leaves its limits on the way to a cutter location.

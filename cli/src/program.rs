@@ -5,6 +5,7 @@ use crate::lengths::{format_length, format_point};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
+use touchoff::machine::Machine;
 use touchoff::tool::ToolInfo;
 use touchoff::verify::{Approach, VerifyReport};
 use touchoff::{Program, Unit};
@@ -89,4 +90,18 @@ pub(crate) fn print_ignored(program: &Program) {
 /// Formats a box by its two corners.
 fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
+}
+
+/// Reads a machine by its name, or from a file.
+///
+/// # Errors
+/// If there is no such machine, or its file is refused.
+pub(crate) fn read_machine(name: &Path) -> Result<Machine, Failure> {
+    if name.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(Machine::named(&name.to_string_lossy())?);
+    }
+    let file = name.display().to_string();
+    let text = std::fs::read_to_string(name)
+        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
+    Ok(Machine::parse(&text, &file)?)
 }

@@ -5,6 +5,7 @@ use super::joints::{Target, rotary_travel, sequence};
 use super::prove::{Location, Prover};
 use crate::arguments::postures::MachineArguments;
 use crate::failure::Failure;
+use crate::program::read_machine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
@@ -145,7 +146,8 @@ impl Post {
                     limit: violation.limit,
                 });
             }
-            let findings = prover.findings(program.moves(ToolSelection::All, None, self.unit))?;
+            let findings =
+                prover.findings(program.moves(ToolSelection::All, None, self.unit)?)?;
             if findings.is_empty() {
                 let locations =
                     locations.iter().map(|location| (location.pose, location.rapid)).collect();
@@ -316,17 +318,6 @@ fn without_linear_limits(machine: &Machine) -> Result<Machine, MachineError> {
         }
     }
     Machine::parse(&text, machine.name())
-}
-
-/// Reads a machine by its name, or from a file.
-fn read_machine(name: &Path) -> Result<Machine, Failure> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
-        return Ok(Machine::named(&name.to_string_lossy())?);
-    }
-    let file = name.display().to_string();
-    let text = std::fs::read_to_string(name)
-        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
-    Ok(Machine::parse(&text, &file)?)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::job::Job;
 use super::machine::MachineFinding;
 use super::tools::{self, ProgramTool};
 use crate::failure::Failure;
-use crate::program;
+use crate::program::{self, read_machine};
 use std::iter;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
@@ -201,18 +201,4 @@ fn print_machine(program: &MachineProgram) {
     for note in &summary.notes {
         message!("{note}");
     }
-}
-
-/// Reads a machine by its name, or from a file.
-///
-/// # Errors
-/// If there is no such machine, or its file is refused.
-fn read_machine(name: &Path) -> Result<Machine, Failure> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
-        return Ok(Machine::named(&name.to_string_lossy())?);
-    }
-    let file = name.display().to_string();
-    let text = std::fs::read_to_string(name)
-        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
-    Ok(Machine::parse(&text, &file)?)
 }
