@@ -239,5 +239,5 @@ fn what_is_no_stock_is_refused() {
         panic!("{refused}")
     };
     assert!(Lattice::new([at(0.0), at(10.0)], coarser).is_ok_and(|l| l.len() <= MAX_POINTS));
-    assert!(coarser < 0.03);
+    assert!(coarser < 1.02 * (1000.0 / MAX_POINTS as f64).cbrt());
 }
