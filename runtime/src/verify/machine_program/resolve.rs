@@ -116,14 +116,17 @@ impl<'a> Resolver<'a> {
             self.forget(&frame, &ends[1]);
             return Ok(Resolved::Unknown);
         };
-        let turns = |position: [f64; 6]| (3..6).any(|k| position[k] + frame.rotary[k - 3] != 0.0);
-        if !frame.is_tip && (turns(end) || start.is_some_and(turns)) {
-            if self.part_position_unknown {
-                return Err(StepFault::NoPartPosition);
-            }
-            if frame.has_unknown_lever {
-                return Err(StepFault::NoLength);
-            }
+        let turns = |side: Side| {
+            let is_turned = |position: [f64; 6]| {
+                self.rotary(side).any(|k| position[k] + frame.rotary[k - 3] != 0.0)
+            };
+            is_turned(end) || start.is_some_and(is_turned)
+        };
+        if !frame.is_tip && self.part_position_unknown && turns(Side::Table) {
+            return Err(StepFault::NoPartPosition);
+        }
+        if !frame.is_tip && frame.has_unknown_lever && turns(Side::Tool) {
+            return Err(StepFault::NoLength);
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined);
         let resolved = match start.filter(|_| is_determined) {
@@ -169,6 +172,13 @@ impl<'a> Resolver<'a> {
         let motion =
             JointMotion::new(&frame.chain, rotary, &LinearPath::Line { start: rest, end: rest })?;
         Ok(Resolved::Motions(vec![(motion, 0.0)]))
+    }
+
+    /// Returns the indices of the rotary joints of a side.
+    fn rotary(&self, side: Side) -> impl Iterator<Item = usize> + '_ {
+        let axes = self.machine.axes().iter();
+        axes.filter(move |axis| axis.letter.is_rotary() && axis.side == side)
+            .map(|axis| axis.letter.index())
     }
 
     /// Returns a chain without the limits of linear axes if the position of the part on the machine is unknown.
