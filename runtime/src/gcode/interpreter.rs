@@ -8,7 +8,7 @@ use super::flow::Flow;
 use super::label::{Label, Role};
 use super::modal::FeedMode;
 use super::motion::Control;
-use super::note::{Note, Subject};
+use super::note::{ProgramNote, Subject};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
 use std::mem;
@@ -50,7 +50,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Returns the notes about the blocks that were executed so far, by line.
-    pub fn notes(&self) -> Vec<Note> {
+    pub fn notes(&self) -> Vec<ProgramNote> {
         self.control.notes.list()
     }
 

@@ -19,7 +19,7 @@
 //!
 //! **What is read.**
 //! - G0 G1 G2 G3 in the planes G17 G18 G19: helices, I J K by G90.1 and G91.1, R, full circles, turns P.
-//! - G20 G21 (Sinumerik's G70 G71), G90 G91, G93 G94 G95, G4; G61 G64 and their like leave a [`Note`].
+//! - G20 G21 (Sinumerik's G70 G71), G90 G91, G93 G94 G95, G4; G61 G64 and their like leave a [`ProgramNote`].
 //! - G28 G30 with their intermediate position, G53.
 //! - G54 to G59.3, `G54.1 P`, G52, G92 to G92.3, `G10 L2`.
 //! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
@@ -65,7 +65,7 @@ pub use arc::ArcFault;
 pub use error::{GcodeError, GcodeFault};
 pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
-pub use note::{Note, NoteKind};
+pub use note::{NoteKind, ProgramNote};
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 
 pub use crate::machine::Plane;
@@ -173,7 +173,7 @@ pub enum StepPath {
 ///
 /// # Errors
 /// If a line stops the interpreter.
-pub fn read(text: &str, setup: &ControlSetup) -> Result<(Vec<Step>, Vec<Note>), GcodeError> {
+pub fn read(text: &str, setup: &ControlSetup) -> Result<(Vec<Step>, Vec<ProgramNote>), GcodeError> {
     let mut interpreter = Interpreter::new(text, setup)?;
     let steps = interpreter.by_ref().collect::<Result<Vec<_>, _>>()?;
     Ok((steps, interpreter.notes()))

@@ -7,7 +7,7 @@ use std::fmt;
 /// A note about a program. Equal notes are counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Note {
+pub struct ProgramNote {
     /// The line of the first, 1-based.
     pub line: usize,
     /// The number of them.
@@ -51,9 +51,9 @@ pub enum NoteKind {
     TextAfterEnd,
 }
 
-impl fmt::Display for Note {
+impl fmt::Display for ProgramNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Note { line, count, kind } = self;
+        let ProgramNote { line, count, kind } = self;
         write!(f, "line {line}: {kind}")?;
         if *count > 1 { write!(f, " ({count} times)") } else { Ok(()) }
     }
@@ -117,13 +117,13 @@ impl Notes {
     }
 
     /// Returns the notes by line.
-    pub(super) fn list(&self) -> Vec<Note> {
-        let note = |(subject, (line, count)): (&Subject, &(usize, usize))| Note {
+    pub(super) fn list(&self) -> Vec<ProgramNote> {
+        let note = |(subject, (line, count)): (&Subject, &(usize, usize))| ProgramNote {
             line: *line,
             count: *count,
             kind: subject.kind(),
         };
-        let mut notes: Vec<Note> = self.found.iter().map(note).collect();
+        let mut notes: Vec<ProgramNote> = self.found.iter().map(note).collect();
         notes.sort_by_key(|note| note.line);
         notes
     }

@@ -8,7 +8,7 @@
 //! end only the machine knows is not checked, and listed.
 
 use super::moves::{JointPath, Move, MovePath};
-use crate::gcode::{ControlSetup, GcodeError, Interpreter, Note, Step};
+use crate::gcode::{ControlSetup, GcodeError, Interpreter, ProgramNote, Step};
 use crate::machine::{
     JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
 };
@@ -50,7 +50,7 @@ pub struct MachineSummary {
     /// Singular passes, each with its line.
     pub singular: Vec<(usize, SingularPass)>,
     /// Notes of the interpreter.
-    pub notes: Vec<Note>,
+    pub notes: Vec<ProgramNote>,
 }
 
 /// Motions that are not checked.
