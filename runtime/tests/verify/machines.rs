@@ -75,7 +75,7 @@ fn what_turns_has_to_be_given() {
     let refused = program("A-C trunnion", None, &[], turn).expect_err("no origin");
     assert!(refused.contains("the position of the part on it matters"), "{refused}");
     // Under tool centre point control the start of a head's motion is unknown without a length.
-    let blocks = "G0 X0. Y0. Z50. B0. C0.\nG43.4 H1\nG1 X9. B30.\nG1 X12.";
+    let blocks = "G0 X0. Y0. Z50. B0. C0.\nG43.4 H1\nG1 X9. Y0. Z50. B30.\nG1 X12.";
     let program = program("B head + C table", None, &[], blocks).expect("a program");
     let unknown = program.summary().unknown.expect("unknown motions");
     assert_eq!(unknown.count, 2, "{:?}", program.summary());
