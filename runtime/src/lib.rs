@@ -160,6 +160,7 @@ mod pose;
 pub mod postures;
 mod probe;
 pub mod program;
+mod reach;
 mod scene;
 pub mod scenes;
 pub mod stock;

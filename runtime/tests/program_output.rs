@@ -136,7 +136,7 @@ fn writes_the_words_of_tool_spindle_and_feed_with_few_decimals() {
     assert_eq!(words, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
     assert_eq!(read.locations[1].pose.tip(), Point3::new(0.66667, -2.5, 0.0001));
     assert!((read.locations[1].pose.axis() - axis).amax() < 1e-9);
-    // What was read and is written again is the same text.
+    // A program that was read is written as the same text.
     assert_eq!(apt(&read, &header(Unit::Millimetre)), text);
 
     let inch = Program::new("made", Some(Unit::Inch), poses).expect("two poses");

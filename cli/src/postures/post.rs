@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
-use touchoff::machine::{Axis, Chain, Joints, Letter, Machine, MachineError, Setup, Side};
+use touchoff::machine::{Chain, Joints, Letter, Machine, Setup};
 use touchoff::program::Decimals;
 use touchoff::verify::{MachineProgram, ToolSelection};
 use touchoff::{Motion, Pose, Unit};
@@ -87,11 +87,11 @@ impl Post {
                 let work_offset = [x, y, z, 0.0, 0.0, 0.0];
                 control.work_offsets[0] = Some(work_offset);
                 control.lengths = BTreeMap::from([(words.tool_number, length * in_mm)]);
-                machine.chain(&Setup { work_offset, tool_length: length * in_mm })
+                machine.chain(&Setup { work_offset, tool_length: length * in_mm })?
             }
-            _ => without_linear_limits(&machine)?.chain(&Setup::default()),
+            _ => machine.chain(&Setup::default())?.without_linear_limits(),
         };
-        Ok(Post { machine, chain: chain?, control, unit, words })
+        Ok(Post { machine, chain, control, unit, words })
     }
 
     /// Returns the text of the program for cutter locations, and the cutter locations that it has.
@@ -295,31 +295,6 @@ fn word(value: f64, decimals: usize) -> String {
     if short == "-0." { "0.".to_owned() } else { short.to_owned() }
 }
 
-/// Returns the machine without limits of its linear axes: without a work offset these joints are known up to a
-/// displacement only.
-fn without_linear_limits(machine: &Machine) -> Result<Machine, MachineError> {
-    let mut text = String::from("name = \"without linear limits\"\n");
-    for Axis { letter, side, direction, point, limits, .. } in machine.axes() {
-        let (kind, carries) = (
-            if letter.is_rotary() { "rotary" } else { "linear" },
-            if *side == Side::Table { "table" } else { "tool" },
-        );
-        let _ = writeln!(
-            text,
-            "[[axis]]\nletter = \"{letter}\"\nkind = \"{kind}\"\ncarries = \"{carries}\""
-        );
-        if letter.is_rotary() {
-            let [[i, j, k], [x, y, z]] = [(*direction).into(), point.coords.into()];
-            let _ =
-                writeln!(text, "direction = [{i:?}, {j:?}, {k:?}]\npoint = [{x:?}, {y:?}, {z:?}]");
-            if let Some([low, high]) = limits {
-                let _ = writeln!(text, "limits = [{low:?}, {high:?}]");
-            }
-        }
-    }
-    Machine::parse(&text, machine.name())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -329,23 +304,6 @@ mod tests {
         for (value, text) in [(10.0, "10."), (-0.000_001, "0."), (-2.5, "-2.5"), (1e7, "10000000.")]
         {
             assert_eq!(word(value, 5), text);
-        }
-    }
-
-    #[test]
-    fn only_the_limits_of_linear_axes_go() {
-        for name in Machine::names() {
-            let machine = Machine::named(name).expect("a machine");
-            let free = without_linear_limits(&machine).expect("a machine");
-            assert_eq!(free.axes().len(), machine.axes().len());
-            for (one, other) in machine.axes().iter().zip(free.axes()) {
-                let limits = one.limits.filter(|_| one.letter.is_rotary());
-                assert_eq!(
-                    (one.letter, one.side, limits),
-                    (other.letter, other.side, other.limits)
-                );
-                assert_eq!((one.direction, one.point), (other.direction, other.point));
-            }
         }
     }
 }

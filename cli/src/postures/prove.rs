@@ -8,7 +8,7 @@ use touchoff::postures::Rules;
 use touchoff::postures::path::MOTION_TOLERANCE_FRACTION;
 use touchoff::tool::Tool;
 use touchoff::verify::{Finding, FindingKind, Move, Verifier};
-use touchoff::{Interval, Pose, Program};
+use touchoff::{Pose, Program};
 
 /// A cutter location, with a flag that is set if the tool arrives in rapid traverse.
 pub(super) type Location = (Pose, bool);
@@ -61,12 +61,9 @@ impl<'a> Prover<'a> {
             };
             verifier = verifier.with_allowance(&surface.name, allowed)?;
         }
-        let info = tool.info();
-        let Interval { low, high } = info.reach();
-        let reach = low.abs().max(high.abs()).hypot(info.radius());
         let [low, high] = bvh.bounds();
         let half = 0.5 * (high - low).norm();
-        let near = half + reach * info.unit.factor_to(bvh.unit());
+        let near = half + verifier.reach();
         Ok(Prover { verifier, near: (nalgebra::center(&low, &high), half, near), file })
     }
 

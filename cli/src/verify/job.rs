@@ -1,4 +1,4 @@
-//! What `verify` checks: from options, or from a job file.
+//! The task of `verify`, from options or from a job file.
 
 use crate::arguments::{ParamArguments, ToolArguments, Verify};
 use crate::failure::Failure;
@@ -15,7 +15,8 @@ pub(super) struct Job {
     pub(super) program: PathBuf,
     /// Name of a machine that ships, or the file of another.
     pub(super) machine: Option<OsString>,
-    pub(super) work_offsets: BTreeMap<String, Vec<f64>>,
+    /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
+    pub(super) work_offsets: [Option<[f64; 6]>; 9],
     pub(super) block_delete: bool,
     pub(super) tools: Tools,
     pub(super) tolerance: f64,
@@ -148,7 +149,7 @@ impl Job {
             unit,
             program,
             machine: arguments.machine,
-            work_offsets: BTreeMap::new(),
+            work_offsets: [None; 9],
             block_delete: false,
             tools: Tools::One(tool, arguments.params),
             tolerance: arguments.tolerance,
@@ -159,24 +160,6 @@ impl Job {
             surface_only: arguments.surface_only,
             anyway: arguments.anyway,
         })
-    }
-
-    /// Returns the origins of G54 to G59.3 in machine coordinates, in mm and degrees.
-    ///
-    /// # Errors
-    /// If a name is not one of these, or has fewer than three numbers or more than six.
-    pub(super) fn work_offsets(&self) -> Result<[Option<[f64; 6]>; 9], Failure> {
-        let mut offsets = [None; 9];
-        for (name, values) in &self.work_offsets {
-            let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
-            let (Some(position), 3..=6) = (position, values.len()) else {
-                return Err(Failure::WorkOffset { name: name.clone() });
-            };
-            let mut origin = [0.0; 6];
-            origin[..values.len()].copy_from_slice(values);
-            offsets[position] = Some(origin);
-        }
-        Ok(offsets)
     }
 
     fn read(file: &Path) -> Result<Job, Failure> {
@@ -216,7 +199,7 @@ impl Job {
             unit,
             program: beside(job.program),
             machine,
-            work_offsets: job.work_offsets,
+            work_offsets: work_offsets(&job.work_offsets)?,
             block_delete: job.block_delete,
             tools: Tools::Numbered { library: job.tools.map(beside), entries },
             tolerance: job.tolerance,
@@ -237,6 +220,24 @@ impl Job {
             anyway: job.anyway,
         })
     }
+}
+
+/// Returns the origins of G54 to G59.3 by their names.
+///
+/// # Errors
+/// If a name is not one of these, or has fewer than three numbers or more than six.
+fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>; 9], Failure> {
+    let mut offsets = [None; 9];
+    for (name, values) in named {
+        let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
+        let (Some(position), 3..=6) = (position, values.len()) else {
+            return Err(Failure::WorkOffset { name: name.clone() });
+        };
+        let mut origin = [0.0; 6];
+        origin[..values.len()].copy_from_slice(values);
+        offsets[position] = Some(origin);
+    }
+    Ok(offsets)
 }
 
 impl ToolEntry {

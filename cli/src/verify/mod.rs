@@ -1,6 +1,7 @@
 //! `touchoff verify`: a program checked against a part, fixtures and stock. Prints one line per finding, as compilers
 //! do, and a summary.
 
+mod entry;
 mod job;
 mod json;
 mod machine;
@@ -15,14 +16,12 @@ use crate::failure::Failure;
 use crate::output::{Output, write_file};
 use crate::part::{self, NO_INSIDE};
 use crate::progress::Progress;
+use entry::{Severity, entries};
 use job::{Fixture, Job};
-use json::Row;
-use machine::MachineFinding;
 use source::CheckedProgram;
 use std::io::Write;
 use std::process::ExitCode;
-use stock::StockFinding;
-use text::{describe, summary};
+use text::summary;
 use tools::ProgramTool;
 use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
@@ -102,40 +101,17 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         Some(stock) => Some((stock::cut(&job, stock, &program, &tools)?, stock)),
         None => None,
     };
-    let in_stock = || cut.iter().flat_map(|(cut, _)| &cut.findings);
+    let stock = cut.as_ref().map_or(&[][..], |(cut, _)| &cut.findings);
     let file = job.program.display().to_string();
-    let mut out = Output::rows();
-    let mut found: Vec<(&CheckedPair<'_>, &FindingGroup, Option<f64>)> = pairs
-        .iter()
-        .flat_map(|pair| {
-            pair.groups.iter().zip(&pair.lifts).map(move |(group, lift)| (pair, group, *lift))
-        })
-        .collect();
-    found.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    for (pair, group, lift) in found {
-        if json {
-            serde_json::to_writer(&mut out, &Row::of((group, lift), &pair.scope, &file))?;
-            writeln!(out)?;
-        } else {
-            let text = describe(group, lift, &pair.scope);
-            writeln!(out, "{file}:{}: {text}", group.worst.line)?;
-        }
-    }
     let machine = program.machine_findings(&file);
-    for finding in &machine {
+    let entries = entries(&pairs, &machine, stock, (&file, job.unit));
+    let mut out = Output::rows();
+    for entry in &entries {
         if json {
-            serde_json::to_writer(&mut out, finding)?;
+            serde_json::to_writer(&mut out, &entry.row)?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{file}:{}: {}", finding.line, finding.describe())?;
-        }
-    }
-    for finding in in_stock() {
-        if json {
-            serde_json::to_writer(&mut out, finding)?;
-            writeln!(out)?;
-        } else {
-            writeln!(out, "{file}:{}: {}", finding.line, finding.describe(job.unit))?;
+            writeln!(out, "{file}:{}: {}", entry.line, entry.text)?;
         }
     }
     out.flush()?;
@@ -146,9 +122,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     if let Some((cut, entry)) = &cut {
         cut.report(entry, &bodies[0].bvh)?;
     }
-    let is_clear = pairs.iter().all(|pair| pair.groups.is_empty())
-        && in_stock().next().is_none()
-        && !machine.iter().any(MachineFinding::is_violation);
+    let is_clear = entries.iter().all(|entry| entry.severity == Severity::Remark);
     let mut status = status(&pairs, &job, if is_clear { 0 } else { FOUND });
     if let (false, Some(line)) = (job.anyway, program.unknown_feed()) {
         message!(
@@ -158,8 +132,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         status = NOT_CHECKED;
     }
     if let Some(file) = sarif {
-        let stock: Vec<&StockFinding> = in_stock().collect();
-        let log = sarif::log(&pairs, &machine, &stock, &job, status != NOT_CHECKED)?;
+        let log = sarif::log(&entries, &job.program, status != NOT_CHECKED)?;
         write_file(&file, log)?;
     }
     Ok(ExitCode::from(status))

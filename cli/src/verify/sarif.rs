@@ -2,14 +2,9 @@
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
-use super::job::Job;
-use super::machine::MachineFinding;
-use super::stock::StockFinding;
-use super::text::describe;
-use super::{CheckedPair, rule};
+use super::entry::{Entry, Severity};
 use serde::Serialize;
 use std::path::Path;
-use touchoff::verify::FindingKind;
 
 #[derive(Serialize)]
 struct Log {
@@ -108,47 +103,29 @@ const RULES: [(&str, &str); 9] = [
     ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
 ];
 
-/// Returns the findings of all checks as a SARIF log. `is_verified` is set if there is a verdict.
+/// Returns the findings of a program as a SARIF log. `is_verified` is set if there is a verdict.
 pub(super) fn log(
-    pairs: &[CheckedPair<'_>],
-    machine: &[MachineFinding],
-    stock: &[&StockFinding],
-    job: &Job,
+    entries: &[Entry<'_>],
+    program: &Path,
     is_verified: bool,
 ) -> Result<Vec<u8>, serde_json::Error> {
-    let uri = uri(&job.program);
-    let finding = |rule_id, violation: bool, text: String, lines: [usize; 2]| Finding {
-        rule_id,
-        level: if violation { "error" } else { "warning" },
-        message: Text { text },
+    let uri = uri(program);
+    let result = |entry: &Entry<'_>| Finding {
+        rule_id: entry.rule,
+        level: if entry.severity == Severity::Violation { "error" } else { "warning" },
+        message: Text { text: entry.text.clone() },
         locations: [Location {
             physical_location: PhysicalLocation {
                 artifact_location: Artifact { uri: uri.clone() },
                 // Subprograms may stand before the blocks that call them.
                 region: Region {
-                    start_line: lines[0].min(lines[1]),
-                    end_line: lines[0].max(lines[1]),
+                    start_line: entry.lines[0].min(entry.lines[1]),
+                    end_line: entry.lines[0].max(entry.lines[1]),
                 },
             },
         }],
     };
-    let mut results = Vec::new();
-    for pair in pairs {
-        for (group, lift) in pair.groups.iter().zip(&pair.lifts) {
-            let kind = &group.worst.kind;
-            let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
-            let text = describe(group, *lift, &pair.scope);
-            results.push(finding(rule(kind), !open, text, [group.first.line, group.last.line]));
-        }
-    }
-    for found in machine {
-        let lines = [found.line; 2];
-        results.push(finding(found.kind(), found.is_violation(), found.describe(), lines));
-    }
-    for contact in stock {
-        let lines = [contact.first_line, contact.last_line];
-        results.push(finding("stock", true, contact.describe(job.unit), lines));
-    }
+    let results = entries.iter().map(result).collect();
     let rules =
         RULES.map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
     let driver =

@@ -10,7 +10,7 @@ use std::iter;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
 use touchoff::machine::{Machine, Side};
-use touchoff::tool::Symmetry;
+use touchoff::program::ProgramFile;
 use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
 use touchoff::{Program, Tool, Unit};
 
@@ -29,22 +29,24 @@ impl CheckedProgram {
     /// If the program or the machine cannot be read, or a motion is not possible on the machine.
     pub(super) fn read(job: &Job) -> Result<CheckedProgram, Failure> {
         let name = job.program.display().to_string();
-        let Some(text) = Program::gcode(&job.program)? else {
-            let program = Program::read(&job.program)?;
-            program.check_motions()?;
-            return match &job.machine {
-                None => Ok(CheckedProgram::Locations(program)),
-                Some(_) => Err(Failure::Usage(
-                    "a machine is for G-code: this program states positions of the tip",
-                )),
-            };
+        let text = match ProgramFile::read(&job.program)? {
+            ProgramFile::Gcode(text) => text,
+            ProgramFile::Locations(program) => {
+                program.check_motions()?;
+                return match &job.machine {
+                    None => Ok(CheckedProgram::Locations(program)),
+                    Some(_) => Err(Failure::Usage(
+                        "a machine is for G-code: this program states positions of the tip",
+                    )),
+                };
+            }
         };
         let machine = match &job.machine {
             None => Machine::named("3-axis")?,
             Some(machine) => read_machine(machine.as_ref())?,
         };
         let setup = ControlSetup {
-            work_offsets: job.work_offsets()?,
+            work_offsets: job.work_offsets,
             lengths: tools::lengths(&job.tools),
             block_delete: job.block_delete,
             ..ControlSetup::default()
@@ -62,7 +64,7 @@ impl CheckedProgram {
     }
 
     /// Returns the findings about the machine's axes.
-    pub(super) fn machine_findings(&self, file: &str) -> Vec<MachineFinding> {
+    pub(super) fn machine_findings<'a>(&self, file: &'a str) -> Vec<MachineFinding<'a>> {
         match self {
             CheckedProgram::Locations(_) => Vec::new(),
             CheckedProgram::Machine(program) => MachineFinding::all(program, file),
@@ -111,7 +113,7 @@ impl CheckedProgram {
     ) -> Result<Box<dyn Iterator<Item = Move> + 'a>, Failure> {
         Ok(match self {
             CheckedProgram::Locations(program) => {
-                Box::new(program_moves(program, tool.tool().info().symmetry))
+                Box::new(Move::all(program, tool.tool().info().symmetry))
             }
             CheckedProgram::Machine(program) => {
                 Box::new(program.moves(tool.selection, link, unit)?)
@@ -133,7 +135,7 @@ impl CheckedProgram {
         let moves: Box<dyn Iterator<Item = Move>> = match self {
             CheckedProgram::Locations(program) => {
                 let symmetry = tools.first().map(|tool| tool.tool().info().symmetry);
-                Box::new(symmetry.into_iter().flat_map(|symmetry| program_moves(program, symmetry)))
+                Box::new(symmetry.into_iter().flat_map(|symmetry| Move::all(program, symmetry)))
             }
             CheckedProgram::Machine(program) => {
                 Box::new(program.moves(ToolSelection::All, None, unit)?)
@@ -156,7 +158,7 @@ impl CheckedProgram {
         match links.iter().position(|link| link == axis) {
             // The last link carries the part.
             Some(link) if link + 1 == links.len() => Ok(None),
-            Some(link) => match job.work_offsets()?[0] {
+            Some(link) => match job.work_offsets[0] {
                 Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
                 _ => Err(Failure::Usage(
                     "`moves_with` another axis than the part's needs the origin of G54 in `work_offsets`, without rotary \
@@ -179,13 +181,6 @@ impl CheckedProgram {
             CheckedProgram::Machine(program) => print_machine(program),
         }
     }
-}
-
-/// Returns the motions of a program of cutter locations.
-fn program_moves(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
-    let locations = &program.locations;
-    let before = iter::once(None).chain(locations.iter().map(Some));
-    before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
 }
 
 /// Prints the machine, the number of motions that were not checked, and notes.

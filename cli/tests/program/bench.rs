@@ -20,6 +20,11 @@ pub(super) fn stderr(output: &Output) -> String {
 
 pub(super) fn rows(output: &Output) -> Vec<Value> {
     assert!(output.status.success(), "{}", stderr(output));
+    objects(output)
+}
+
+/// Returns the JSON objects that a command printed, whatever its status.
+pub(super) fn objects(output: &Output) -> Vec<Value> {
     stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 

@@ -43,6 +43,17 @@ pub(super) fn parsed(bench: &Bench, mut arguments: Vec<&str>, partial: bool) -> 
     program.args(arguments).current_dir(&bench.folder).output().expect("the program runs")
 }
 
+/// Runs the commands of a page's first block of commands in the folder of a bench, and returns each with its output.
+pub(super) fn page_commands(bench: &Bench, page: &'static str) -> Vec<(&'static str, Output)> {
+    let (_, block) = page.split_once("```sh\n").expect("a block of commands");
+    let (block, _) = block.split_once("```").expect("its end");
+    let run = |line: &'static str| {
+        let command = line.split_once(" #").map_or(line, |(command, _)| command).trim_end();
+        (command, parsed(bench, command.split(' ').skip(1).collect(), false))
+    };
+    block.lines().map(run).collect()
+}
+
 /// Returns a bench with the files that help texts and pages name.
 pub(super) fn example_files() -> Bench {
     let bench = Bench::new();

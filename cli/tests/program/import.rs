@@ -1,7 +1,7 @@
 //! From a tool library to a program that is checked with its tools.
 
 use crate::bench::{Bench, rows, stderr, stdout, touchoff};
-use crate::help::{example_files, parsed};
+use crate::help::{example_files, page_commands};
 use serde_json::Value;
 
 /// A ball end mill in a nut, and a drill without a holder.
@@ -80,17 +80,11 @@ fn importing_again_changes_nothing() {
 #[test]
 fn the_commands_of_the_page_work() {
     let bench = example_files();
-    let page = include_str!("../../../docs/import.md");
-    let (_, block) = page.split_once("```sh\n").expect("a block of commands");
-    let (block, _) = block.split_once("```").expect("its end");
-    let mut count = 0;
-    for line in block.lines() {
-        let command = line.split_once(" #").map_or(line, |(command, _)| command).trim_end();
-        let words: Vec<&str> = command.split(' ').skip(1).collect();
-        let output = parsed(&bench, words, false);
-        assert_eq!(output.status.code(), Some(0), "{command}: {}", stderr(&output));
-        count += 1;
+    let outputs = page_commands(&bench, include_str!("../../../docs/import.md"));
+    for (command, output) in &outputs {
+        assert_eq!(output.status.code(), Some(0), "{command}: {}", stderr(output));
     }
+    let count = outputs.len();
     assert!((1..=10).contains(&count), "{count} commands");
     for file in
         ["tools/cutters/d4_ball.tool", "tools/holders/er16_nut.tool", "d4_ball.svg", "changed.json"]

@@ -1,9 +1,8 @@
 //! Job files: G-code on a machine, with several tools, fixtures and stock.
 
-use crate::bench::{Bench, stderr, stdout, touchoff};
-use crate::help::parsed;
+use crate::bench::{Bench, objects, stderr, stdout, touchoff};
+use crate::help::page_commands;
 use nalgebra::Point3;
-use serde_json::Value;
 use std::process::Output;
 use touchoff::Mesh;
 use touchoff::Unit;
@@ -117,30 +116,19 @@ fn job(bench: &Bench, text: &str, more: &[&str]) -> Output {
     touchoff(&[&["verify", &file][..], more].concat())
 }
 
-/// Returns the findings that were printed as JSON.
-fn findings(output: &Output) -> Vec<Value> {
-    stdout(output).lines().map(|line| serde_json::from_str(line).expect("an object")).collect()
-}
-
 /// The walk of docs/verify.md: a nut that touches the vise, then a longer stick-out.
 #[test]
 fn the_job_of_the_page_becomes_clean() {
     let (bench, text) = bracket();
     bench.write("bracket.toml", &text);
-    let page = include_str!("../../../docs/verify.md");
-    let (_, block) = page.split_once("```sh\n").expect("a block of commands");
-    let (block, _) = block.split_once("```").expect("its end");
-    let mut count = 0;
-    for line in block.lines() {
-        let command = line.split_once(" #").map_or(line, |(command, _)| command).trim_end();
-        let words: Vec<&str> = command.split(' ').skip(1).collect();
-        let output = parsed(&bench, words, false);
-        assert_eq!(output.status.code(), Some(1), "{command}: {}", stderr(&output));
-        count += 1;
+    let outputs = page_commands(&bench, include_str!("../../../docs/verify.md"));
+    for (command, output) in &outputs {
+        assert_eq!(output.status.code(), Some(1), "{command}: {}", stderr(output));
     }
+    let count = outputs.len();
     assert!(count >= 3, "{count} commands");
     let found = job(&bench, &text, &["--json"]);
-    let found = findings(&found);
+    let found = objects(&found);
     assert!(found.iter().any(|row| {
         row["tool_number"] == 2 && row["surface"] == "nut" && row["body"] == "the vise"
     }));
@@ -155,7 +143,7 @@ fn the_job_of_the_page_becomes_clean() {
     assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
 }
 
-/// What a job leaves open or states wrongly is an error that names it.
+/// An error names the entry of a job that is missing or wrong.
 #[test]
 fn a_wrong_job_is_refused() {
     let (bench, text) = bracket();
@@ -209,7 +197,7 @@ fn g_code_runs_without_a_job() {
     let all = ["--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
     let verify = |more: &[&str]| touchoff(&[&["verify"][..], &all, more].concat());
     let output = verify(&["--json"]);
-    let found = findings(&output);
+    let found = objects(&output);
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let ball = found.iter().find(|row| row["surface"] == "ball").expect("a finding");
     assert_eq!((&ball["line"], &ball["kind"]), (&3.into(), &"deep".into()));

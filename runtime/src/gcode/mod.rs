@@ -66,6 +66,7 @@ pub use error::{GcodeError, GcodeFault};
 pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
 pub use note::{NoteKind, ProgramNote};
+pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 
 pub use crate::machine::Plane;

@@ -21,6 +21,7 @@
 //! it depends on: the entries of a product of three rotations are within 2⁻⁴⁸, and a sum has at most eight
 //! terms.
 
+use crate::machine::sin_cos_degrees;
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 
@@ -270,8 +271,8 @@ impl ControlState {
     }
 }
 
-/// Returns the rotation by an angle in degrees about an axis: 0 is x, 1 is y, 2 is z.
-pub(super) fn about(axis: usize, degrees: f64) -> Matrix3<f64> {
+/// Returns the rotation by an angle in degrees about an axis: 0 is x, 1 is y, 2 is z. It is exact at multiples of 90.
+pub(crate) fn about(axis: usize, degrees: f64) -> Matrix3<f64> {
     let (sine, cosine) = sin_cos_degrees(degrees);
     let [first, second] = [(axis + 1) % 3, (axis + 2) % 3];
     let mut matrix = Matrix3::identity();
@@ -280,20 +281,6 @@ pub(super) fn about(axis: usize, degrees: f64) -> Matrix3<f64> {
     matrix[(first, second)] = -sine;
     matrix[(second, first)] = sine;
     matrix
-}
-
-/// Returns sine and cosine of an angle in degrees: exact at multiples of 90, elsewhere within 3 · 2⁻⁵³.
-fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
-    // Both the remainder and the difference are exact, and the rest is at most 45 degrees.
-    let turn = degrees % 360.0;
-    let quarter = (turn / 90.0).round();
-    let (sine, cosine) = (turn - 90.0 * quarter).to_radians().sin_cos();
-    match (quarter as i32).rem_euclid(4) {
-        0 => (sine, cosine),
-        1 => (cosine, -sine),
-        2 => (-sine, -cosine),
-        _ => (-cosine, sine),
-    }
 }
 
 fn linear(position: Position) -> [Option<f64>; 3] {

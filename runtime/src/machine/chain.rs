@@ -189,8 +189,10 @@ impl Chain {
         Ok(chain)
     }
 
-    /// Returns the chain without the limits of its linear axes: for joint values that are known up to a displacement.
-    pub(crate) fn without_linear_limits(&self) -> Chain {
+    /// Returns the chain without the limits of its linear axes. Without a work offset, linear joints are known up to a
+    /// displacement only.
+    #[must_use]
+    pub fn without_linear_limits(&self) -> Chain {
         let mut chain = *self;
         chain.limits[..3].fill([f64::NEG_INFINITY, f64::INFINITY]);
         chain

@@ -72,6 +72,7 @@ pub use inverse::{InverseSolution, REACH_TOLERANCE};
 pub use limits::LimitViolation;
 pub use motion::JointMotion;
 pub use path::{LinearPath, Plane};
+pub(crate) use rotation::sin_cos_degrees;
 pub use singular::{SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
 
 use nalgebra::{Point3, Vector3};

@@ -18,7 +18,7 @@ pub(super) const ROTATION_ERROR: f64 = 30.0;
 /// The angle is reduced to ±45° in degrees. The reduction is exact: the difference of the angle and the
 /// nearest multiple of 90° is a multiple of the angle's ulp and no larger than the angle, or both are within
 /// a factor of 2.
-pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let quarters = (degrees / 90.0).round();
     let (sine, cosine) = (degrees - 90.0 * quarters).to_radians().sin_cos();
     match quarters as i64 & 3 {

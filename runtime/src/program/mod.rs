@@ -48,6 +48,35 @@ pub struct Program {
     cutters: Vec<(usize, Vec<f64>)>,
 }
 
+/// A program of either kind, as a file holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProgramFile {
+    /// Positions of the tip with the axis: a table, or APT-CL.
+    Locations(Program),
+    /// The text of a G-code program.
+    Gcode(String),
+}
+
+impl ProgramFile {
+    /// Reads a file of positions or of G-code.
+    ///
+    /// The first line that is neither blank nor a comment decides: G-code begins with `%`, a comment in parentheses, a
+    /// letter with a number, or the head of a Heidenhain program.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not text, or as for [`Program::read`].
+    pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
+        let file = path.as_ref().display().to_string();
+        match input::read(path) {
+            Ok(bytes) => match decode(&bytes) {
+                Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
+                _ => Program::parse(bytes, &file).map(ProgramFile::Locations),
+            },
+            Err(source) => Err(ProgramError::Read { file, source }),
+        }
+    }
+}
+
 /// A cutter location: one position of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutterLocation {
@@ -115,25 +144,6 @@ impl Program {
                 cutters: tape.cutters,
                 file,
             }),
-        }
-    }
-
-    /// Returns the text of a G-code program, or `None` if the file holds positions of the tip, which
-    /// [`Program::read`] reads.
-    ///
-    /// The first line that is neither blank nor a comment decides: `%`, a letter with a number, or the head of a
-    /// Heidenhain program. So does a comment in parentheses.
-    ///
-    /// # Errors
-    /// If the file cannot be read or is not text.
-    pub fn gcode(path: impl AsRef<Path>) -> Result<Option<String>, ProgramError> {
-        let file = path.as_ref().display().to_string();
-        let bytes = input::read(path)
-            .map_err(|source| ProgramError::Read { file: file.clone(), source })?;
-        match decode(&bytes) {
-            Ok(text) if is_gcode(text) => Ok(Some(text.to_owned())),
-            Ok(_) => Ok(None),
-            Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
         }
     }
 

@@ -10,6 +10,7 @@ use super::{Stock, StockContact, StockError};
 use crate::bvh::QuerySetup;
 use crate::motion::Motion;
 use crate::pose::Pose;
+use crate::reach::max_distance_from_tip;
 use crate::tool::{Symmetry, Tool};
 
 /// The mode of a motion.
@@ -36,10 +37,7 @@ impl Stock {
     /// [`Stock::advance`] needs it: the length of the tip's path, plus the angle times the largest distance
     /// of the tool's points from the tip.
     pub fn max_travel(&self, tool: &dyn Tool, motion: &Motion) -> f64 {
-        let info = tool.info();
-        let reach = info.reach();
-        let from_tip = reach.low.abs().max(reach.high.abs()).hypot(info.radius());
-        let lever = from_tip * info.unit.factor_to(self.unit);
+        let lever = max_distance_from_tip(tool.info(), self.unit);
         (motion.displacement().norm() + motion.angle() * lever) * WIDENING
     }
 

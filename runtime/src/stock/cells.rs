@@ -8,7 +8,7 @@ use std::collections::HashMap;
 impl Stock {
     /// Returns the surface of the cells that are left: a closed, consistently oriented mesh with two
     /// triangles per face between a cell that is left and one that is not. [`Mesh::write_stl`] writes it.
-    /// Where cells touch along an edge only, four faces share it.
+    /// Four faces share an edge along which alone cells touch.
     ///
     /// **Deviation.** Let M be the material as the points know it: what was inside at the beginning, less
     /// what was removed (see the [module's page](crate::stock)). A face lies halfway between a node inside M

@@ -179,8 +179,8 @@ impl Mode<'_> {
                 continue;
             }
             let surface = SurfaceId(index);
-            // What is deeper than this in the approximation is deeper than allowed in truth, and what is not is in
-            // truth deeper by at most the resolution.
+            // A point deeper than this limit in the approximation is deeper than allowed in truth. Any other exceeds the
+            // allowance by at most the resolution.
             let (limit, tolerance) = (allowed + slack, resolution - 2.0 * slack);
             let depth = self.certifier.motion_depth(surface, motion, limit, tolerance);
             match depth.expect("a surface of the tool") {

@@ -34,7 +34,7 @@ pub struct MachineProgram {
     summary: MachineSummary,
 }
 
-/// What a program does on its machine.
+/// Summary of a program on its machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MachineSummary {
@@ -111,13 +111,10 @@ impl MachineProgram {
         mut setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
         let is_placed = setup.work_offsets[0].is_some();
-        let home = machine.home();
-        // Where the machine stands before the program is unknown; axes that it lacks are at 0.
+        // The position of the machine before the program is unknown; axes that it lacks are at 0.
         setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
-        if is_placed
-            && home.iter().zip(machine_axes(&machine)).all(|(home, has)| home.is_some() || !has)
-        {
-            setup.home = Some(home.map(|value| value.unwrap_or(0.0)));
+        if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
+            setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
         let file = name.to_owned();
         let mut program =
@@ -126,7 +123,7 @@ impl MachineProgram {
         Ok(program)
     }
 
-    /// Returns what the program does on its machine.
+    /// Returns the summary of the program on its machine.
     pub fn summary(&self) -> &MachineSummary {
         &self.summary
     }
@@ -234,11 +231,6 @@ impl MachineProgram {
         summary.notes = interpreter.notes();
         Ok(summary)
     }
-}
-
-/// Returns which of the letters X Y Z A B C are axes of a machine.
-fn machine_axes(machine: &Machine) -> [bool; 6] {
-    Letter::ALL.map(|letter| machine.axis(letter).is_some())
 }
 
 /// Adds a violation, or keeps the worse one of the same axis and limit.

@@ -43,13 +43,12 @@ pub use moves::{JointPath, Move, MovePath};
 use crate::certify::{Certifier, TriangleBvh};
 use crate::debug::debug;
 use crate::id::SurfaceId;
-use crate::interval::Interval;
 use crate::parallel;
 use crate::program::Program;
+use crate::reach::max_distance_from_tip;
 use crate::tool::{Tool, ToolInfo};
 use approach::ApproachSearch;
 use checker::Checker;
-use std::iter;
 
 /// Checks programs of a tool against a part.
 ///
@@ -200,10 +199,7 @@ impl<'a> Verifier<'a> {
         program.check_unit(self.bvh.unit())?;
         program.check_poses(self.tool.info())?;
         program.check_cutter(self.tool.info(), self.bvh.unit())?;
-        let locations = &program.locations;
-        let before = iter::once(None).chain(locations.iter().map(Some));
-        let symmetry = self.tool.info().symmetry;
-        let moves = before.zip(locations).map(|(from, to)| Move::between(from, to, symmetry));
+        let moves = Move::all(program, self.tool.info().symmetry);
         self.check_moves(moves, progress)
     }
 
@@ -271,10 +267,8 @@ impl<'a> Verifier<'a> {
     }
 
     /// Returns an upper bound on the distance of the tool's points from its tip, in the part's unit.
-    fn reach(&self) -> f64 {
-        let info = self.tool.info();
-        let Interval { low, high } = info.reach();
-        low.abs().max(high.abs()).hypot(info.radius()) * info.unit.factor_to(self.bvh.unit())
+    pub fn reach(&self) -> f64 {
+        max_distance_from_tip(self.tool.info(), self.bvh.unit())
     }
 
     /// Returns a bound on the change of depth per length. Without a profile it is that of the depth function.

@@ -1,13 +1,14 @@
 //! The motions of a program, each with its place in the file.
 
-use crate::interval::Interval;
 use crate::machine::JointMotion;
 use crate::motion::{Motion, MotionError};
 use crate::pose::Pose;
-use crate::program::CutterLocation;
+use crate::program::{CutterLocation, Program};
+use crate::reach::max_distance_from_tip;
 use crate::tool::{Symmetry, ToolInfo};
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
+use std::iter;
 
 /// A motion of a program.
 #[derive(Clone, Debug)]
@@ -87,6 +88,16 @@ impl JointPath {
 }
 
 impl Move {
+    /// Returns the motions of a program: the first cutter location by itself, then from each to the next.
+    ///
+    /// # Panics
+    /// As [`Move::between`].
+    pub fn all(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
+        let locations = &program.locations;
+        let before = iter::once(None).chain(locations.iter().map(Some));
+        before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
+    }
+
     /// Returns the motion from one cutter location to the next, or the first one by itself. A tool of revolution
     /// turns about the common normal of both axes, a solid about one fixed axis.
     ///
@@ -116,8 +127,7 @@ impl MovePath {
 
     /// Returns an upper bound on the speed of any point of a tool, per unit of the motion's time, with lengths in `unit`.
     pub fn max_speed(&self, tool: &ToolInfo, unit: Unit) -> f64 {
-        let Interval { low, high } = tool.reach();
-        let reach = low.abs().max(high.abs()).hypot(tool.radius()) * tool.unit.factor_to(unit);
+        let reach = max_distance_from_tip(tool, unit);
         match self {
             MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
             MovePath::Joints(path) => path.motion.max_speed(reach / path.scale) * path.scale,

@@ -154,7 +154,7 @@ fn joint_motions_agree_with_brute_force() {
         let verifier = allowances.iter().fold(verifier, |verifier, (name, to)| {
             verifier.with_allowance(name, *to).expect("a surface")
         });
-        // Which block a move belongs to: lines without axis words have no move.
+        // The line of each block: lines without axis words have no move.
         let lines: Vec<usize> = {
             let mut lines: Vec<usize> = moves.iter().map(|step| step.line).collect();
             lines.dedup();
@@ -164,7 +164,7 @@ fn joint_motions_agree_with_brute_force() {
         let report = verifier.check_moves(moves, &|_| ()).expect("it can be checked");
         for (k, to) in blocks.iter().enumerate().skip(1) {
             let from = &blocks[k - 1];
-            // Where tool centre point control changes, the machine stands where the other kind of coordinates says.
+            // After a change of tool centre point control, the position is that of the other kind of coordinates.
             if from.tcp != to.tcp {
                 continue;
             }

@@ -46,6 +46,7 @@ const RUNTIME: &[&str] = &[
     "machine",
     "gcode",
     "tool",
+    "reach",
     "import",
     "export",
     "bvh",

@@ -118,7 +118,7 @@ fn nearest(value: f64, near: f64, limits: Option<[f64; 2]>) -> f64 {
         .expect("the value itself")
 }
 
-/// Where the tool axis is parallel to the first rotary axis, that joint keeps its value.
+/// A joint whose axis is parallel to the tool axis keeps its value.
 #[test]
 fn a_singular_direction_keeps_the_angle() {
     for (name, index) in

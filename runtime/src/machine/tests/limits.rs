@@ -1,7 +1,7 @@
 //! Limits of axes against dense samples of the second implementation.
 
 use super::{Random, chain, library};
-use crate::machine::{JointMotion, Letter, LimitViolation, LinearPath, Plane};
+use crate::machine::{JointMotion, Letter, LimitViolation, LinearPath, Machine, Plane, Setup};
 
 /// Number of samples of a motion.
 const SAMPLES: usize = 400;
@@ -146,4 +146,17 @@ fn a_search_that_does_not_finish_is_reported() {
         (Letter::Y, 300.0, true),
     ];
     assert_eq!(found, expected);
+}
+
+#[test]
+fn only_the_limits_of_linear_axes_go() {
+    for name in Machine::names() {
+        let machine = Machine::named(name).expect("a machine");
+        let chain = machine.chain(&Setup::default()).expect("a chain");
+        let mut free = chain.without_linear_limits();
+        assert_eq!(free.limits[..3], [[f64::NEG_INFINITY, f64::INFINITY]; 3]);
+        assert_eq!(free.limits[3..], chain.limits[3..]);
+        free.limits = chain.limits;
+        assert_eq!(free, chain);
+    }
 }

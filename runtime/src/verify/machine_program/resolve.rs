@@ -3,10 +3,10 @@
 use super::StepFault;
 use super::path::{self, Map};
 use crate::gcode::{
-    ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, WorkOffset,
+    self, ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, WorkOffset,
 };
 use crate::machine::{Chain, JointMotion, Joints, Letter, LinearPath, Machine, Setup, Side};
-use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
@@ -236,9 +236,8 @@ impl<'a> Resolver<'a> {
         let map = if state.origin_rotation == 0.0 {
             Map { rotation: turn, origin: about + linear }
         } else {
-            let angle = state.origin_rotation.to_radians();
-            let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
-            Map { rotation: turned.matrix() * turn, origin: turned * about + linear }
+            let turned = gcode::about(2, state.origin_rotation);
+            Map { rotation: turned * turn, origin: turned * about + linear }
         };
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
         let has_unknown_lever = self.has_head && !is_known;
