@@ -73,9 +73,9 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
 }
 
 /// Prints the words that were ignored, and how often each occurs.
-pub(crate) fn print_ignored(program: &Program) {
+pub(crate) fn print_ignored(programs: &[Program]) {
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
-    for (_, word) in &program.ignored {
+    for (_, word) in programs.iter().flat_map(|program| &program.ignored) {
         *words.entry(word).or_default() += 1;
     }
     let list: Vec<String> = words

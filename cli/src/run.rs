@@ -169,7 +169,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
 
 /// Prints a description of the input.
 fn about(arguments: &Run, part: &Part, program: &Program, info: &ToolInfo) {
-    program::print_ignored(program);
+    program::print_ignored(std::slice::from_ref(program));
     message!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         info.name,

@@ -12,12 +12,12 @@ use touchoff::gcode::ControlSetup;
 use touchoff::machine::{Machine, Side};
 use touchoff::program::ProgramFile;
 use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
-use touchoff::{Program, Tool, Unit};
+use touchoff::{Program, Unit};
 
 /// A program that was read.
 pub(super) enum CheckedProgram {
-    /// Positions of the tip with the axis: a table, or APT-CL.
-    Locations(Program),
+    /// Positions of the tip with the axis, a program per tool change.
+    Locations(Vec<Program>),
     /// G-code.
     Machine(Box<MachineProgram>),
 }
@@ -31,10 +31,12 @@ impl CheckedProgram {
         let name = job.program.display().to_string();
         let text = match ProgramFile::read(&job.program)? {
             ProgramFile::Gcode(text) => text,
-            ProgramFile::Locations(program) => {
-                program.check_motions()?;
+            ProgramFile::Locations(programs) => {
+                if let [program] = &programs[..] {
+                    program.check_motions()?;
+                }
                 return match &job.machine {
-                    None => Ok(CheckedProgram::Locations(program)),
+                    None => Ok(CheckedProgram::Locations(programs)),
                     Some(_) => Err(Failure::Usage(
                         "a machine is for G-code: this program states positions of the tip",
                     )),
@@ -71,10 +73,28 @@ impl CheckedProgram {
         }
     }
 
+    /// Returns whether the program can turn the tool axis.
+    pub(super) fn turns_axis(&self) -> bool {
+        match self {
+            CheckedProgram::Locations(_) => true,
+            CheckedProgram::Machine(program) => {
+                program.machine().axes().iter().any(|axis| axis.letter.is_rotary())
+            }
+        }
+    }
+
     /// Returns the numbers of the tools that the program uses.
     pub(super) fn tools(&self) -> Vec<Option<u32>> {
         match self {
-            CheckedProgram::Locations(_) => vec![None],
+            CheckedProgram::Locations(programs) => {
+                let mut numbers = Vec::new();
+                for program in programs {
+                    if !numbers.contains(&program.tool) {
+                        numbers.push(program.tool);
+                    }
+                }
+                numbers
+            }
             CheckedProgram::Machine(program) => {
                 program.summary().tools.iter().map(|tool| tool.number).collect()
             }
@@ -84,7 +104,9 @@ impl CheckedProgram {
     /// Returns the number of motions.
     pub(super) fn motions(&self) -> usize {
         match self {
-            CheckedProgram::Locations(program) => program.locations.len(),
+            CheckedProgram::Locations(programs) => {
+                programs.iter().map(|program| program.locations.len()).sum()
+            }
             CheckedProgram::Machine(program) => {
                 program.summary().tools.iter().map(|tool| tool.motions).sum()
             }
@@ -95,13 +117,18 @@ impl CheckedProgram {
     ///
     /// # Errors
     /// If its unit, poses or cutter do not fit.
-    pub(super) fn check(&self, tool: &dyn Tool, unit: Unit, file: &Path) -> Result<(), Failure> {
-        match self {
-            CheckedProgram::Locations(locations) => {
-                program::check(locations, tool.info(), unit, file)
-            }
-            CheckedProgram::Machine(_) => Ok(()),
-        }
+    pub(super) fn check(&self, tool: &ProgramTool, unit: Unit, file: &Path) -> Result<(), Failure> {
+        self.programs(tool.selection)
+            .try_for_each(|program| program::check(program, tool.tool().info(), unit, file))
+    }
+
+    /// Returns the programs of positions of a tool.
+    fn programs(&self, selection: ToolSelection) -> impl Iterator<Item = &Program> {
+        let programs = match self {
+            CheckedProgram::Locations(programs) => &programs[..],
+            CheckedProgram::Machine(_) => &[],
+        };
+        programs.iter().filter(move |program| selection.contains(program.tool))
     }
 
     /// Returns the motions of a tool relative to a link of the table, or to the part.
@@ -112,8 +139,10 @@ impl CheckedProgram {
         unit: Unit,
     ) -> Result<Box<dyn Iterator<Item = Move> + 'a>, Failure> {
         Ok(match self {
-            CheckedProgram::Locations(program) => {
-                Box::new(Move::all(program, tool.tool().info().symmetry))
+            CheckedProgram::Locations(_) => {
+                let symmetry = tool.tool().info().symmetry;
+                let programs = self.programs(tool.selection);
+                Box::new(programs.flat_map(move |program| Move::all(program, symmetry)))
             }
             CheckedProgram::Machine(program) => {
                 Box::new(program.moves(tool.selection, link, unit)?)
@@ -133,9 +162,12 @@ impl CheckedProgram {
             tools.iter().find(is_its)
         };
         let moves: Box<dyn Iterator<Item = Move>> = match self {
-            CheckedProgram::Locations(program) => {
-                let symmetry = tools.first().map(|tool| tool.tool().info().symmetry);
-                Box::new(symmetry.into_iter().flat_map(|symmetry| Move::all(program, symmetry)))
+            CheckedProgram::Locations(programs) => {
+                Box::new(programs.iter().flat_map(move |program| {
+                    let tool = tool_of(program.tool);
+                    let symmetry = tool.map(|tool| tool.tool().info().symmetry);
+                    symmetry.into_iter().flat_map(|symmetry| Move::all(program, symmetry))
+                }))
             }
             CheckedProgram::Machine(program) => {
                 Box::new(program.moves(ToolSelection::All, None, unit)?)
@@ -177,9 +209,28 @@ impl CheckedProgram {
             program::print_approach(&pair.report, unit);
         }
         match self {
-            CheckedProgram::Locations(program) => program::print_ignored(program),
+            CheckedProgram::Locations(programs) => {
+                program::print_ignored(programs);
+                print_tool_changes(programs);
+            }
             CheckedProgram::Machine(program) => print_machine(program),
         }
+    }
+}
+
+/// Prints the number of motions to the first position after a tool change, which the program does not state.
+fn print_tool_changes(programs: &[Program]) {
+    let [_, changed @ ..] = programs else { return };
+    if let Some(first) = changed.first() {
+        message!(
+            "{} to the first position after a tool change not checked, first to line {}: only the machine knows where \
+             they start",
+            match changed.len() {
+                1 => "1 motion".to_owned(),
+                count => format!("{count} motions"),
+            },
+            first.locations[0].line
+        );
     }
 }
 

@@ -143,6 +143,39 @@ fn the_job_of_the_page_becomes_clean() {
     assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
 }
 
+/// Cutter locations of two tools: each tool is checked on its own positions, against its own cutter.
+#[test]
+fn cutter_locations_change_tools() {
+    let (bench, _) = bracket();
+    let program = |depth: f64| {
+        format!(
+            "UNITS/MM\nLOADTL/1\nCUTTER/40\nGOTO/-60,0,0\nGOTO/60,0,0\nCUTTER/10\nLOADTL/3\nGOTO/60,-35,-5\n\
+             GOTO/-60,-35,{depth}\nLOADTL/1\nCUTTER/40\nGOTO/-60,0,1\nGOTO/60,0,1\nFINI\n"
+        )
+    };
+    let text = "part = \"bracket.stl\"\nunit = \"mm\"\nprogram = \"two.apt\"\n[tool.1]\ntool = \"face40.tool\"\n\
+                [tool.3]\ntool = \"mill10.tool\"\n[[fixture]]\nname = \"the vise\"\nmesh = \"vise.stl\"\n";
+    bench.write("two.apt", program(-5.0));
+    let clean = job(&bench, text, &[]);
+    assert_eq!(clean.status.code(), Some(0), "{}{}", stdout(&clean), stderr(&clean));
+    let said = stderr(&clean);
+    assert!(said.contains(
+        "2 motions to the first position after a tool change not checked, first to line 8"
+    ));
+    bench.write("two.apt", program(-12.0));
+    let found = objects(&job(&bench, text, &["--json"]));
+    assert!(!found.is_empty());
+    for row in &found {
+        assert_eq!(
+            (&row["tool_number"], &row["body"], &row["line"]),
+            (&3.into(), &"the vise".into(), &9.into())
+        );
+    }
+    let other = job(&bench, &text.replace("mill10", "face40"), &[]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(stderr(&other).contains("two.apt:6: CUTTER/10 is not `Face40`"), "{}", stderr(&other));
+}
+
 /// An error names the entry of a job that is missing or wrong.
 #[test]
 fn a_wrong_job_is_refused() {

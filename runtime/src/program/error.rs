@@ -221,6 +221,12 @@ pub enum ProgramFault {
         /// The line of the first, 1-based.
         first: usize,
     },
+    /// A change to a tool without a number.
+    #[error("LOADTL/{argument} changes the tool, but has no number: write LOADTL/3")]
+    ToolNumber {
+        /// The arguments.
+        argument: String,
+    },
     /// A position that is not written as one.
     #[error("{statement} is not understood: write GOTO/x,y,z,i,j,k, with nothing before it")]
     Malformed {

@@ -41,6 +41,8 @@ pub struct Program {
     /// Words that were passed over, each with its 1-based line. They can neither move the tool nor change the
     /// meaning of positions.
     pub ignored: Vec<(usize, String)>,
+    /// The tool's number, if APT's `LOADTL` states it.
+    pub tool: Option<u32>,
     file: String,
     /// Line of `UNITS` in a program that was read.
     unit_line: Option<usize>,
@@ -51,8 +53,8 @@ pub struct Program {
 /// A program of either kind, as a file holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProgramFile {
-    /// Positions of the tip with the axis: a table, or APT-CL.
-    Locations(Program),
+    /// Positions of the tip with the axis, from a table or APT-CL: a program per tool change, at least one.
+    Locations(Vec<Program>),
     /// The text of a G-code program.
     Gcode(String),
 }
@@ -64,13 +66,13 @@ impl ProgramFile {
     /// letter with a number, or the head of a Heidenhain program.
     ///
     /// # Errors
-    /// If the file cannot be read or is not text, or as for [`Program::read`].
+    /// If the file cannot be read or is not text, or as for [`Program::parse_tools`].
     pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
         let file = path.as_ref().display().to_string();
         match input::read(path) {
             Ok(bytes) => match decode(&bytes) {
                 Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
-                _ => Program::parse(bytes, &file).map(ProgramFile::Locations),
+                _ => Program::parse_tools(bytes, &file).map(ProgramFile::Locations),
             },
             Err(source) => Err(ProgramError::Read { file, source }),
         }
@@ -109,16 +111,17 @@ impl Program {
             unit,
             locations,
             ignored: Vec::new(),
+            tool: None,
             file,
             unit_line: None,
             cutters: Vec::new(),
         })
     }
 
-    /// Reads a program from a file.
+    /// Reads a program of one tool from a file.
     ///
     /// # Errors
-    /// If the file cannot be read, if a line is refused, or if there is no position.
+    /// If the file cannot be read, or as for [`Program::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Program, ProgramError> {
         let file = path.as_ref().display().to_string();
         match input::read(path) {
@@ -127,24 +130,51 @@ impl Program {
         }
     }
 
-    /// Reads a program from the content of a file. `name` is the file's name in errors.
+    /// Reads a program of one tool from the content of a file. `name` is the file's name in errors.
+    ///
+    /// # Errors
+    /// If a line is refused, the tool changes, or there is no position.
+    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<Program, ProgramError> {
+        let tapes = assemble(content.as_ref());
+        let tapes = tapes.and_then(|Tapes { tapes, several }| several.map_or(Ok(tapes), Err));
+        Program::from_tapes(tapes, name).map(|mut programs| programs.swap_remove(0))
+    }
+
+    /// Reads the programs of several tools from the content of a file: one per tool change of APT, at least one. Each has
+    /// the positions between two changes. `name` is the file's name in errors.
     ///
     /// # Errors
     /// If a line is refused, or if there is no position.
-    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<Program, ProgramError> {
+    pub fn parse_tools(
+        content: impl AsRef<[u8]>,
+        name: &str,
+    ) -> Result<Vec<Program>, ProgramError> {
+        Program::from_tapes(assemble(content.as_ref()).map(|read| read.tapes), name)
+    }
+
+    fn from_tapes(
+        tapes: Result<Vec<Tape>, Located>,
+        name: &str,
+    ) -> Result<Vec<Program>, ProgramError> {
         let file = name.to_owned();
-        match assemble(content.as_ref()) {
-            Err((line, fault)) => Err(ProgramError::Line { file, line, fault }),
-            Ok(tape) if tape.locations.is_empty() => Err(ProgramError::NoPosition { file }),
-            Ok(tape) => Ok(Program {
-                unit: tape.unit.map(|(unit, _)| unit),
-                unit_line: tape.unit.map(|(_, line)| line),
-                locations: tape.locations,
-                ignored: tape.ignored,
-                cutters: tape.cutters,
-                file,
-            }),
+        let mut tapes = match tapes {
+            Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
+            Ok(tapes) => tapes,
+        };
+        tapes.retain(|tape| !tape.locations.is_empty());
+        if tapes.is_empty() {
+            return Err(ProgramError::NoPosition { file });
         }
+        let program = |tape: Tape| Program {
+            unit: tape.unit.map(|(unit, _)| unit),
+            unit_line: tape.unit.map(|(_, line)| line),
+            locations: tape.locations,
+            ignored: tape.ignored,
+            tool: tape.tool,
+            cutters: tape.cutters,
+            file: file.clone(),
+        };
+        Ok(tapes.into_iter().map(program).collect())
     }
 
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
@@ -199,10 +229,20 @@ type Located = (usize, ProgramFault);
 
 /// The data read from a file of either format.
 #[derive(Default)]
+struct Tapes {
+    /// A tape per tool change.
+    tapes: Vec<Tape>,
+    /// The first statement that a program of one tool cannot have.
+    several: Option<Located>,
+}
+
+/// The data of one tool.
+#[derive(Default)]
 struct Tape {
     locations: Vec<CutterLocation>,
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
+    tool: Option<u32>,
     cutters: Vec<(usize, Vec<f64>)>,
 }
 
@@ -226,14 +266,14 @@ fn is_gcode(text: &str) -> bool {
 }
 
 /// Decodes bytes as text, and reads its positions.
-fn assemble(bytes: &[u8]) -> Result<Tape, Located> {
+fn assemble(bytes: &[u8]) -> Result<Tapes, Located> {
     let text = decode(bytes)?;
     let Some((line, first)) = lines(text).find(|(_, line)| !is_comment(line)) else {
-        return Ok(Tape::default());
+        return Ok(Tapes::default());
     };
     if begins_table(first) {
         let locations = csv::read(text)?;
-        Ok(Tape { locations, ..Tape::default() })
+        Ok(Tapes { tapes: vec![Tape { locations, ..Tape::default() }], several: None })
     } else if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
         apt::read(text)
     } else {

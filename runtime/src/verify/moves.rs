@@ -95,7 +95,9 @@ impl Move {
     pub fn all(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
         let locations = &program.locations;
         let before = iter::once(None).chain(locations.iter().map(Some));
-        before.zip(locations).map(move |(from, to)| Move::between(from, to, symmetry))
+        before
+            .zip(locations)
+            .map(move |(from, to)| Move { tool: program.tool, ..Move::between(from, to, symmetry) })
     }
 
     /// Returns the motion from one cutter location to the next, or the first one by itself. A tool of revolution

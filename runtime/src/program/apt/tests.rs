@@ -169,8 +169,64 @@ fn the_end_of_a_path_of_nx_ends_a_program() {
     assert_eq!(program(&format!("{whole}\nFINI\n")).locations.len(), 2);
     assert_eq!(
         refusal(format!("{whole}\nTOOL PATH/C,TOOL,D\nGOTO/1,2,3\nEND-OF-PATH\n")),
+        "part.cl:5: another tool than that of line 1: give one program per tool"
+    );
+    assert_eq!(
+        refusal(format!("{whole}\nTOOL PATH/C,TOOL,B\nGOTO/1,2,3\nEND-OF-PATH\n")),
         "part.cl:5: a statement follows END-OF-PATH: give one program per file"
     );
+}
+
+/// A tool and the lines of its positions.
+type ToolLines = (Option<u32>, Vec<usize>);
+
+/// Returns the tools of a program, each with the lines of its positions.
+fn tools(text: &str) -> Result<Vec<ToolLines>, String> {
+    let programs = Program::parse_tools(text, "part.cl").map_err(|error| error.to_string())?;
+    let lines = |program: &Program| program.locations.iter().map(|at| at.line).collect();
+    Ok(programs.iter().map(|program| (program.tool, lines(program))).collect())
+}
+
+#[test]
+fn a_tool_change_begins_another_program() {
+    let text = "UNITS/INCHES\nFROM/0,0,9\nLOADTL/3,ADJUST,3\nCUTTER/.5\nGOTO/1,2,3\nLOADTL/3\nGOTO/2,2,3\n\
+                CUTTER/.25,.125\nLOADTL/7\nFROM/0,0,9,1,0,0\nGOTO/4,5,6\nGOTO/5,5,6\nLOADTL/3\nCUTTER/.5\n\
+                GOTO/7,8,9\nLOADTL/0\nFINI\n";
+    let expected = vec![(Some(3), vec![2, 5, 7]), (Some(7), vec![10, 11, 12]), (Some(3), vec![15])];
+    assert_eq!(tools(text), Ok(expected));
+    let programs = Program::parse_tools(text, "part.cl").expect("three programs");
+    assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
+    // The axis stays as APT has it.
+    assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
+    assert_eq!(
+        refusal(text),
+        "part.cl:6: another tool than that of line 3: give one program per tool"
+    );
+}
+
+#[test]
+fn operations_of_nx_follow_one_another() {
+    let operation = |name: &str, tool: &str, more: &str| {
+        format!(
+            "TOOL PATH/{name},TOOL,{tool}\nTLDATA/MILL,6,3\n{more}GOTO/1,2,3\nGOTO/2,2,3\nEND-OF-PATH\n"
+        )
+    };
+    let both = [operation("A", "BALL", "LOADTL/1\n"), operation("B", "MILL", "LOADTL/2\n")];
+    let expected = vec![(Some(1), vec![4, 5]), (Some(2), vec![10, 11])];
+    assert_eq!(tools(&both.concat()), Ok(expected));
+    let again = operation("A", "BALL", "") + &operation("B", "BALL", "");
+    assert_eq!(tools(&again), Ok(vec![(None, vec![3, 4, 8, 9])]));
+    let unnumbered = operation("A", "BALL", "") + &operation("B", "MILL", "");
+    let message = "part.cl:6: another tool than that of line 1: give one program per tool";
+    assert_eq!(tools(&unnumbered), Err(message.to_owned()));
+    let unfinished = both.concat().replace("END-OF-PATH\nTOOL", "TOOL");
+    let unfinished = unfinished.strip_suffix("END-OF-PATH\n").expect("the end");
+    assert!(tools(unfinished).is_err_and(|error| error.contains("without FINI")));
+    assert_eq!(
+        tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/NEXT\nGOTO/1,2,3\nFINI"),
+        Err("part.cl:3: LOADTL/NEXT changes the tool, but has no number: write LOADTL/3".to_owned())
+    );
+    assert!(tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nUNITS/MM\nGOTO/1,2,3\nFINI").is_err());
 }
 
 #[test]
