@@ -105,6 +105,10 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
         4280 | 4290 => Group::Kinematics,
         // Spindle and coolant, orientation of the spindle, rigid tapping, overrides.
         30 | 40 | 50 | 70 | 80 | 90 | 190 | 290 | 480 | 490 => Group::PassedOver,
+        // Clamps of rotary axes, spindle with coolant, chip conveyor, gears, LinuxCNC's overrides and outputs, coolant
+        // through the spindle.
+        100 | 110 | 120 | 130 | 140 | 310 | 330 | 410 | 420 | 430 | 440 => Group::PassedOver,
+        500 | 510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 | 880 => Group::PassedOver,
         tenths => return Err(refused_m(code, tenths)),
     })
 }

@@ -108,6 +108,16 @@ pub enum MachineFault {
         /// The largest magnitude allowed.
         limit: f64,
     },
+    /// A rapid traverse rate that is no speed.
+    #[error(
+        "the rapid traverse rate of axis {letter} is {value}: give mm or degrees per minute, above 0"
+    )]
+    Rapid {
+        /// The axis.
+        letter: Letter,
+        /// The given value.
+        value: f64,
+    },
     /// A lower limit that is not below the upper one.
     #[error("the limits of axis {letter} are {low} and {high}: give the lower one first")]
     Limits {

@@ -30,6 +30,7 @@ struct AxisEntry {
     point: Option<Spanned<[f64; 3]>>,
     limits: Option<Spanned<[f64; 2]>>,
     home: Option<Spanned<f64>>,
+    rapid: Option<Spanned<f64>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Deserialize)]
@@ -104,6 +105,18 @@ fn axes(text: &str, entries: &[Spanned<AxisEntry>]) -> Result<Vec<Axis>, Located
         }
         axes.push(axis);
     }
+    // Without the rate of one axis, the path of all is unknown.
+    let is_stated = |axis: &&Axis| axis.rapid.is_some();
+    if let (Some(_), Some((axis, entry))) = (
+        axes.iter().find(is_stated),
+        axes.iter().zip(entries).find(|(axis, _)| axis.rapid.is_none()),
+    ) {
+        let (letter, key, example) = (axis.letter, "rapid", "30000");
+        return Err((
+            entry.get_ref().letter.span(),
+            MachineFault::MissingKey { letter, key, example },
+        ));
+    }
     Ok(axes)
 }
 
@@ -133,7 +146,14 @@ fn axis(letter: Letter, entry: &AxisEntry) -> Result<Axis, Located> {
         }
     }
     let home = entry.home.as_ref().map(|home| *home.get_ref());
-    Ok(Axis { letter, side: entry.carries, direction, point, limits, home })
+    if let Some(rapid) = &entry.rapid
+        && !(0.0 < *rapid.get_ref() && rapid.get_ref().is_finite())
+    {
+        let value = *rapid.get_ref();
+        return Err((rapid.span(), MachineFault::Rapid { letter, value }));
+    }
+    let rapid = entry.rapid.as_ref().map(|rapid| *rapid.get_ref());
+    Ok(Axis { letter, side: entry.carries, direction, point, limits, home, rapid })
 }
 
 /// Returns the direction of a linear axis. The file may state it, but no other.

@@ -157,6 +157,8 @@ pub struct Axis {
     pub limits: Option<[f64; 2]>,
     /// Joint value of the reference position, in mm or degrees.
     pub home: Option<f64>,
+    /// Speed in rapid traverse, in mm or degrees per minute.
+    pub rapid: Option<f64>,
 }
 
 /// A machine tool with the axes X, Y, Z and up to two rotary axes.

@@ -20,6 +20,7 @@ use std::collections::BTreeMap;
 
 mod fault;
 mod path;
+mod rapid;
 mod resolve;
 
 pub use fault::{MachineProgramError, StepFault};
@@ -87,7 +88,8 @@ pub enum ToolSelection {
 }
 
 impl ToolSelection {
-    fn contains(self, tool: Option<u32>) -> bool {
+    /// Returns whether the selection has the motions of a tool.
+    pub fn contains(self, tool: Option<u32>) -> bool {
         match self {
             ToolSelection::All => true,
             ToolSelection::Number(number) => number == tool,

@@ -2,7 +2,7 @@
 
 use crate::block;
 use crate::oracle::Mounted;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use touchoff::certify::TriangleBvh;
 use touchoff::gcode::ControlSetup;
 use touchoff::machine::Machine;
@@ -59,6 +59,36 @@ fn a_program_cannot_move_the_part() {
     for origin in [None, Some([0.0, 0.0, -450.0, 0.0, 0.0, 0.0])] {
         let refused = program("3-axis", origin, &[], blocks).expect_err("it moves the part");
         assert!(refused.contains("the program sets G54"), "{refused}");
+    }
+}
+
+/// With rates, each axis moves at its own: the slower ones go on alone.
+#[test]
+fn rapid_rates_bend_the_path() {
+    let file = "name = \"fast x\"\naxis = [{ letter = \"X\", kind = \"linear\", carries = \"table\", rapid = 20000 }, \
+                { letter = \"Y\", kind = \"linear\", carries = \"table\", rapid = 10000 }, { letter = \"Z\", kind = \
+                \"linear\", carries = \"tool\", rapid = 5000 }]\n";
+    let machine = Machine::parse(file, "fast.toml").expect("a machine");
+    let text = "G21 G90 G0 X0. Y0. Z0.\nX20. Y20. Z0.\nX20. Y20. Z5.\nG1 X0. Y0. Z0. F100.\nM30\n";
+    let program = MachineProgram::new("a.nc", text.to_owned(), machine, ControlSetup::default());
+    let moves = moves(&program.expect("a program"));
+    let ends: Vec<_> = moves.iter().map(|step| (step.line, step.path.pose(1.0).tip())).collect();
+    let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    let expected = [
+        (1, at(0.0, 0.0, 0.0)),
+        // X arrives after 1/1000 min, when Y is halfway.
+        (2, at(20.0, 10.0, 0.0)),
+        (2, at(20.0, 20.0, 0.0)),
+        (3, at(20.0, 20.0, 5.0)),
+        (4, at(0.0, 0.0, 0.0)),
+    ];
+    assert_eq!(ends.len(), expected.len(), "{ends:?}");
+    for ((line, tip), (expected_line, expected)) in ends.iter().zip(expected) {
+        assert!(*line == expected_line && (tip - expected).norm() < 1e-12, "{ends:?}");
+    }
+    for (from, to) in [("rapid = 5000", "rapid = 0"), (", rapid = 5000", "")] {
+        let error = Machine::parse(&file.replace(from, to), "fast.toml").expect_err("refused");
+        assert!(error.to_string().contains("axis Z"), "{error}");
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::StepFault;
 use super::path::{self, Map};
+use super::rapid;
 use crate::gcode::{
     self, ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, WorkOffset,
 };
-use crate::machine::{Chain, JointMotion, Joints, Letter, LinearPath, Machine, Setup, Side};
+use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 
@@ -22,12 +23,26 @@ pub(super) enum Resolved {
     Unknown,
 }
 
+impl Resolved {
+    /// Returns the motions of axes from one joint position to another, at their rates.
+    fn rapid(
+        chain: &Chain,
+        rates: Option<&Joints>,
+        joints: [Joints; 2],
+    ) -> Result<Resolved, StepFault> {
+        let motions = rapid::motions(chain, rates, joints)?;
+        Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
+    }
+}
+
 /// Resolves the steps of a program in their order.
 pub(super) struct Resolver<'a> {
     machine: &'a Machine,
     lengths: &'a BTreeMap<u32, f64>,
     /// Origin of the part in machine coordinates.
     origin: [f64; 6],
+    /// Rates of the axes in rapid traverse, if each moves at its own.
+    rates: Option<Joints>,
     /// Set if a rotary axis carries the tool.
     has_head: bool,
     /// Set if the origin of the part on the machine is given.
@@ -74,6 +89,7 @@ impl<'a> Resolver<'a> {
             machine,
             lengths: &setup.lengths,
             origin,
+            rates: rapid::rates(machine),
             has_head: has_rotary(Side::Tool),
             is_placed: setup.work_offsets[0].is_some(),
             part_position_unknown: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
@@ -130,7 +146,13 @@ impl<'a> Resolver<'a> {
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined);
         let resolved = match start.filter(|_| is_determined) {
-            Some(start) => Resolved::Motions(frame.motions(&step.path, [start, end])?),
+            Some(start) => match &self.rates {
+                Some(rates) if step.rapid && !frame.is_tip => {
+                    let joints = [start, end].map(|position| frame.joints(position));
+                    Resolved::rapid(&frame.chain, Some(rates), joints)?
+                }
+                _ => Resolved::Motions(frame.motions(&step.path, [start, end])?),
+            },
             None => {
                 let mut motions = frame.motions(&StepPath::Line, [end, end])?;
                 let (rest, _) = motions.swap_remove(0);
@@ -167,11 +189,9 @@ impl<'a> Resolver<'a> {
         if self.part_position_unknown || frame.has_unknown_lever {
             return Ok(Resolved::Unknown);
         }
-        let rest = [joints[0], joints[1], joints[2]];
-        let rotary = [[joints[3], joints[4], joints[5]], [found[3], found[4], found[5]]];
-        let motion =
-            JointMotion::new(&frame.chain, rotary, &LinearPath::Line { start: rest, end: rest })?;
-        Ok(Resolved::Motions(vec![(motion, 0.0)]))
+        let mut end = joints;
+        end[3..].copy_from_slice(&found[3..]);
+        Resolved::rapid(&frame.chain, self.rates.as_ref(), [joints, end])
     }
 
     /// Returns the indices of the rotary joints of a side.
@@ -329,6 +349,13 @@ impl Frame {
     /// Returns whether each linear joint depends on one coordinate alone.
     fn is_plain(&self) -> bool {
         !self.is_tip && self.map.rotation == Matrix3::identity()
+    }
+
+    /// Returns the joints at a position in program coordinates.
+    fn joints(&self, position: Joints) -> Joints {
+        let [x, y, z] = self.map.apply([position[0], position[1], position[2]]);
+        let [a, b, c] = [3, 4, 5].map(|k| position[k] + self.rotary[k - 3]);
+        [x, y, z, a, b, c]
     }
 
     /// Returns the motions between two positions in program coordinates.
