@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::path::{PathRequest, Pattern};
+use touchoff::postures::path::{LeftOutReason, PathRequest, Pattern};
 use touchoff::postures::{Directions, PostureMap, Rules};
 use touchoff::program::{AptHeader, Cutter, Decimals, apt_unit};
 use touchoff::{Motion, Program};
@@ -140,6 +140,8 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     };
     let path = request.plan()?;
     let planned = path.locations.len();
+    let left_out =
+        [LeftOutReason::NotReached, LeftOutReason::NoMotion].map(|why| path.count_left_out(why));
     let part = arguments.part.file_stem().unwrap_or_default().to_string_lossy();
     let header = AptHeader {
         part: &part,
@@ -179,9 +181,9 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         locations: locations.len(),
         contact_points: path.contact_points,
         inserted_locations: locations.len() - planned,
-        points_left_out: path.unreached + path.unlinked,
-        points_not_reached: path.unreached,
-        points_without_motion: path.unlinked,
+        points_left_out: path.left_out.len(),
+        points_not_reached: left_out[0],
+        points_without_motion: left_out[1],
         retracts: path.retracts,
         turn_before_smoothing_degrees: before,
         turn_degrees: after,

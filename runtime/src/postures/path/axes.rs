@@ -7,7 +7,7 @@ use crate::pose::Pose;
 use crate::postures::Directions;
 use crate::postures::directions::contains;
 use crate::postures::placement::SurfacePoint;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 /// A posture of a path.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +51,23 @@ struct ReachableDirections<'a> {
     crossed: &'a [SurfacePoint],
 }
 
+/// Returns the directions from which a sweep reached the triangle of a point; `None` if there is none.
+fn reachable_directions<'a>(
+    mesh: &Mesh,
+    (directions, access): (&Directions, &'a [Vec<u64>]),
+    place: &'a SlicePoint,
+) -> Option<ReachableDirections<'a>> {
+    let normal = mesh.normal(place.triangle)?;
+    let set = access.get(place.triangle.index())?;
+    // A set of another length belongs to other directions, and is ignored.
+    let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
+    any.then_some(ReachableDirections {
+        surface_point: SurfacePoint { point: place.point, normal },
+        set,
+        crossed: &place.crossed,
+    })
+}
+
 /// Cost of a direction at the rim of the accessible ones, relative to squared turns in radians.
 const RIM_COST: f64 = 0.1;
 
@@ -70,25 +87,20 @@ const MAX_HALVINGS: u32 = 6;
 const MIN_MEAN_LENGTH: f64 = 1e-6;
 
 impl PathPlanner<'_> {
-    /// Returns the postures along a line, in runs. A point that the tool does not reach ends a run.
+    /// Returns the postures along a line, in runs, and the points that the tool does not reach, which end runs.
     pub(super) fn runs(
         &mut self,
         mesh: &Mesh,
         (directions, access): (&Directions, &[Vec<u64>]),
         line: &[SlicePoint],
-    ) -> Vec<PostureRun> {
+    ) -> (Vec<PostureRun>, Vec<Point3<f64>>) {
+        let mut unreached = Vec::new();
         let reached: Vec<Option<ReachableDirections<'_>>> = line
             .iter()
             .map(|place| {
-                let normal = mesh.normal(place.triangle)?;
-                let set = access.get(place.triangle.index())?;
-                // A set of another length belongs to other directions, and is ignored.
-                let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
-                any.then_some(ReachableDirections {
-                    surface_point: SurfacePoint { point: place.point, normal },
-                    set,
-                    crossed: &place.crossed,
-                })
+                let reachable = reachable_directions(mesh, (directions, access), place);
+                unreached.extend(reachable.is_none().then_some(place.point));
+                reachable
             })
             .collect();
         let mut runs = Vec::new();
@@ -100,13 +112,16 @@ impl PathPlanner<'_> {
             {
                 match self.posture_near(directions, point_directions, direction) {
                     Some(posture) => run.push((posture, point_directions.crossed)),
-                    None => runs.push(std::mem::take(&mut run)),
+                    None => {
+                        unreached.push(point_directions.surface_point.point);
+                        runs.push(std::mem::take(&mut run));
+                    }
                 }
             }
             runs.push(run);
         }
         runs.retain(|run| !run.is_empty());
-        runs.into_iter().map(|run| self.run(run)).collect()
+        (runs.into_iter().map(|run| self.run(run)).collect(), unreached)
     }
 
     /// Smooths the turns of a run of postures and joins them. Each posture comes with the edges that the line

@@ -2,8 +2,9 @@
 
 use super::axes::{PathPosture, PostureRun};
 use super::retract::{RetractLeg, RetractSphere};
-use super::{PathError, PathPlanner, ToolPath};
+use super::{LeftOut, LeftOutReason, PathError, PathPlanner, ToolPath};
 use crate::pose::Pose;
+use nalgebra::Point3;
 
 /// A path under construction.
 #[derive(Default)]
@@ -13,18 +14,18 @@ pub(super) struct DrawnPath {
     last_approach: Option<(usize, RetractLeg)>,
     /// The last posture on the surface.
     last: Option<PathPosture>,
-    point_count: usize,
     contact_points: usize,
-    dropped: usize,
+    left_out: Vec<LeftOut>,
     retracts: usize,
     steps: usize,
     squared_turns: [f64; 2],
 }
 
 impl DrawnPath {
-    /// Creates an empty path over lines with a number of points.
-    pub(super) fn new(point_count: usize) -> DrawnPath {
-        DrawnPath { point_count, ..DrawnPath::default() }
+    /// Leaves out points that the tool does not reach.
+    pub(super) fn leave_out(&mut self, unreached: Vec<Point3<f64>>) {
+        let reason = LeftOutReason::NotReached;
+        self.left_out.extend(unreached.into_iter().map(|point| LeftOut { point, reason }));
     }
 
     pub(super) fn count(&mut self, run: &PostureRun) {
@@ -79,7 +80,9 @@ impl DrawnPath {
             } else if !self.hop(planner, sphere, posture)
                 && !self.move_around(planner, sphere, posture)
             {
-                self.dropped += 1;
+                let point = posture.surface_point.point;
+                self.left_out.push(LeftOut { point, reason: LeftOutReason::NoMotion });
+                self.contact_points -= 1;
                 continue;
             }
             self.push_location(posture.pose, false);
@@ -162,11 +165,9 @@ impl DrawnPath {
     ) -> Result<ToolPath, PathError> {
         self.leave(planner, sphere).ok_or(PathError::NoPosture)?;
         let steps = self.steps.max(1) as f64;
-        let contact_points = self.contact_points - self.dropped;
         Ok(ToolPath {
-            contact_points,
-            unreached: self.point_count - self.contact_points,
-            unlinked: self.dropped,
+            contact_points: self.contact_points,
+            left_out: self.left_out,
             retracts: self.retracts,
             turns: self.squared_turns.map(|squared_turns| (squared_turns / steps).sqrt()),
             locations: self.locations,

@@ -30,7 +30,7 @@ use crate::pose::Pose;
 use crate::tool::Tool;
 use axes::PathPosture;
 use drawn::DrawnPath;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use retract::RetractSphere;
 use slice::{SlicePoint, length_of_lines, slices};
 use tilt::TiltLimit;
@@ -100,16 +100,38 @@ pub struct ToolPath {
     pub locations: Vec<(Pose, bool)>,
     /// Number of points at which the part is touched.
     pub contact_points: usize,
-    /// Number of points on the lines that are left out because no posture at them is proved acceptable, within
-    /// the largest tilt.
-    pub unreached: usize,
-    /// Number of points on the lines that are left out because no motion to them is proved acceptable.
-    pub unlinked: usize,
+    /// The points on the lines that are left out.
+    pub left_out: Vec<LeftOut>,
     /// Number of times that the tool leaves the surface.
     pub retracts: usize,
     /// Root mean square turn of the axis from point to point along the lines, in radians, before and after
     /// smoothing.
     pub turns: [f64; 2],
+}
+
+/// A point on the lines that is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftOut {
+    /// The point on the part.
+    pub point: Point3<f64>,
+    /// The reason.
+    pub reason: LeftOutReason,
+}
+
+/// The reason for which a path leaves out a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOutReason {
+    /// No posture at the point is proved acceptable, within the largest tilt.
+    NotReached,
+    /// No motion to the point is proved acceptable.
+    NoMotion,
+}
+
+impl ToolPath {
+    /// Returns the number of points that are left out for a reason.
+    pub fn count_left_out(&self, reason: LeftOutReason) -> usize {
+        self.left_out.iter().filter(|left_out| left_out.reason == reason).count()
+    }
 }
 
 /// Largest number of planes.
@@ -218,11 +240,13 @@ impl PathRequest<'_> {
             };
             lines[range].iter().map(run).collect()
         });
-        let mut path = DrawnPath::new(lines.iter().map(|(_, line)| line.len()).sum());
+        let mut path = DrawnPath::default();
         let mut runs = runs.into_iter().flatten().peekable();
-        while let Some((plane, mut plane_runs)) = runs.next() {
-            while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
+        while let Some((plane, (mut plane_runs, unreached))) = runs.next() {
+            path.leave_out(unreached);
+            while let Some((_, (more, unreached))) = runs.next_if(|(other, _)| *other == plane) {
                 plane_runs.extend(more);
+                path.leave_out(unreached);
             }
             plane_runs.iter().for_each(|run| path.count(run));
             // Continue with the remaining run whose end is nearest.
