@@ -5,4 +5,3 @@ mod expected;
 mod geometry;
 mod mutants;
 mod refusals;
-mod speed;
