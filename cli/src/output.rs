@@ -1,6 +1,8 @@
 //! Outputs: standard output, standard error, and files.
 
 use crate::failure::Failure;
+use anstream::{AutoStream, ColorChoice};
+use anstyle::Style;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::diagnostic::Diagnostic;
@@ -40,6 +42,16 @@ impl Output {
     /// Returns an output for a file's content, byte for byte.
     pub(crate) fn bytes() -> Output {
         Output { escaped: false, ..Output::rows() }
+    }
+
+    /// Writes a text in a style, if standard output is a terminal that shows colours; otherwise without it.
+    pub(crate) fn styled(&mut self, style: Style, text: &str) -> io::Result<()> {
+        if AutoStream::choice(&io::stdout()) == ColorChoice::Never {
+            return self.write_all(text.as_bytes());
+        }
+        let style_end = style.render_reset();
+        let written = write!(self.out(), "{style}{}{style_end}", EscapedLines(text));
+        open_or(written, ())
     }
 
     fn out(&mut self) -> &mut dyn Write {

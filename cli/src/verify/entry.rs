@@ -6,6 +6,7 @@ use super::machine::MachineFinding;
 use super::rule;
 use super::stock::StockFinding;
 use super::text::describe;
+use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 use touchoff::Unit;
 use touchoff::verify::FindingKind;
@@ -32,6 +33,18 @@ pub(super) enum Severity {
     Remark,
 }
 
+impl Severity {
+    /// Returns the style of a finding's file and line on a terminal.
+    pub(super) fn style(self) -> Style {
+        let color = match self {
+            Severity::Violation => AnsiColor::Red,
+            Severity::Undecided => AnsiColor::Yellow,
+            Severity::Remark => AnsiColor::Cyan,
+        };
+        color.on_default().bold()
+    }
+}
+
 /// A finding as a JSON object.
 #[derive(Serialize)]
 #[serde(untagged)]
@@ -49,11 +62,11 @@ pub(super) fn entries<'a>(
     (file, unit): (&'a str, Unit),
 ) -> Vec<Entry<'a>> {
     let groups = |pair: &'a CheckedPair<'a>| {
-        pair.groups.iter().zip(&pair.lifts).map(move |(group, lift)| (pair, group, *lift))
+        pair.groups.iter().zip(&pair.remedies).map(move |(group, remedy)| (pair, group, *remedy))
     };
     let mut surfaces: Vec<_> = pairs.iter().flat_map(groups).collect();
     surfaces.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    let surfaces = surfaces.into_iter().map(|(pair, group, lift)| {
+    let surfaces = surfaces.into_iter().map(|(pair, group, remedy)| {
         let kind = &group.worst.kind;
         let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
         Entry {
@@ -61,8 +74,8 @@ pub(super) fn entries<'a>(
             severity: if open { Severity::Undecided } else { Severity::Violation },
             line: group.worst.line,
             lines: [group.first.line, group.last.line],
-            text: describe(group, lift, &pair.scope),
-            row: EntryRow::Surface(Box::new(Row::of((group, lift), &pair.scope, file))),
+            text: describe(group, remedy, &pair.scope),
+            row: EntryRow::Surface(Box::new(Row::of((group, remedy), &pair.scope, file))),
         }
     });
     let machine = machine.iter().map(|finding| Entry {

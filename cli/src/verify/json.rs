@@ -1,6 +1,6 @@
 //! Findings as JSON objects.
 
-use super::{Scope, rule};
+use super::{Remedy, Scope, rule};
 use serde::Serialize;
 use touchoff::certify::Witness;
 use touchoff::tool::Symmetry;
@@ -44,6 +44,17 @@ pub(super) struct Row<'a> {
     /// The least travel along the tool's axis that clears the surface at this pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     lift: Option<f64>,
+    /// The least tilt about the tip that clears the tool at this pose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tilt: Option<TiltRow>,
+}
+
+/// A tilt of the axis about the tip.
+#[derive(Serialize)]
+struct TiltRow {
+    degrees: f64,
+    /// The tilted axis.
+    axis: [f64; 3],
 }
 
 /// The measurements of a finding.
@@ -69,7 +80,7 @@ impl BodyPoint {
 
 impl<'a> Row<'a> {
     pub(super) fn of(
-        (group, lift): (&FindingGroup, Option<f64>),
+        (group, remedy): (&FindingGroup, Remedy),
         scope: &Scope<'a>,
         file: &'a str,
     ) -> Row<'a> {
@@ -123,7 +134,10 @@ impl<'a> Row<'a> {
             cutting: surface.map(|surface| surface.cutting),
             measurement,
             point,
-            lift,
+            lift: remedy.lift,
+            tilt: remedy
+                .tilt
+                .map(|tilt| TiltRow { degrees: tilt.angle.to_degrees(), axis: tilt.axis.into() }),
         }
     }
 }

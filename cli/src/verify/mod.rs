@@ -26,7 +26,7 @@ use tools::ProgramTool;
 use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{FindingGroup, FindingKind, Verifier, VerifyReport};
+use touchoff::verify::{FindingGroup, FindingKind, Tilt, Verifier, VerifyReport};
 
 /// The exit status if there are findings.
 const FOUND: u8 = 1;
@@ -47,13 +47,22 @@ struct Scope<'a> {
     unit: Unit,
 }
 
+/// What clears the worst motion of a finding at its pose.
+#[derive(Clone, Copy)]
+struct Remedy {
+    /// Travel along the axis.
+    lift: Option<f64>,
+    /// Tilt of the axis about the tip, where the program can tilt it.
+    tilt: Option<Tilt>,
+}
+
 /// A tool checked against the part or a fixture.
 struct CheckedPair<'a> {
     scope: Scope<'a>,
     report: VerifyReport,
     groups: Vec<FindingGroup>,
-    /// Travel along the axis that clears the worst motion of each group.
-    lifts: Vec<Option<f64>>,
+    /// Remedies of the worst motion of each group.
+    remedies: Vec<Remedy>,
     /// Set for the part, as opposed to a fixture.
     is_part: bool,
 }
@@ -86,7 +95,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let program = CheckedProgram::read(&job)?;
     let tools = tools::load(&job.tools, &program.tools())?;
     for tool in &tools {
-        program.check(tool.tool(), job.unit, &job.program)?;
+        program.check(tool, job.unit, &job.program)?;
     }
     let bodies = bodies(&job, &program)?;
     let progress = Progress::steps(program.motions() * bodies.len(), "motions", json);
@@ -111,7 +120,8 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
             serde_json::to_writer(&mut out, &entry.row)?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{file}:{}: {}", entry.line, entry.text)?;
+            out.styled(entry.severity.style(), &format!("{file}:{}:", entry.line))?;
+            writeln!(out, " {}", entry.text)?;
         }
     }
     out.flush()?;
@@ -198,9 +208,13 @@ fn check<'a>(
     let moves = program.moves(tool, body.link, job.unit)?;
     let report = verifier.check_moves(moves, &|count| progress.advance(count))?;
     let groups = FindingGroup::join(&report.findings);
-    let lifts = groups.iter().map(|group| verifier.lift(&group.worst)).collect();
+    let remedy = |group: &FindingGroup| Remedy {
+        lift: verifier.lift(&group.worst),
+        tilt: verifier.tilt(&group.worst).filter(|_| program.turns_axis()),
+    };
+    let remedies = groups.iter().map(remedy).collect();
     let scope = Scope { info, number: tool.number, body: &body.name, unit: job.unit };
-    Ok(CheckedPair { scope, report, groups, lifts, is_part: body.margin.is_none() })
+    Ok(CheckedPair { scope, report, groups, remedies, is_part: body.margin.is_none() })
 }
 
 /// Returns the given exit status, or that without a verdict, and reports why there is none.

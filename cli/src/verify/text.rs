@@ -1,14 +1,15 @@
 //! Findings and their summary as text.
 
-use super::{CheckedPair, Scope};
+use super::{CheckedPair, Remedy, Scope};
 use crate::lengths::{format_length, format_number, format_point};
-use touchoff::verify::{Finding, FindingGroup, FindingKind};
+use std::fmt::Write as _;
+use touchoff::verify::{Finding, FindingGroup, FindingKind, Tilt};
 use touchoff::{Interval, SurfaceId, Unit};
 
 /// Describes the findings of consecutive motions.
 ///
-/// `lift` is the travel along the tool axis that clears the surface.
-pub(super) fn describe(group: &FindingGroup, lift: Option<f64>, scope: &Scope<'_>) -> String {
+/// The remedy is that of the worst motion.
+pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) -> String {
     let &Scope { info, unit, body, .. } = scope;
     let finding = &group.worst;
     let name = |surface: SurfaceId| &*info.surface(surface).name;
@@ -51,7 +52,7 @@ pub(super) fn describe(group: &FindingGroup, lift: Option<f64>, scope: &Scope<'_
         FindingKind::Ambiguous(error) => format!("{error}; only this position was checked"),
     };
     let cutting = finding.kind.surface().is_some_and(|surface| info.surface(surface).cutting);
-    let text = match lift {
+    let mut text = match remedy.lift {
         // A gouge of a flank is not mended by a lift.
         Some(_) if cutting => text,
         Some(lift) => {
@@ -59,6 +60,15 @@ pub(super) fn describe(group: &FindingGroup, lift: Option<f64>, scope: &Scope<'_
         }
         None => text,
     };
+    if let Some(Tilt { angle, axis }) = remedy.tilt {
+        let [i, j, k] = [axis.x, axis.y, axis.z];
+        // Writing to a String does not fail.
+        let _ = write!(
+            text,
+            "; with the axis tilted by {:.2}° to ({i:.5}, {j:.5}, {k:.5}) no surface is too deep there",
+            angle.to_degrees()
+        );
+    }
     match scope.number {
         Some(number) => format!("T{number} {text}"),
         None => text,

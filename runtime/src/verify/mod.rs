@@ -39,6 +39,7 @@ pub use machine_program::{
     UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath};
+pub use remedy::Tilt;
 
 use crate::certify::{Certifier, TriangleBvh};
 use crate::debug::debug;

@@ -2,10 +2,11 @@
 
 use crate::block;
 use crate::oracle::Mounted;
+use nalgebra::Vector3;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::verify::{FindingKind, Verifier, VerifyReport};
-use touchoff::{Interval, Mesh, Program, SurfaceId, Unit};
+use touchoff::{Interval, Mesh, Program, SurfaceId, Tool, Unit};
 
 touchoff::tool! {
     tool BallByRegions "a ball without a profile" {
@@ -88,6 +89,29 @@ fn finds_a_gouge_between_two_locations_at_its_deepest() {
     assert_eq!(check(&pillar(), text, 0.5, &[]).findings, []);
     assert_eq!(check(&pillar(), text, 0.0, &[("ball", 0.5)]).findings, []);
     assert_eq!(summary(&check(&pillar(), text, 0.5, &[("ball", 0.4)])), [(3, "deep", Some(0))]);
+}
+
+/// A wall at x = 0, and a tip 5 mm from it: the nut, of radius 8 from z = 25 on, has to turn away about the tip.
+#[test]
+fn a_tilt_clears_a_nut() {
+    let wall = TriangleBvh::new(&block([-50.0, -60.0, -60.0], [0.0, 60.0, 60.0]));
+    let program = Program::parse("5,-1,0,0,0,1\n5,1,0,0,0,1\n", "wall.csv").expect("a program");
+    let verifier = Verifier::new(&wall, &Mounted).expect("a profile");
+    let report = verifier.check(&program).expect("it can be checked");
+    let nut = Mounted.info().surface_named("nut");
+    let found = report.findings.iter().find(|found| found.kind.surface() == nut);
+    let tilt = verifier.tilt(found.expect("a finding of the nut")).expect("a tilt");
+    // Its lowest circle touches the wall where 25 sin a - 8 cos a = -5.
+    let least = (8.0f64 / 25.0).atan() - (5.0 / 8f64.hypot(25.0)).asin();
+    let expected = Vector3::new(least.sin(), 0.0, least.cos());
+    // A resolution of 0.001 is some 4e-5 rad at the nut.
+    assert!((tilt.angle - least).abs() < 2e-4, "{tilt:?}, {least}");
+    assert!((tilt.axis - expected).norm() < 2e-4, "{tilt:?}, {expected}");
+    // A tip in the wall is not mended by a tilt.
+    let program = Program::parse("-1,-1,0,0,0,1\n-1,1,0,0,0,1\n", "in.csv").expect("a program");
+    let report = verifier.check(&program).expect("it can be checked");
+    assert!(!report.findings.is_empty());
+    assert!(report.findings.iter().all(|found| verifier.tilt(found).is_none()));
 }
 
 #[test]
