@@ -344,6 +344,14 @@ pub(crate) enum Failure {
         /// A suitable name.
         better: std::path::PathBuf,
     },
+    /// The file's extension is not that of a report.
+    #[error("a report ends in `.html`: write `-o {}` instead of `{file}`", .better.display())]
+    ReportFormat {
+        /// The requested file.
+        file: String,
+        /// A suitable name.
+        better: std::path::PathBuf,
+    },
     /// The file's extension is not that of a library.
     #[error("a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`: write `-o {}` instead of `{file}`", .better.display())]
     ExportFormat {

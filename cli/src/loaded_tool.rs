@@ -9,7 +9,7 @@ use std::path::Path;
 use tool_dsl::diagnostic::escaped;
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile_with_arguments};
-use tools_library::TOOLS;
+use tools_library::{SOURCES, TOOLS};
 use touchoff::import::Library;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool};
@@ -28,7 +28,8 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            return Ok(LoadedTool::File(Box::new(from_library(name, library, params)?)));
+            let tool = in_library(name, (library, true), |file| load_file(file, params))?;
+            return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
@@ -49,26 +50,60 @@ impl LoadedTool {
     }
 }
 
-/// Loads a tool of a library or of a folder of `.tool` files.
-fn from_library(
+/// Compiles the tool that `--tool` names, for what its values at run time do not tell: its drawing and its proof.
+///
+/// # Errors
+/// As [`LoadedTool::load`].
+pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
+    let params = &arguments.params;
+    let compile =
+        |file: &Path| Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()));
+    if let Some(library) = &arguments.library {
+        return in_library(name, (library, false), compile);
+    }
+    if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+        return compile(Path::new(name));
+    }
+    let folder = tempfile::tempdir()?;
+    let mut files = sources(&built_in(&name.to_string_lossy())?.info().name).iter();
+    let mut main = None;
+    for (file, text) in &mut files {
+        let file = folder.path().join(file);
+        std::fs::create_dir_all(file.parent().unwrap_or(folder.path()))?;
+        std::fs::write(&file, text)?;
+        main.get_or_insert(file);
+    }
+    compile(&main.unwrap_or_default())
+}
+
+/// Returns the files of a built-in tool, with their paths relative to the library's folder: its own file, then those that
+/// it mounts. Empty if there is no such tool.
+pub(crate) fn sources(name: &str) -> &'static [(&'static str, &'static str)] {
+    let position = TOOLS.iter().position(|tool| tool.info().name == name);
+    position.map_or(&[], |position| SOURCES[position])
+}
+
+/// Reads the file of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
+fn in_library<R>(
     name: &OsStr,
-    library: &Path,
-    params: &ParamArguments,
-) -> Result<Interpreted, Failure> {
+    (library, notes): (&Path, bool),
+    read: impl FnOnce(&Path) -> Result<R, Failure>,
+) -> Result<R, Failure> {
     if library.is_dir() {
         let file = library.join(name);
-        let file = if file.is_file() { file } else { file.with_extension("tool") };
-        return load_file(&file, params);
+        return read(&if file.is_file() { file } else { file.with_extension("tool") });
     }
     let name = name.to_string_lossy();
     let imported = Library::read(library)?;
-    let tool = find(&imported, &name, library)?;
     let folder = tempfile::tempdir()?;
+    let tool = find(&imported, &name, library)?;
     let tool_file = tool.write_to(folder.path())?;
-    for note in &tool.entry.notes {
-        message!("warning: {}: {note}", Escaped(tool.entry.label()));
+    if notes {
+        for note in &tool.entry.notes {
+            message!("warning: {}: {note}", Escaped(tool.entry.label()));
+        }
     }
-    load_file(&tool_file, params)
+    read(&tool_file)
 }
 
 /// Returns a built-in tool by its name.

@@ -18,9 +18,11 @@ mod import;
 mod lengths;
 mod loaded_tool;
 mod part;
+mod picture;
 mod postures;
 mod program;
 mod progress;
+mod report;
 mod run;
 mod timing;
 mod tools;
@@ -32,13 +34,16 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let Arguments { command, json } = Arguments::read();
     // A program that could not be checked must not look like one with findings.
-    let min_status =
-        if matches!(command, Some(Command::Verify(_))) { verify::NOT_CHECKED } else { 1 };
+    let min_status = match command {
+        Some(Command::Verify(_) | Command::Report(_)) => verify::NOT_CHECKED,
+        _ => 1,
+    };
     let success = |()| ExitCode::SUCCESS;
     let result = match command.unwrap_or(Command::Demo) {
         Command::Demo => demo::demo(json).map(success),
         Command::Run(arguments) => run::run(&arguments, json).map(success),
         Command::Verify(arguments) => verify::verify(*arguments, json),
+        Command::Report(arguments) => report::report(*arguments, json),
         Command::Haptic(arguments) => haptic::haptic(&arguments, json).map(success),
         Command::Sweep(arguments) => postures::sweep::sweep(&arguments, json).map(success),
         Command::Map(arguments) => postures::map::map(&arguments, json).map(success),
@@ -56,11 +61,11 @@ fn main() -> ExitCode {
         Command::Expand(arguments) => expand::expand(&arguments).map(success),
         Command::Draw(arguments) => draw::draw(&arguments).map(success),
     };
-    result.unwrap_or_else(|failure| report(&failure, min_status))
+    result.unwrap_or_else(|failure| fail(&failure, min_status))
 }
 
 /// Reports a failure, and returns its exit status, which is `min_status` or higher.
-fn report(failure: &failure::Failure, min_status: u8) -> ExitCode {
+fn fail(failure: &failure::Failure, min_status: u8) -> ExitCode {
     let severity = if failure.is_rendered() { "" } else { "error: " };
     message!("{severity}{failure}");
     ExitCode::from(failure.status().max(min_status))

@@ -72,8 +72,8 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
     }
 }
 
-/// Prints the words that were ignored, and how often each occurs.
-pub(crate) fn print_ignored(programs: &[Program]) {
+/// Returns the words that were ignored, and how often each occurs; `None` if there are none.
+pub(crate) fn ignored_words(programs: &[Program]) -> Option<String> {
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for (_, word) in programs.iter().flat_map(|program| &program.ignored) {
         *words.entry(word).or_default() += 1;
@@ -82,13 +82,18 @@ pub(crate) fn print_ignored(programs: &[Program]) {
         .into_iter()
         .map(|(word, count)| if count == 1 { word.to_owned() } else { format!("{word} ({count})") })
         .collect();
-    if !list.is_empty() {
-        message!("ignored, as they move nothing: {}", list.join(", "));
+    (!list.is_empty()).then(|| list.join(", "))
+}
+
+/// Prints the words that were ignored.
+pub(crate) fn print_ignored(programs: &[Program]) {
+    if let Some(words) = ignored_words(programs) {
+        message!("ignored, as they move nothing: {words}");
     }
 }
 
 /// Formats a box by its two corners.
-fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
+pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
 }
 

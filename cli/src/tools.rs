@@ -3,12 +3,12 @@
 use crate::arguments::{ParamArguments, Tools, ToolsCommand};
 use crate::failure::Failure;
 use crate::import;
-use crate::loaded_tool::{built_in, load_file};
+use crate::loaded_tool::{built_in, load_file, sources};
 use crate::output::{Output, extension, unwritable, write_file};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tools_library::{SOURCES, TOOLS};
+use tools_library::TOOLS;
 use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
 use touchoff::{Escaped, Tool};
 
@@ -120,9 +120,7 @@ struct FileRow {
 fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     // Fails with a hint if there is no such tool.
     built_in(name)?;
-    let mut sources = TOOLS.iter().zip(SOURCES);
-    let files = sources.find(|(tool, _)| tool.info().name == name).map(|(_, files)| *files);
-    let Some(files @ [(_, text), mounted @ ..]) = files else {
+    let files @ [(_, text), mounted @ ..] = sources(name) else {
         unreachable!("every built-in tool has a source")
     };
     if let Some(output) = output {

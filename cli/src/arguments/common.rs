@@ -8,7 +8,7 @@ use touchoff::tool::{Interpreted, ToolError};
 use touchoff::{SamplingMethod, Unit};
 
 /// Values for the params of `.tool` files, and the root of their mounts.
-#[derive(Args, Default)]
+#[derive(Args, Clone, Default)]
 pub(crate) struct ParamArguments {
     /// Value for a `param` of the `.tool` file, written as in the language: `--set D=0.25inch`. Can be repeated;
     /// holds for all tools named.
@@ -48,7 +48,7 @@ impl ParamArguments {
 }
 
 /// The source of the tools that are named, and values for their params.
-#[derive(Args, Default)]
+#[derive(Args, Clone, Default)]
 pub(crate) struct ToolArguments {
     /// Library of the tools that `--tool` names: one that `touchoff import` reads, with tools by name, title or number,
     /// or a folder of `.tool` files.

@@ -1,4 +1,4 @@
-//! The arguments of the commands that compute contact: `run`, `verify`, `haptic`, `sample` and `bench`.
+//! The arguments of the commands that compute contact: `run`, `verify`, `report`, `haptic`, `sample` and `bench`.
 
 use super::values::{allowance, core, count, length, point, positive, rate};
 use super::{PartFile, ToolArguments};
@@ -58,6 +58,16 @@ pub(crate) struct Verify {
     /// Finished part: a mesh in STL, PLY or OBJ.
     #[arg(long, value_name = "FILE", required_unless_present = "job")]
     pub(crate) part: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) check: CheckArguments,
+    /// Write the findings as SARIF 2.1.0, for services of continuous integration.
+    #[arg(long, value_name = "OUT.sarif")]
+    pub(crate) sarif: Option<PathBuf>,
+}
+
+/// The check of a program against a part.
+#[derive(Args)]
+pub(crate) struct CheckArguments {
     /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
     #[arg(long, required_unless_present = "job")]
     pub(crate) unit: Option<Unit>,
@@ -84,9 +94,6 @@ pub(crate) struct Verify {
     /// [default: 0.001 mm].
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) resolution: Option<f64>,
-    /// Write the findings as SARIF 2.1.0, for services of continuous integration.
-    #[arg(long, value_name = "OUT.sarif")]
-    pub(crate) sarif: Option<PathBuf>,
     /// Check only the part's surface where its mesh leaks or is inside out, as it is then unknown whether the tool
     /// is inside the material. Without this option, such a part ends with status 2.
     #[arg(long)]
@@ -95,6 +102,35 @@ pub(crate) struct Verify {
     /// the part in another unit. Without this option, such a program ends with status 2.
     #[arg(long)]
     pub(crate) anyway: bool,
+}
+
+impl CheckArguments {
+    /// Returns whether they state what a job file states: all but resolution and leniency.
+    pub(crate) fn states_subject(&self) -> bool {
+        let files = self.tool.is_some() || self.program.is_some() || self.machine.is_some();
+        let limits = self.tolerance != 0.0 || !self.allow.is_empty();
+        files || limits || self.unit.is_some() || !self.params.is_empty()
+    }
+
+    /// Returns whether they state all that a check of a part needs.
+    pub(crate) fn has_subject(&self) -> bool {
+        self.unit.is_some() && self.tool.is_some() && self.program.is_some()
+    }
+}
+
+#[derive(Args)]
+pub(crate) struct Report {
+    /// Job file as for `verify`; or the finished part, a mesh in STL, PLY or OBJ, with the options below.
+    #[arg(value_name = "JOB.toml|PART")]
+    pub(crate) job: PathBuf,
+    #[command(flatten)]
+    pub(crate) check: CheckArguments,
+    /// Posture map of the part, by which the part is coloured too: niceness, solid angle of access, least stick-out.
+    #[arg(long, value_name = "MAP")]
+    pub(crate) map: Option<PathBuf>,
+    /// Output file.
+    #[arg(short, long, value_name = "OUT.html")]
+    pub(crate) output: PathBuf,
 }
 
 #[derive(Args)]

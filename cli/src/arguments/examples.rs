@@ -21,6 +21,13 @@ Examples:
   Let the ball cut to any depth, and keep the shank 1 mm away from the part:
     touchoff verify --part part.stl --unit mm --tool D2Ball --program program.apt --allow ball=inf --allow shank=-1";
 
+pub(super) const REPORT: &str = "\
+Examples:
+  Check a program, and write the report:
+    touchoff report part.stl --unit mm --tool D2Ball --program program.apt --tolerance 0.5 -o report.html
+  Also show from where tools reach the part, by a map that `touchoff sweep` made:
+    touchoff report part.stl --unit mm --tool D2Ball --program program.apt --tolerance 0.5 --map part.postures -o report.html";
+
 pub(super) const HAPTIC: &str = "\
 Examples:
   A simulated hand presses a ball onto the part for 5 seconds:

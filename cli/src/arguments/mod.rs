@@ -8,7 +8,7 @@ mod tools;
 mod values;
 
 pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
-pub(crate) use contact::{Bench, DeviceKind, Haptic, Run, Sample, Verify};
+pub(crate) use contact::{Bench, CheckArguments, DeviceKind, Haptic, Report, Run, Sample, Verify};
 pub(crate) use tools::{
     Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
 };
@@ -61,6 +61,12 @@ pub(crate) enum Command {
     /// are findings, and 2 if the program could not be checked.
     #[command(after_help = examples::VERIFY)]
     Verify(Box<Verify>),
+    /// Write one HTML file about a program or a posture map, to send around: verdict, findings, the part in 3-D, tools, forces.
+    ///
+    /// Checks the program as `verify` does, with the same exit status. The file opens in any browser, and nothing in it
+    /// asks for another file.
+    #[command(after_help = examples::REPORT)]
+    Report(Box<Report>),
     /// Run the haptic loop in real time: a device moves a tool that touches a part.
     ///
     /// Prints the cycle times, the number of missed deadlines, the largest force, and the balance of the hand's

@@ -67,6 +67,10 @@ struct CheckedFile {
 impl CheckedFile {
     fn read(file: &Path, params: &ParamArguments) -> Result<CheckedFile, Failure> {
         let compiled = compile_with_arguments(&read_source(file, params)?, &params.sources());
+        Ok(CheckedFile::of(compiled))
+    }
+
+    fn of(compiled: Compiled) -> CheckedFile {
         let mut diagnostics = compiled.diagnostics().to_vec();
         let certificate = compiled.tool().map(|tool| Certificate::prove(tool));
         if let (Some(tool), Some(certificate)) = (compiled.tool(), &certificate) {
@@ -77,7 +81,7 @@ impl CheckedFile {
                 }
             }
         }
-        Ok(CheckedFile { compiled, diagnostics, certificate })
+        CheckedFile { compiled, diagnostics, certificate }
     }
 
     /// Returns the numbers of errors and of warnings.
@@ -114,6 +118,21 @@ impl CheckedFile {
         }
         Ok(())
     }
+}
+
+/// Returns a description of a compiled tool, and what is proved about it in a few lines. `None` if it has errors.
+///
+/// # Errors
+/// Never: the lines are written to memory.
+pub(crate) fn proof(compiled: Compiled) -> std::io::Result<Option<(String, String)>> {
+    let checked = CheckedFile::of(compiled);
+    let (Some(tool), Some(certificate)) = (checked.compiled.tool(), &checked.certificate) else {
+        return Ok(None);
+    };
+    let mut lines = Vec::new();
+    summary::write(&mut lines, tool, certificate)?;
+    let [_, warnings] = checked.counts();
+    Ok(Some((describe(tool, warnings), String::from_utf8_lossy(&lines).into_owned())))
 }
 
 /// Describes a tool: its name, size, cutting surfaces and number of warnings.

@@ -8,7 +8,7 @@ use crate::part;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use touchoff::postures::{Directions, PartFingerprint, PostureMap, colormap};
+use touchoff::postures::{PartFingerprint, PostureMap, colormap};
 use touchoff::{AtomicFile, Escaped, Mesh};
 
 #[derive(Serialize)]
@@ -28,31 +28,30 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
     let inputs = std::iter::once(&*arguments.map).chain(arguments.part.as_deref());
     refuse_inputs(arguments.output.iter().map(|file| &**file), inputs)?;
     let map = PostureMap::read(&arguments.map)?;
-    let mesh = match &arguments.part {
-        Some(part) => Some(read_part(&map, &arguments.map, part)?),
+    let part = match &arguments.part {
+        Some(part) => Some((read_part(&map, &arguments.map, part)?, part)),
         None => None,
     };
     // Wrong names are reported before anything is written.
     let formats: Vec<MapFormat> =
         arguments.output.iter().map(|file| MapFormat::of(file)).collect::<Result<_, _>>()?;
     for (format, file) in formats.iter().zip(&arguments.output) {
-        if mesh.is_none() && matches!(format, MapFormat::Ply | MapFormat::Png) {
+        if part.is_none() && matches!(format, MapFormat::Ply | MapFormat::Png) {
             return Err(Failure::PartMissing { file: file.display().to_string() });
         }
     }
     for (format, file) in formats.iter().zip(&arguments.output) {
         let unwritable = |source| unwritable(file, source);
         let mut out = AtomicFile::create(file).map_err(unwritable)?;
-        match (format, &mesh) {
+        match (format, &part) {
             (MapFormat::Csv, _) => map.write_csv(&mut out)?,
             (MapFormat::Json, _) => map.write_json(&mut out)?,
-            (MapFormat::Ply, Some(mesh)) => {
+            (MapFormat::Ply, Some((mesh, _))) => {
                 let greatest = max_niceness(&map)?;
                 map.write_ply(&mut out, mesh, |niceness| colormap(niceness / greatest))?;
             }
-            (MapFormat::Png, Some(mesh)) => {
-                let directions = Directions::from(map.identity().directions.clone());
-                let picture = picture::of(&map, &directions, mesh, arguments.color_by)?;
+            (MapFormat::Png, Some((mesh, part))) => {
+                let picture = picture::of(&map, (mesh, part), arguments.color_by)?;
                 out.write_all(&picture).map_err(unwritable)?;
             }
             (MapFormat::Ply | MapFormat::Png, None) => (),
@@ -76,7 +75,7 @@ fn max_niceness(map: &PostureMap) -> Result<f64, Failure> {
 ///
 /// # Errors
 /// If it cannot be read, or is not the map's.
-pub(super) fn read_part(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
+pub(crate) fn read_part(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
     let mesh = part::mesh(part, map.identity().part.unit, "--part")?;
     check_part(map, file, (&mesh, part))?;
     Ok(mesh)

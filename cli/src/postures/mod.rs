@@ -1,13 +1,12 @@
 //! The commands `sweep`, `map` and `path`: try tool postures at every triangle, print or draw the result, and plan a
-//! path over it. `picture` and `render` draw a map on its part; `post` and `joints` write G-code, and `prove` checks what is written.
+//! path over it. `picture` draws a map on its part; `post` and `joints` write G-code, and `prove` checks what is written.
 
 mod joints;
 pub(crate) mod map;
 pub(crate) mod path;
-mod picture;
+pub(crate) mod picture;
 mod post;
 mod prove;
-mod render;
 pub(crate) mod sweep;
 
 use touchoff::{Mesh, TriangleId, Unit};

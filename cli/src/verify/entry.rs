@@ -9,22 +9,32 @@ use super::text::describe;
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 use touchoff::Unit;
-use touchoff::verify::FindingKind;
+use touchoff::verify::{Finding, FindingKind};
 
 /// A finding as it is printed.
-pub(super) struct Entry<'a> {
-    pub(super) rule: &'static str,
-    pub(super) severity: Severity,
+pub(crate) struct Entry<'a> {
+    pub(crate) rule: &'static str,
+    pub(crate) severity: Severity,
     /// The line of the worst motion, and of the first and the last one.
-    pub(super) line: usize,
-    pub(super) lines: [usize; 2],
-    pub(super) text: String,
-    pub(super) row: EntryRow<'a>,
+    pub(crate) line: usize,
+    pub(crate) lines: [usize; 2],
+    pub(crate) text: String,
+    pub(crate) row: EntryRow<'a>,
+    pub(crate) source: EntrySource<'a>,
+}
+
+/// The finding that an entry is about.
+#[derive(Clone, Copy)]
+pub(crate) enum EntrySource<'a> {
+    /// The worst motion of a group, with the index of its pair of tool and body.
+    Surface(usize, &'a Finding),
+    Machine,
+    Stock(&'a StockFinding),
 }
 
 /// The consequence of a finding.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Severity {
+pub(crate) enum Severity {
     /// A rule is violated.
     Violation,
     /// A motion could not be checked in full.
@@ -48,7 +58,7 @@ impl Severity {
 /// A finding as a JSON object.
 #[derive(Serialize)]
 #[serde(untagged)]
-pub(super) enum EntryRow<'a> {
+pub(crate) enum EntryRow<'a> {
     Surface(Box<Row<'a>>),
     Machine(&'a MachineFinding<'a>),
     Stock(&'a StockFinding),
@@ -61,12 +71,14 @@ pub(super) fn entries<'a>(
     stock: &'a [StockFinding],
     (file, unit): (&'a str, Unit),
 ) -> Vec<Entry<'a>> {
-    let groups = |pair: &'a CheckedPair<'a>| {
-        pair.groups.iter().zip(&pair.remedies).map(move |(group, remedy)| (pair, group, *remedy))
+    let groups = |(index, pair): (usize, &'a CheckedPair<'a>)| {
+        let groups = pair.groups.iter().zip(&pair.remedies);
+        groups.map(move |(group, remedy)| (index, group, *remedy))
     };
-    let mut surfaces: Vec<_> = pairs.iter().flat_map(groups).collect();
+    let mut surfaces: Vec<_> = pairs.iter().enumerate().flat_map(groups).collect();
     surfaces.sort_by(|one, other| other.1.worst.kind.severity(&one.1.worst.kind));
-    let surfaces = surfaces.into_iter().map(|(pair, group, remedy)| {
+    let surfaces = surfaces.into_iter().map(|(index, group, remedy)| {
+        let pair = &pairs[index];
         let kind = &group.worst.kind;
         let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
         Entry {
@@ -76,6 +88,7 @@ pub(super) fn entries<'a>(
             lines: [group.first.line, group.last.line],
             text: describe(group, remedy, &pair.scope),
             row: EntryRow::Surface(Box::new(Row::of((group, remedy), &pair.scope, file))),
+            source: EntrySource::Surface(index, &group.worst),
         }
     });
     let machine = machine.iter().map(|finding| Entry {
@@ -85,6 +98,7 @@ pub(super) fn entries<'a>(
         lines: [finding.line; 2],
         text: finding.describe(),
         row: EntryRow::Machine(finding),
+        source: EntrySource::Machine,
     });
     let stock = stock.iter().map(|finding| Entry {
         rule: "stock",
@@ -93,6 +107,7 @@ pub(super) fn entries<'a>(
         lines: [finding.first_line, finding.last_line],
         text: finding.describe(unit),
         row: EntryRow::Stock(finding),
+        source: EntrySource::Stock(finding),
     });
     surfaces.chain(machine).chain(stock).collect()
 }

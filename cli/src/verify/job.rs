@@ -1,6 +1,6 @@
 //! The task of `verify`, from options or from a job file.
 
-use crate::arguments::{ParamArguments, ToolArguments, Verify};
+use crate::arguments::{CheckArguments, ParamArguments, ToolArguments};
 use crate::failure::Failure;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -9,27 +9,27 @@ use std::path::{Path, PathBuf};
 use touchoff::Unit;
 
 /// The check of a program: lengths are in the part's unit.
-pub(super) struct Job {
-    pub(super) part: PathBuf,
-    pub(super) unit: Unit,
-    pub(super) program: PathBuf,
+pub(crate) struct Job {
+    pub(crate) part: PathBuf,
+    pub(crate) unit: Unit,
+    pub(crate) program: PathBuf,
     /// Name of a machine that ships, or the file of another.
-    pub(super) machine: Option<OsString>,
+    pub(crate) machine: Option<OsString>,
     /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
-    pub(super) work_offsets: [Option<[f64; 6]>; 9],
-    pub(super) block_delete: bool,
-    pub(super) tools: Tools,
-    pub(super) tolerance: f64,
-    pub(super) resolution: Option<f64>,
-    pub(super) allow: Vec<(String, f64)>,
-    pub(super) fixtures: Vec<Fixture>,
-    pub(super) stock: Option<Stock>,
-    pub(super) surface_only: bool,
-    pub(super) anyway: bool,
+    pub(crate) work_offsets: [Option<[f64; 6]>; 9],
+    pub(crate) block_delete: bool,
+    pub(crate) tools: Tools,
+    pub(crate) tolerance: f64,
+    pub(crate) resolution: Option<f64>,
+    pub(crate) allow: Vec<(String, f64)>,
+    pub(crate) fixtures: Vec<Fixture>,
+    pub(crate) stock: Option<Stock>,
+    pub(crate) surface_only: bool,
+    pub(crate) anyway: bool,
 }
 
 /// The tools of a program.
-pub(super) enum Tools {
+pub(crate) enum Tools {
     /// One tool, whatever number the program gives it.
     One(OsString, ToolArguments),
     /// Tools by their numbers, from a library and from files.
@@ -39,7 +39,7 @@ pub(super) enum Tools {
 /// A tool of a job file.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct ToolEntry {
+pub(crate) struct ToolEntry {
     /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
     pub(super) tool: Option<String>,
     /// Values for the params of the file.
@@ -55,7 +55,7 @@ pub(super) struct ToolEntry {
 /// The value of a param: a number in the tool's unit, or an expression of the language.
 #[derive(Deserialize)]
 #[serde(untagged)]
-pub(super) enum ParamValue {
+pub(crate) enum ParamValue {
     Number(f64),
     Text(String),
 }
@@ -63,7 +63,7 @@ pub(super) enum ParamValue {
 /// A mesh that no surface of a tool may touch.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Fixture {
+pub(crate) struct Fixture {
     pub(super) name: String,
     pub(super) mesh: PathBuf,
     /// The axis of the table with which it moves: a letter, or `base` for none; the workpiece's if absent.
@@ -76,7 +76,7 @@ pub(super) struct Fixture {
 /// The stock: a mesh, or a box by its lowest and highest corner.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Stock {
+pub(crate) struct Stock {
     pub(super) mesh: Option<PathBuf>,
     #[serde(rename = "box")]
     pub(super) corners: Option<[[f64; 3]; 2]>,
@@ -125,13 +125,16 @@ struct JobFile {
 }
 
 impl Job {
-    /// Returns the job of the options, or of the job file.
+    /// Returns the job of a job file, or of a part and the options.
     ///
     /// # Errors
     /// If the job file cannot be read.
-    pub(super) fn new(arguments: Verify) -> Result<Job, Failure> {
-        if let Some(file) = &arguments.job {
-            let mut job = Job::read(file)?;
+    pub(crate) fn new(
+        [file, part]: [Option<PathBuf>; 2],
+        arguments: CheckArguments,
+    ) -> Result<Job, Failure> {
+        if let Some(file) = file {
+            let mut job = Job::read(&file)?;
             job.resolution = arguments.resolution.or(job.resolution);
             job.surface_only |= arguments.surface_only;
             job.anyway |= arguments.anyway;
@@ -140,7 +143,7 @@ impl Job {
         let missing =
             Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
         let (Some(part), Some(unit), Some(tool), Some(program)) =
-            (arguments.part, arguments.unit, arguments.tool, arguments.program)
+            (part, arguments.unit, arguments.tool, arguments.program)
         else {
             return Err(missing);
         };
@@ -160,6 +163,36 @@ impl Job {
             surface_only: arguments.surface_only,
             anyway: arguments.anyway,
         })
+    }
+
+    /// Returns the files that it reads, each with its role. Those that a tool's file mounts are not among them.
+    pub(crate) fn files(&self) -> Vec<(String, &Path)> {
+        let mut files =
+            vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
+        let machine = self.machine.as_deref().map(Path::new);
+        let has_ending = |file: &&Path, ending| file.extension().is_some_and(|end| end == ending);
+        files.extend(machine.filter(|m| has_ending(m, "toml")).map(|m| ("machine".to_owned(), m)));
+        match &self.tools {
+            Tools::One(name, arguments) => {
+                let library = arguments.library.as_deref();
+                files.extend(library.map(|file| ("tool library".to_owned(), file)));
+                let file = Some(Path::new(name)).filter(|file| has_ending(file, "tool"));
+                files.extend(file.map(|file| ("tool".to_owned(), file)));
+            }
+            Tools::Numbered { library, entries } => {
+                files.extend(library.as_deref().map(|file| ("tool library".to_owned(), file)));
+                for (number, entry) in entries {
+                    let file = entry.tool.as_deref().map(Path::new);
+                    let file = file.filter(|file| has_ending(file, "tool"));
+                    files.extend(file.map(|file| (format!("tool T{number}"), file)));
+                }
+            }
+        }
+        let fixtures = self.fixtures.iter();
+        files.extend(fixtures.map(|fixture| (fixture.name.clone(), &*fixture.mesh)));
+        let stock = self.stock.as_ref().and_then(|stock| stock.mesh.as_deref());
+        files.extend(stock.map(|file| ("stock".to_owned(), file)));
+        files
     }
 
     fn read(file: &Path) -> Result<Job, Failure> {

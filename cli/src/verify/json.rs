@@ -8,7 +8,7 @@ use touchoff::verify::{FindingGroup, FindingKind};
 
 /// The findings of consecutive motions.
 #[derive(Serialize)]
-pub(super) struct Row<'a> {
+pub(crate) struct Row<'a> {
     file: &'a str,
     /// The line of the worst motion, and of the first and the last one.
     line: usize,

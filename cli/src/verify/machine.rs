@@ -7,7 +7,7 @@ use touchoff::verify::MachineProgram;
 
 /// A finding about the machine.
 #[derive(Serialize)]
-pub(super) struct MachineFinding<'a> {
+pub(crate) struct MachineFinding<'a> {
     file: &'a str,
     pub(super) line: usize,
     #[serde(flatten)]

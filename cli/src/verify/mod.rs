@@ -16,17 +16,21 @@ use crate::failure::Failure;
 use crate::output::{Output, write_file};
 use crate::part::{self, NO_INSIDE};
 use crate::progress::Progress;
-use entry::{Severity, entries};
-use job::{Fixture, Job};
-use source::CheckedProgram;
+use entry::entries;
+pub(crate) use entry::{Entry, EntrySource, Severity};
+use job::Fixture;
+pub(crate) use job::Job;
+use machine::MachineFinding;
+pub(crate) use source::CheckedProgram;
 use std::io::Write;
 use std::process::ExitCode;
-use text::summary;
-use tools::ProgramTool;
-use touchoff::Unit;
+pub(crate) use stock::CutStock;
+pub(crate) use text::summary;
+pub(crate) use tools::ProgramTool;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
 use touchoff::verify::{FindingGroup, FindingKind, Tilt, Verifier, VerifyReport};
+use touchoff::{Mesh, Unit};
 
 /// The exit status if there are findings.
 const FOUND: u8 = 1;
@@ -38,10 +42,10 @@ pub(crate) const NOT_CHECKED: u8 = 2;
 const PART: &str = "the part";
 
 /// The subject of findings.
-struct Scope<'a> {
-    info: &'a ToolInfo,
+pub(crate) struct Scope<'a> {
+    pub(crate) info: &'a ToolInfo,
     /// The tool's number in the program.
-    number: Option<u32>,
+    pub(crate) number: Option<u32>,
     /// The part or the fixture.
     body: &'a str,
     unit: Unit,
@@ -57,14 +61,14 @@ struct Remedy {
 }
 
 /// A tool checked against the part or a fixture.
-struct CheckedPair<'a> {
-    scope: Scope<'a>,
-    report: VerifyReport,
-    groups: Vec<FindingGroup>,
+pub(crate) struct CheckedPair<'a> {
+    pub(crate) scope: Scope<'a>,
+    pub(crate) report: VerifyReport,
+    pub(crate) groups: Vec<FindingGroup>,
     /// Remedies of the worst motion of each group.
     remedies: Vec<Remedy>,
     /// Set for the part, as opposed to a fixture.
-    is_part: bool,
+    pub(crate) is_part: bool,
 }
 
 /// Returns the keyword of a finding's kind.
@@ -79,70 +83,170 @@ fn rule(kind: &FindingKind) -> &'static str {
 }
 
 /// A part or a fixture.
-struct Body {
-    name: String,
-    bvh: TriangleBvh,
+pub(crate) struct Body {
+    pub(crate) name: String,
+    pub(crate) mesh: Mesh,
+    pub(crate) bvh: TriangleBvh,
     /// The link of the table that it moves with; `None` for the workpiece.
     link: Option<usize>,
     /// Distance that every surface has to keep, for a fixture.
     margin: Option<f64>,
 }
 
+impl Body {
+    /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
+    pub(crate) fn has_own_frame(&self) -> bool {
+        self.link.is_some()
+    }
+}
+
+/// What a job names, read.
+pub(crate) struct Inputs {
+    pub(crate) job: Job,
+    /// Name of the program's file.
+    pub(crate) file: String,
+    pub(crate) program: CheckedProgram,
+    pub(crate) tools: Vec<ProgramTool>,
+    /// The part, then the fixtures.
+    pub(crate) bodies: Vec<Body>,
+}
+
+impl Inputs {
+    /// Reads program, tools, part and fixtures of a job.
+    ///
+    /// # Errors
+    /// If one of them cannot be read, or they do not fit.
+    pub(crate) fn read(job: Job) -> Result<Inputs, Failure> {
+        let program = CheckedProgram::read(&job)?;
+        let tools = tools::load(&job.tools, &program.tools())?;
+        for tool in &tools {
+            program.check(tool, job.unit, &job.program)?;
+        }
+        let bodies = bodies(&job, &program)?;
+        let file = job.program.display().to_string();
+        Ok(Inputs { job, file, program, tools, bodies })
+    }
+
+    /// Checks the program. `json` suppresses the progress display.
+    ///
+    /// # Errors
+    /// If a tool cannot be certified, or the stock cannot be made.
+    pub(crate) fn check(&self, json: bool) -> Result<Verification<'_>, Failure> {
+        let Inputs { job, program, tools, bodies, .. } = self;
+        let progress = Progress::steps(program.motions() * bodies.len(), "motions", json);
+        let mut pairs = Vec::new();
+        for tool in tools {
+            for body in bodies {
+                pairs.push(check(job, (program, tools), tool, body, &progress)?);
+            }
+        }
+        drop(progress);
+        let cut = match &job.stock {
+            Some(stock) => Some(stock::cut(job, stock, program, tools)?),
+            None => None,
+        };
+        let machine = program.machine_findings(&self.file);
+        Ok(Verification { inputs: self, pairs, machine, cut })
+    }
+}
+
+/// The result of checking a program.
+pub(crate) struct Verification<'a> {
+    inputs: &'a Inputs,
+    /// Each tool at each body.
+    pub(crate) pairs: Vec<CheckedPair<'a>>,
+    machine: Vec<MachineFinding<'a>>,
+    pub(crate) cut: Option<CutStock>,
+}
+
+impl Verification<'_> {
+    /// Returns all findings, the worst first.
+    pub(crate) fn entries(&self) -> Vec<Entry<'_>> {
+        let stock = self.cut.as_ref().map_or(&[][..], |cut| &cut.findings);
+        entries(&self.pairs, &self.machine, stock, (&self.inputs.file, self.inputs.job.unit))
+    }
+
+    /// Prints the summary, and writes what the job asks for of the stock.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub(crate) fn print(&self) -> Result<(), Failure> {
+        let Inputs { job, program, bodies, .. } = self.inputs;
+        program.print(&self.pairs, job.unit);
+        for pair in &self.pairs {
+            message!("{}", summary(pair));
+        }
+        if let (Some(cut), Some(entry)) = (&self.cut, &job.stock) {
+            cut.report(entry, &bodies[0].bvh)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the exit status, and reports why there is no verdict.
+    pub(crate) fn status(&self, entries: &[Entry<'_>]) -> u8 {
+        let refusals = self.refusals();
+        for reason in &refusals {
+            message!("not verified: {reason}");
+        }
+        if self.is_surface_only() {
+            message!("{NO_INSIDE}; only its surface was checked");
+        }
+        match entries.iter().all(|entry| entry.severity == Severity::Remark) {
+            _ if !refusals.is_empty() => NOT_CHECKED,
+            true => 0,
+            false => FOUND,
+        }
+    }
+
+    /// Returns whether the inside of a body is unknown, and only its surface was to be checked.
+    pub(crate) fn is_surface_only(&self) -> bool {
+        self.inputs.job.surface_only && self.pairs.iter().any(|pair| !pair.report.inside_known)
+    }
+
+    /// Returns the reasons for which a result without findings proves nothing.
+    pub(crate) fn refusals(&self) -> Vec<String> {
+        let (pairs, job) = (&self.pairs, &self.inputs.job);
+        let mut reasons = Vec::new();
+        if pairs.iter().all(|pair| pair.report.moves == 0) {
+            reasons.push(
+                "no motion could be checked, since only the machine knows where each starts or ends: state tool lengths \
+                 and work offsets in a job"
+                    .to_owned(),
+            );
+        } else {
+            reasons.extend(implausibilities(pairs, job));
+        }
+        if let (false, Some(line)) = (job.anyway, self.inputs.program.unknown_feed()) {
+            reasons.push(format!(
+                "the feed motion at line {line} starts or ends where only the machine knows: state tool lengths and \
+                 work offsets in a job, or accept the rest with `--anyway`"
+            ));
+        }
+        reasons
+    }
+}
+
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
     let sarif = arguments.sarif.clone();
-    let job = Job::new(arguments)?;
-    let program = CheckedProgram::read(&job)?;
-    let tools = tools::load(&job.tools, &program.tools())?;
-    for tool in &tools {
-        program.check(tool, job.unit, &job.program)?;
-    }
-    let bodies = bodies(&job, &program)?;
-    let progress = Progress::steps(program.motions() * bodies.len(), "motions", json);
-    let mut pairs = Vec::new();
-    for tool in &tools {
-        for body in &bodies {
-            pairs.push(check(&job, (&program, &tools), tool, body, &progress)?);
-        }
-    }
-    drop(progress);
-    let cut = match &job.stock {
-        Some(stock) => Some((stock::cut(&job, stock, &program, &tools)?, stock)),
-        None => None,
-    };
-    let stock = cut.as_ref().map_or(&[][..], |(cut, _)| &cut.findings);
-    let file = job.program.display().to_string();
-    let machine = program.machine_findings(&file);
-    let entries = entries(&pairs, &machine, stock, (&file, job.unit));
+    let inputs = Inputs::read(Job::new([arguments.job, arguments.part], arguments.check)?)?;
+    let verification = inputs.check(json)?;
+    let entries = verification.entries();
     let mut out = Output::rows();
     for entry in &entries {
         if json {
             serde_json::to_writer(&mut out, &entry.row)?;
             writeln!(out)?;
         } else {
-            out.styled(entry.severity.style(), &format!("{file}:{}:", entry.line))?;
+            out.styled(entry.severity.style(), &format!("{}:{}:", inputs.file, entry.line))?;
             writeln!(out, " {}", entry.text)?;
         }
     }
     out.flush()?;
-    program.print(&pairs, job.unit);
-    for pair in &pairs {
-        message!("{}", summary(pair));
-    }
-    if let Some((cut, entry)) = &cut {
-        cut.report(entry, &bodies[0].bvh)?;
-    }
-    let is_clear = entries.iter().all(|entry| entry.severity == Severity::Remark);
-    let mut status = status(&pairs, &job, if is_clear { 0 } else { FOUND });
-    if let (false, Some(line)) = (job.anyway, program.unknown_feed()) {
-        message!(
-            "not verified: the feed motion at line {line} starts or ends where only the machine knows: state tool lengths and \
-             work offsets in a job, or accept the rest with `--anyway`"
-        );
-        status = NOT_CHECKED;
-    }
+    verification.print()?;
+    let status = verification.status(&entries);
     if let Some(file) = sarif {
-        let log = sarif::log(&entries, &job.program, status != NOT_CHECKED)?;
+        let log = sarif::log(&entries, &inputs.job.program, status != NOT_CHECKED)?;
         write_file(&file, log)?;
     }
     Ok(ExitCode::from(status))
@@ -151,12 +255,8 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
 /// Reads the part and the fixtures.
 fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
     let mesh = part::mesh(&job.part, job.unit, "verify")?;
-    let mut bodies = vec![Body {
-        name: PART.to_owned(),
-        bvh: TriangleBvh::new(&mesh),
-        link: None,
-        margin: None,
-    }];
+    let bvh = TriangleBvh::new(&mesh);
+    let mut bodies = vec![Body { name: PART.to_owned(), mesh, bvh, link: None, margin: None }];
     for Fixture { name, mesh, moves_with, margin } in &job.fixtures {
         if !(0.0..f64::INFINITY).contains(margin) {
             return Err(Failure::Usage("the margin of a fixture is a length of 0 or more"));
@@ -165,8 +265,9 @@ fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
             None => None,
             Some(axis) => program.link(axis, job)?,
         };
-        let bvh = TriangleBvh::new(&part::mesh(mesh, job.unit, "verify")?);
-        bodies.push(Body { name: name.clone(), bvh, link, margin: Some(*margin) });
+        let mesh = part::mesh(mesh, job.unit, "verify")?;
+        let bvh = TriangleBvh::new(&mesh);
+        bodies.push(Body { name: name.clone(), mesh, bvh, link, margin: Some(*margin) });
     }
     Ok(bodies)
 }
@@ -217,30 +318,19 @@ fn check<'a>(
     Ok(CheckedPair { scope, report, groups, remedies, is_part: body.margin.is_none() })
 }
 
-/// Returns the given exit status, or that without a verdict, and reports why there is none.
-fn status(pairs: &[CheckedPair<'_>], job: &Job, mut status: u8) -> u8 {
-    let mut refuse = |text: String| {
-        message!("not verified: {text}");
-        status = NOT_CHECKED;
-    };
-    if pairs.iter().all(|pair| pair.report.moves == 0) {
-        refuse(
-            "no motion could be checked, since only the machine knows where each starts or ends: state tool lengths and \
-             work offsets in a job"
-                .to_owned(),
-        );
-        return status;
-    }
+/// Returns the reasons to doubt that the motions that were checked are meant for these bodies.
+fn implausibilities(pairs: &[CheckedPair<'_>], job: &Job) -> Vec<String> {
+    let mut reasons = Vec::new();
     for pair in pairs {
         let CheckedPair { scope, report, .. } = pair;
         if !report.inside_known && !job.surface_only {
-            refuse(format!(
+            reasons.push(format!(
                 "{}: {NO_INSIDE}: repair the mesh, or check its surface alone with `--surface-only`",
                 scope.body
             ));
         }
         if report.unrestricted {
-            refuse(
+            reasons.push(
                 "`--tolerance`, `--allow` and `--resolution` allow every surface its greatest possible depth, so \
                  nothing could be found: lower them"
                     .to_owned(),
@@ -249,7 +339,7 @@ fn status(pairs: &[CheckedPair<'_>], job: &Job, mut status: u8) -> u8 {
     }
     let parts = || pairs.iter().filter(|pair| pair.is_part);
     if !job.anyway && parts().all(|pair| pair.report.approach.is_far()) {
-        refuse(
+        reasons.push(
             "the program never comes within the tool's diameter of the part: check the part, its position and its \
              unit, or accept the program with `--anyway`"
                 .to_owned(),
@@ -257,13 +347,10 @@ fn status(pairs: &[CheckedPair<'_>], job: &Job, mut status: u8) -> u8 {
     }
     let factor = parts().find_map(|pair| pair.report.approach.unit_factor);
     if let (false, Some(factor)) = (job.anyway, factor) {
-        refuse(format!(
+        reasons.push(format!(
             "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check \
              the units of part and program, or accept the program with `--anyway`"
         ));
     }
-    if job.surface_only && pairs.iter().any(|pair| !pair.report.inside_known) {
-        message!("{NO_INSIDE}; only its surface was checked");
-    }
-    status
+    reasons
 }

@@ -15,7 +15,7 @@ use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
 use touchoff::{Program, Unit};
 
 /// A program that was read.
-pub(super) enum CheckedProgram {
+pub(crate) enum CheckedProgram {
     /// Positions of the tip with the axis, a program per tool change.
     Locations(Vec<Program>),
     /// G-code.
@@ -132,7 +132,7 @@ impl CheckedProgram {
     }
 
     /// Returns the motions of a tool relative to a link of the table, or to the part.
-    pub(super) fn moves<'a>(
+    pub(crate) fn moves<'a>(
         &'a self,
         tool: &ProgramTool,
         link: Option<usize>,

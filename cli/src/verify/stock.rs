@@ -16,7 +16,7 @@ use touchoff::stock::{MotionMode, Stock, StockContact};
 
 /// Material that a surface touches on consecutive motions.
 #[derive(Serialize)]
-pub(super) struct StockFinding {
+pub(crate) struct StockFinding {
     file: String,
     /// The line of the deepest contact, and of the first and the last motion.
     pub(super) line: usize,
@@ -27,20 +27,20 @@ pub(super) struct StockFinding {
     unit: &'static str,
     body: &'static str,
     tool: String,
-    tool_number: Option<u32>,
+    pub(crate) tool_number: Option<u32>,
     kind: &'static str,
     surface: String,
     cutting: bool,
     /// Depth of a point of material in the tool.
     #[serde(rename = "stock_depth")]
     depth: f64,
-    point: [f64; 3],
+    pub(crate) point: [f64; 3],
 }
 
 /// The result of cutting the stock.
-pub(super) struct CutStock {
-    pub(super) findings: Vec<StockFinding>,
-    stock: Stock,
+pub(crate) struct CutStock {
+    pub(crate) findings: Vec<StockFinding>,
+    pub(crate) stock: Stock,
 }
 
 /// Runs a program through the stock of a job.

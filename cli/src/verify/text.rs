@@ -110,7 +110,7 @@ fn format_small(value: f64, unit: Unit) -> String {
 }
 
 /// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
-pub(super) fn summary(pair: &CheckedPair<'_>) -> String {
+pub(crate) fn summary(pair: &CheckedPair<'_>) -> String {
     let CheckedPair { scope, report, groups, .. } = pair;
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let motions = report.motions;

@@ -3,26 +3,38 @@
 use super::job::Tools;
 use crate::arguments::ToolArguments;
 use crate::failure::Failure;
-use crate::loaded_tool::LoadedTool;
+use crate::loaded_tool::{LoadedTool, compile_named};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use tool_dsl::Compiled;
 use touchoff::Tool;
 use touchoff::verify::ToolSelection;
 
 /// A tool of a program.
-pub(super) struct ProgramTool {
+pub(crate) struct ProgramTool {
     /// Its number in the program, if tools are selected by number.
-    pub(super) number: Option<u32>,
+    pub(crate) number: Option<u32>,
     /// The motions that it makes.
     pub(super) selection: ToolSelection,
     loaded: LoadedTool,
+    /// Its name, and the arguments that it was loaded with.
+    named: (OsString, ToolArguments),
     /// Allowances of its own surfaces.
     pub(super) allow: Vec<(String, f64)>,
 }
 
 impl ProgramTool {
-    pub(super) fn tool(&self) -> &dyn Tool {
+    pub(crate) fn tool(&self) -> &dyn Tool {
         self.loaded.tool()
+    }
+
+    /// Compiles the tool again, for its drawing and its proof.
+    ///
+    /// # Errors
+    /// If its file cannot be read any more.
+    pub(crate) fn compile(&self) -> Result<Compiled, Failure> {
+        let (name, arguments) = &self.named;
+        compile_named(name, arguments)
     }
 }
 
@@ -42,6 +54,7 @@ pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramToo
                 number: None,
                 selection: ToolSelection::All,
                 loaded: LoadedTool::load(name, arguments)?,
+                named: (name.clone(), arguments.clone()),
                 allow: Vec::new(),
             }])
         }
@@ -62,10 +75,12 @@ pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramToo
                     (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
                     (None, None) => return Err(missing(*number)),
                 };
+                let arguments = ToolArguments { library, params };
                 Ok(ProgramTool {
                     number: *number,
                     selection: ToolSelection::Number(*number),
-                    loaded: LoadedTool::load(&name, &ToolArguments { library, params })?,
+                    loaded: LoadedTool::load(&name, &arguments)?,
+                    named: (name, arguments),
                     allow: entry.map_or(Vec::new(), |entry| {
                         entry.allow.iter().map(|(name, depth)| (name.clone(), *depth)).collect()
                     }),

@@ -1,0 +1,189 @@
+//! Pictures of parts: values by colour, in several views on one sheet.
+
+pub(crate) mod camera;
+mod lettering;
+pub(crate) mod render;
+
+use crate::failure::Failure;
+use camera::{Camera, VIEWS};
+use lettering::{LETTER, Overlay};
+use nalgebra::Point3;
+use render::{Facet, Image, Paint, render};
+use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
+use resvg::usvg::{Options, Tree};
+use tool_dsl::draw::lettering::width;
+use touchoff::Unit;
+use touchoff::postures::colormap;
+
+/// Colour of triangles without a value.
+pub(crate) const NOTHING: [u8; 3] = [205, 205, 205];
+
+/// Height of the title and of the legend, in pixels.
+const TITLE: usize = 78;
+const LEGEND: usize = 110;
+
+/// A quantity that colours stand for.
+#[derive(Clone, Debug)]
+pub(crate) struct Scale {
+    /// The quantity with its unit.
+    pub(crate) quantity: String,
+    /// The values of the darkest and of the brightest colour.
+    pub(crate) range: [f64; 2],
+    /// Both as text.
+    pub(crate) ends: [String; 2],
+    /// Meaning of triangles without a value.
+    pub(crate) nothing: &'static str,
+    /// Set if there is any value.
+    pub(crate) has_values: bool,
+}
+
+impl Scale {
+    /// Returns the position of a value on the scale, from 0 to 1.
+    pub(crate) fn share(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
+    /// Returns the look of a triangle.
+    pub(crate) fn paint(&self, value: Option<f64>) -> Paint {
+        value.map_or(Paint::Plain(NOTHING), |value| Paint::Value(colormap(self.share(value))))
+    }
+}
+
+/// The lines above a picture.
+pub(crate) struct Heading {
+    pub(crate) title: String,
+    pub(crate) subtitle: String,
+}
+
+/// Draws facets in all views on one sheet, with title, axes, scale of length and legend, as a PNG. Views are `side` pixels
+/// wide.
+///
+/// # Errors
+/// If the picture cannot be made.
+pub(crate) fn sheet(
+    facets: &[Facet],
+    (heading, scale): (&Heading, &Scale),
+    unit: Unit,
+    side: usize,
+) -> Result<Vec<u8>, Failure> {
+    let (columns, rows) = (2 * side, TITLE + 2 * side + LEGEND);
+    let corners = || facets.iter().flat_map(|facet| facet.corners);
+    let mut sheet = Sheet::new([columns, rows])?;
+    for (index, view) in VIEWS.iter().enumerate() {
+        let camera = Camera::fitted(view, corners());
+        let at = [index % 2 * side, TITLE + index / 2 * side];
+        sheet.view(facets.iter().copied(), &camera, (at, [side, side]), unit);
+        let [x, y] = at.map(|at| at as f64);
+        sheet.overlay.text([x + 16.0, y + 24.0], LETTER, view.name);
+    }
+    let room = columns as f64 - 48.0;
+    sheet.overlay.title([24.0, 34.0], (1.3 * LETTER, room), &heading.title);
+    sheet.overlay.title([24.0, 64.0], (0.9 * LETTER, room), &heading.subtitle);
+    legend(&mut sheet.overlay, scale, [columns, rows - LEGEND]);
+    sheet.png()
+}
+
+/// Draws what a camera sees, with axes and a scale of length, as a PNG.
+///
+/// # Errors
+/// If the picture cannot be made.
+pub(crate) fn close_up(
+    facets: impl Iterator<Item = Facet>,
+    camera: &Camera,
+    (heading, unit): (&Heading, Unit),
+    [width, height]: [usize; 2],
+) -> Result<Vec<u8>, Failure> {
+    const TITLE: usize = 52;
+    let mut sheet = Sheet::new([width, TITLE + height])?;
+    sheet.view(facets, camera, ([0, TITLE], [width, height]), unit);
+    let room = width as f64 - 24.0;
+    sheet.overlay.title([12.0, 22.0], (0.9 * LETTER, room), &heading.title);
+    sheet.overlay.title([12.0, 43.0], (0.75 * LETTER, room), &heading.subtitle);
+    sheet.png()
+}
+
+/// A picture that is made of views and text.
+struct Sheet {
+    pixels: Pixmap,
+    overlay: Overlay,
+}
+
+fn pixels(reason: &dyn std::fmt::Display) -> Failure {
+    Failure::Pixels(reason.to_string())
+}
+
+impl Sheet {
+    fn new(size: [usize; 2]) -> Result<Sheet, Failure> {
+        let [columns, rows] = size.map(|side| side as u32);
+        let mut map = Pixmap::new(columns, rows).ok_or_else(|| pixels(&"it has no size"))?;
+        map.pixels_mut().fill(opaque([255; 3]));
+        Ok(Sheet { pixels: map, overlay: Overlay::new(size) })
+    }
+
+    /// Draws what a camera sees into a part of the picture, with axes and a scale of length.
+    fn view(
+        &mut self,
+        facets: impl Iterator<Item = Facet>,
+        camera: &Camera,
+        (at, size): ([usize; 2], [usize; 2]),
+        unit: Unit,
+    ) {
+        let Image { size: [width, height], pixels } = render(facets, camera, size);
+        let columns = self.pixels.width() as usize;
+        let paper = self.pixels.pixels_mut();
+        for y in 0..height {
+            for x in 0..width {
+                paper[(at[1] + y) * columns + at[0] + x] = opaque(pixels[y * width + x]);
+            }
+        }
+        let [left, top] = at.map(|at| at as f64);
+        let [right, bottom] = [left + width as f64, top + height as f64];
+        self.overlay.axes([left + 62.0, bottom - 62.0], camera);
+        let scale = (camera.pixels_per_length(size), 0.25 * width as f64);
+        self.overlay.scale_bar([right - 20.0, bottom - 18.0], scale, unit);
+    }
+
+    fn png(mut self) -> Result<Vec<u8>, Failure> {
+        let svg = self.overlay.finish();
+        let tree = Tree::from_str(&svg, &Options::default()).map_err(|error| pixels(&error))?;
+        resvg::render(&tree, Transform::identity(), &mut self.pixels.as_mut());
+        self.pixels.encode_png().map_err(|error| pixels(&error))
+    }
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
+    PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(PremultipliedColorU8::TRANSPARENT)
+}
+
+/// Draws the colour scale below the views.
+fn legend(overlay: &mut Overlay, scale: &Scale, [columns, top]: [usize; 2]) {
+    let (columns, base) = (columns as f64, top as f64);
+    let (left, right) = (columns * 0.2, columns * 0.8);
+    let Scale { quantity, ends, .. } = scale;
+    let middle = 0.5 * (columns - width(quantity, LETTER));
+    overlay.text([middle, base + 26.0], LETTER, quantity);
+    overlay.rectangle([24.0, base + 40.0], [26.0; 2], NOTHING);
+    overlay.text([24.0, base + 92.0], LETTER, scale.nothing);
+    const STEPS: usize = 120;
+    let step = (right - left) / STEPS as f64;
+    for k in 0..STEPS {
+        // A little wider than a step, so that no gap shows.
+        let share = (k as f64 + 0.5) / STEPS as f64;
+        let at = [left + step * k as f64, base + 40.0];
+        overlay.rectangle(at, [step + 0.5, 26.0], colormap(share));
+    }
+    if scale.has_values {
+        overlay.text([left, base + 92.0], LETTER, &ends[0]);
+        overlay.text([right - width(&ends[1], LETTER), base + 92.0], LETTER, &ends[1]);
+    }
+}
+
+/// Returns the facets of triangles with their values.
+pub(crate) fn facets<'a>(
+    triangles: impl Iterator<Item = [Point3<f64>; 3]> + 'a,
+    values: &'a [Option<f64>],
+    scale: &'a Scale,
+) -> impl Iterator<Item = Facet> + 'a {
+    triangles.zip(values).map(|(corners, value)| Facet { corners, paint: scale.paint(*value) })
+}

@@ -1,0 +1,103 @@
+//! The camera on each finding.
+
+use super::body::Shown;
+use super::tool_shape::ToolShape;
+use crate::picture::camera::Camera;
+use crate::verify::{Entry, EntrySource, Inputs};
+use nalgebra::{Point3, Vector3};
+use touchoff::Pose;
+use touchoff::certify::Witness;
+use touchoff::verify::FindingKind;
+
+/// The place of a finding, and how to look at it.
+pub(super) struct Place {
+    /// The body that the tool touches; `None` for the stock.
+    pub(super) body: Option<usize>,
+    /// The index of the tool, if its pose is known.
+    pub(super) tool: Option<(usize, Pose)>,
+    /// The point to look at.
+    pub(super) target: Point3<f64>,
+    /// Direction from there to the eye, of length 1.
+    pub(super) toward: Vector3<f64>,
+    /// The length that the picture shows.
+    pub(super) extent: f64,
+}
+
+/// Pitch of cameras above which the direction would be parallel to the upward one, as its sine.
+const MAX_RISE: f64 = 0.97;
+
+impl Place {
+    /// Returns the place of a finding; `None` if it has none, such as a limit of an axis.
+    pub(super) fn of(
+        entry: &Entry<'_>,
+        (inputs, shown): (&Inputs, &[Shown]),
+        shapes: &[ToolShape],
+    ) -> Option<Place> {
+        match entry.source {
+            EntrySource::Machine => None,
+            EntrySource::Stock(finding) => {
+                let is_its = |tool: &crate::verify::ProgramTool| {
+                    tool.number.is_none() || tool.number == finding.tool_number
+                };
+                let shape = shapes.get(inputs.tools.iter().position(is_its)?)?;
+                let toward = above_horizon(Vector3::new(1.0, -1.5, 1.3));
+                let extent = extent(&shown[0], shape);
+                let target = Point3::from(finding.point);
+                Some(Place { body: None, tool: None, target, toward, extent })
+            }
+            EntrySource::Surface(pair, finding) => {
+                let bodies = inputs.bodies.len();
+                let (tool, body) = (pair / bodies, pair % bodies);
+                let witness = match finding.kind {
+                    FindingKind::Deep { witness, .. } | FindingKind::Near { witness, .. } => {
+                        Some(witness)
+                    }
+                    FindingKind::Inside { .. }
+                    | FindingKind::Undecided { .. }
+                    | FindingKind::Ambiguous(_) => None,
+                };
+                let axis = finding.pose.axis();
+                let normal = |witness: Witness| inputs.bodies[body].mesh.normal(witness.triangle);
+                let normal = witness.and_then(normal).unwrap_or(axis);
+                // From the side of the tool, a little from above, and more from outside the material.
+                let side = axis.cross(&normal).try_normalize(1e-3);
+                let side = side.unwrap_or_else(|| axis.cross(&Vector3::x()));
+                let toward = above_horizon(normal + 0.7 * side + 0.35 * axis);
+                let target = witness.map_or(finding.pose.tip(), |witness| witness.point);
+                let extent = extent(&shown[body], &shapes[tool]);
+                let tool = Some((tool, finding.pose));
+                Some(Place { body: Some(body), tool, target, toward, extent })
+            }
+        }
+    }
+
+    /// Returns the camera. What stands in front of the place is cut away.
+    pub(super) fn camera(&self) -> Camera {
+        let directions = [self.toward, Vector3::z()];
+        Camera::new(self.target, directions, self.extent).with_cut(self.cut())
+    }
+
+    /// Returns the distance in front of the place beyond which nothing is shown.
+    pub(super) fn cut(&self) -> f64 {
+        0.6 * self.extent
+    }
+}
+
+/// Returns the length that a picture of a place shows: some diameters of the tool, and no more than the body.
+fn extent(body: &Shown, shape: &ToolShape) -> f64 {
+    let whole = body.extent();
+    let near = 10.0 * shape.radius();
+    if near > 0.0 { near.clamp(0.02 * whole, 1.2 * whole) } else { whole }
+}
+
+/// Returns a direction of length 1 that is not parallel to z.
+fn above_horizon(toward: Vector3<f64>) -> Vector3<f64> {
+    let toward = toward.try_normalize(0.0).unwrap_or_else(Vector3::x);
+    if toward.z.abs() <= MAX_RISE {
+        return toward;
+    }
+    let aside = Vector3::new(toward.x, toward.y, 0.0).try_normalize(1e-9);
+    let aside = aside.unwrap_or_else(|| Vector3::new(0.6, -0.8, 0.0));
+    let rise = MAX_RISE.copysign(toward.z);
+    aside * (1.0 - rise * rise).sqrt() + Vector3::z() * rise
+}

@@ -1,0 +1,281 @@
+//! `touchoff report`: one HTML file about a program, to send around.
+//!
+//! ```text
+//! job ──verify──▶ findings ──cameras──▶ places ─┐
+//! bodies ──body──▶ pieces ──colouring──▶ layers ─┼─scene──▶ the 3-D view ─┐
+//! tools ──tool_shape──▶ profiles ────────────────┴─picture─▶ pictures ────┼─page──▶ HTML
+//! program ──along──▶ samples ──charts──▶ charts ──────────────────────────┘
+//! ```
+
+mod along;
+mod body;
+mod cameras;
+mod charts;
+mod colouring;
+mod files;
+mod page;
+mod scene;
+mod tool_shape;
+
+use crate::arguments::Report;
+use crate::arguments::postures::Quantity;
+use crate::failure::Failure;
+use crate::output::{extension, refuse_inputs, write_file};
+use crate::picture::{Heading, close_up, facets, sheet};
+use crate::postures::map::check_part;
+use crate::postures::picture::quantity;
+use crate::progress::Progress;
+use crate::verify::{Entry, Inputs, Job, Verification};
+use along::Along;
+use body::Shown;
+use cameras::Place;
+use colouring::Layer;
+use files::InputFile;
+use scene::Scene;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+use tool_shape::ToolShape;
+use touchoff::Escaped;
+use touchoff::postures::PostureMap;
+use touchoff::stock::PartComparison;
+
+/// Side of a view of the part, in pixels.
+const SIDE: usize = 520;
+/// Size of the picture of a finding, in pixels, and the number of findings that have one.
+const CLOSE_UP: [usize; 2] = [460, 340];
+const CLOSE_UPS: usize = 8;
+
+/// Checks a program, writes the report, and returns the exit status of `verify`.
+pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure> {
+    let start = Instant::now();
+    let Report { job: subject, check, map, output } = arguments;
+    if extension(&output).as_deref() != Some("html") {
+        let better = output.with_extension("html");
+        return Err(Failure::ReportFormat { file: output.display().to_string(), better });
+    }
+    let is_job = extension(&subject).as_deref() == Some("toml");
+    if is_job && check.states_subject() {
+        return Err(Failure::Usage(
+            "a job file states unit, tools, program, machine and tolerances: leave out these options",
+        ));
+    }
+    if !is_job && !check.has_subject() {
+        return Err(Failure::Usage(
+            "a report on a part needs `--unit`, `--tool` and `--program`; or name a job file",
+        ));
+    }
+    let job = Job::new(
+        if is_job { [Some(subject.clone()), None] } else { [None, Some(subject.clone())] },
+        check,
+    )?;
+    let named = job.files().into_iter().map(|(_, file)| file.to_owned());
+    let named: Vec<PathBuf> = named.chain([subject.clone()]).chain(map.clone()).collect();
+    refuse_inputs([&*output], named.iter().map(|file| &**file))?;
+    let map = match map {
+        Some(file) => Some((PostureMap::read(&file)?, file)),
+        None => None,
+    };
+    let inputs = Inputs::read(job)?;
+    if let Some((map, file)) = &map {
+        check_part(map, file, (&inputs.bodies[0].mesh, &inputs.job.part))?;
+    }
+    let mut times = vec![("reading the inputs", start.elapsed())];
+    let check = Instant::now();
+    let verification = inputs.check(json)?;
+    let entries = verification.entries();
+    times.push(("proving the motions, and cutting the stock", check.elapsed()));
+    verification.print()?;
+    let status = verification.status(&entries);
+
+    let progress = Progress::spinner("writing the report", json);
+    let job_file = is_job.then_some(&*subject);
+    let map = map.as_ref().map(|(map, file)| (map, &**file));
+    let content = Content::new((&inputs, &verification, &entries), (job_file, map), times)?;
+    let html = page::html(&content)?;
+    drop(progress);
+    let megabytes = html.len() as f64 / 1e6;
+    write_file(&output, html)?;
+    message!("{}: {megabytes:.1} MB, opens in a browser", output.display());
+    Ok(ExitCode::from(status))
+}
+
+/// A picture, as PNG.
+struct Picture {
+    caption: String,
+    png: Vec<u8>,
+}
+
+/// What a report shows.
+struct Content<'a> {
+    inputs: &'a Inputs,
+    verification: &'a Verification<'a>,
+    entries: &'a [Entry<'a>],
+    /// The map that colours the part.
+    map: Option<(&'a PostureMap, &'a Path)>,
+    comparison: Option<PartComparison>,
+    files: Vec<InputFile>,
+    shapes: Vec<ToolShape>,
+    /// The data of the 3-D view as JSON, and the rounding of its coordinates.
+    scene: (String, f64),
+    /// One picture per quantity.
+    sheets: Vec<Picture>,
+    /// The worst findings, by their index.
+    close_ups: Vec<(usize, Picture)>,
+    /// Whether each finding has a camera.
+    has_place: Vec<bool>,
+    /// One per tool.
+    along: Vec<Along>,
+    times: Vec<(&'static str, Duration)>,
+}
+
+impl<'a> Content<'a> {
+    fn new(
+        (inputs, verification, entries): (&'a Inputs, &'a Verification<'a>, &'a [Entry<'a>]),
+        (job_file, map): (Option<&Path>, Option<(&'a PostureMap, &'a Path)>),
+        mut times: Vec<(&'static str, Duration)>,
+    ) -> Result<Content<'a>, Failure> {
+        let (unit, bodies) = (inputs.job.unit, &inputs.bodies);
+        let start = Instant::now();
+        let points = along::points(inputs)?;
+        let pairs = verification.pairs.iter().enumerate().filter(|(_, pair)| pair.is_part);
+        let along = pairs
+            .map(|(number, pair)| along::follow(inputs, &points, (number / bodies.len(), pair)));
+        let along = along.collect::<Result<_, Failure>>()?;
+        times.push(("depth, clearance and force along the program", start.elapsed()));
+
+        let start = Instant::now();
+        let mut shown: Vec<Shown> = bodies
+            .iter()
+            .map(|body| Shown::new(&body.name, &body.mesh, body.has_own_frame()))
+            .collect();
+        let mut layers = Vec::new();
+        for (index, body) in shown.iter().enumerate() {
+            let layer = colouring::depths((inputs, verification), (index, body))?;
+            if index == 0 || layer.scale.has_values {
+                layers.push(layer);
+            }
+        }
+        if let Some((map, _)) = map {
+            for by in [Quantity::Niceness, Quantity::Accessibility, Quantity::StickOut] {
+                let layer = colouring::of_sources(0, &shown[0], quantity(map, by)?);
+                if layer.scale.has_values {
+                    layers.push(layer);
+                }
+            }
+        }
+        let mut comparison = None;
+        if let Some(cut) = &verification.cut {
+            let deviations = cut.stock.compare(&bodies[0].bvh)?;
+            if let Some((body, layer)) = colouring::stock(cut, &deviations, shown.len())? {
+                shown.push(body);
+                layers.push(layer);
+            }
+            comparison = Some(deviations);
+        }
+        let shapes: Vec<ToolShape> =
+            inputs.tools.iter().map(|tool| ToolShape::new(tool.tool().info(), unit)).collect();
+        let places: Vec<Option<Place>> =
+            entries.iter().map(|entry| Place::of(entry, (inputs, &shown), &shapes)).collect();
+        let scene = Scene::new((&shown, &layers), &shapes, &places, unit);
+        let pictures = Pictures { inputs, shown: &shown, layers: &layers, shapes: &shapes };
+        let sheets = layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
+        let mut close_ups = Vec::new();
+        for (index, (entry, place)) in entries.iter().zip(&places).enumerate() {
+            if let (Some(place), true) = (place, close_ups.len() < CLOSE_UPS) {
+                close_ups.push((index, pictures.close_up((index, entry), place)?));
+            }
+        }
+        times.push(("pictures", start.elapsed()));
+
+        let job_file = job_file.map(|file| ("job".to_owned(), file));
+        let map_file = map.map(|(_, file)| ("posture map".to_owned(), file));
+        let files = job_file.into_iter().chain(inputs.job.files()).chain(map_file);
+        Ok(Content {
+            inputs,
+            verification,
+            entries,
+            map,
+            comparison,
+            files: files
+                .map(|(role, file)| InputFile::read(role, file))
+                .collect::<Result<_, _>>()?,
+            scene: (scene::json(&scene)?, scene.rounding_error()),
+            sheets,
+            close_ups,
+            has_place: places.iter().map(Option::is_some).collect(),
+            shapes,
+            along,
+            times,
+        })
+    }
+}
+
+/// What pictures are made of.
+struct Pictures<'a> {
+    inputs: &'a Inputs,
+    shown: &'a [Shown],
+    layers: &'a [Layer],
+    shapes: &'a [ToolShape],
+}
+
+impl Pictures<'_> {
+    /// Draws a quantity on its body, in several views.
+    fn sheet(&self, layer: &Layer) -> Result<Picture, Failure> {
+        let shown = &self.shown[layer.body];
+        let facets: Vec<_> = facets(shown.corners(), &layer.values, &layer.scale).collect();
+        let body =
+            if layer.body == 0 { file_name(&self.inputs.job.part) } else { shown.name.clone() };
+        let title = format!("{}: {}", Escaped(&body), layer.scale.quantity);
+        let heading = Heading { title: title.clone(), subtitle: self.subtitle() };
+        let png = sheet(&facets, (&heading, &layer.scale), shown.unit, SIDE)?;
+        Ok(Picture { caption: title, png })
+    }
+
+    /// Draws the place of a finding with the tool.
+    fn close_up(
+        &self,
+        (index, entry): (usize, &Entry<'_>),
+        place: &Place,
+    ) -> Result<Picture, Failure> {
+        let body = place.body.unwrap_or(0);
+        let shown = &self.shown[body];
+        // Each body with findings has a layer of their depths, the first of its layers.
+        let layer = self.layers.iter().find(|layer| layer.body == body);
+        let layer = layer.unwrap_or(&self.layers[0]);
+        let plain;
+        let values = if layer.body == body {
+            &layer.values
+        } else {
+            plain = vec![None; shown.triangles.len()];
+            &plain
+        };
+        let tool = place.tool.as_ref().map(|(tool, pose)| self.shapes[*tool].facets(pose));
+        let facets =
+            facets(shown.corners(), values, &layer.scale).chain(tool.into_iter().flatten());
+        let line = format!("{}:{}", Escaped(&file_name(&self.inputs.job.program)), entry.line);
+        let heading = Heading {
+            title: format!("{}. {} at {line}", index + 1, entry.rule),
+            subtitle: Escaped(&entry.text).to_string(),
+        };
+        let png = close_up(facets, &place.camera(), (&heading, shown.unit), CLOSE_UP)?;
+        Ok(Picture { caption: format!("{}. {line}: {}", index + 1, entry.text), png })
+    }
+
+    /// Describes the program, the tools and the unit.
+    fn subtitle(&self) -> String {
+        let names = self.inputs.tools.iter().map(|tool| {
+            let number = tool.number.map_or(String::new(), |number| format!("T{number} "));
+            format!("{number}{}", tool.tool().info().name)
+        });
+        let names: Vec<String> = names.collect();
+        let program = file_name(&self.inputs.job.program);
+        let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.job.unit);
+        Escaped(&text).to_string()
+    }
+}
+
+/// Returns the last part of a path.
+fn file_name(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}

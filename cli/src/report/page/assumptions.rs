@@ -1,0 +1,111 @@
+//! What was assumed, and the files.
+
+use super::super::Content;
+use super::super::along::POINTS;
+use super::plain;
+use crate::lengths::format_length;
+use crate::program::ignored_words;
+use crate::verify::CheckedProgram;
+use maud::{Markup, html};
+use touchoff::Unit;
+
+pub(super) fn section(content: &Content<'_>) -> Markup {
+    html! {
+        section {
+            h2 { "What was assumed" }
+            ul { @for line in lines(content) { li { (plain(&line)) } } }
+            h3 { "Files" }
+            table.files {
+                thead { tr { th { "role" } th { "file" } th { "bytes" } th { "SHA-256" } } }
+                tbody {
+                    @for file in &content.files {
+                        tr {
+                            td { (plain(&file.role)) }
+                            td { (plain(&file.name)) }
+                            td.number { (file.bytes) }
+                            td { code { (file.digest) } }
+                        }
+                    }
+                }
+            }
+            p.note { "Written by touchoff " (env!("CARGO_PKG_VERSION")) ". Built-in tools are those of this version." }
+        }
+    }
+}
+
+fn lines(content: &Content<'_>) -> Vec<String> {
+    let (inputs, verification) = (content.inputs, content.verification);
+    let (job, unit) = (&inputs.job, inputs.job.unit);
+    let resolution = job.resolution.unwrap_or(1e-3 * Unit::Millimetre.factor_to(unit));
+    let mut lines = vec![
+        format!(
+            "Lengths are in {unit}. The part's file was read in this unit, and the program is in the frame of the part."
+        ),
+        format!(
+            "No surface may be deeper in the part than {} (the tolerance), in rapid traverse whatever its allowance. An excess \
+             of up to {} (the resolution) may be left unreported.",
+            format_length(job.tolerance, unit),
+            format_length(resolution, unit)
+        ),
+    ];
+    let allowed = job.allow.iter().map(|(surface, depth)| match depth {
+        depth if *depth == f64::INFINITY => format!("{surface} may be any depth"),
+        depth if *depth < 0.0 => format!("{surface} keeps {}", format_length(-depth, unit)),
+        depth => format!("{surface} may be {} deep", format_length(*depth, unit)),
+    });
+    let allowed: Vec<String> = allowed.collect();
+    if !allowed.is_empty() {
+        lines.push(format!("Allowances: {}.", allowed.join("; ")));
+    }
+    match &inputs.program {
+        CheckedProgram::Locations(program) => {
+            lines.push(
+                "Between two positions the tip moves on a straight line and the axis turns evenly about the common normal of \
+                 both axes."
+                    .to_owned(),
+            );
+            if let Some(words) = ignored_words(program) {
+                lines.push(format!("Words that move nothing were ignored: {words}."));
+            }
+        }
+        CheckedProgram::Machine(program) => {
+            lines.push(format!(
+                "Machine: {}. Between two blocks the control interpolates its axes; rapid traverse is one straight motion of \
+                 all axes. G54 is the frame of the part.",
+                program.machine().name()
+            ));
+            if let Some(unknown) = program.summary().unknown {
+                lines.push(format!(
+                    "{} motions were not checked, the first at line {}: only the machine knows where they start or end.",
+                    unknown.count, unknown.line
+                ));
+            }
+            lines.extend(program.summary().notes.iter().map(|note| format!("{note}.")));
+        }
+    }
+    if job.anyway {
+        lines.push("An implausible program was accepted (`anyway`).".to_owned());
+    }
+    if verification.is_surface_only() {
+        lines.push("The inside of a mesh is undefined; only its surface was checked.".to_owned());
+    }
+    lines.push(
+        "The tool is its profile as drawn, turned about its axis. Deflection, runout, the rounding of corners by the control \
+         and acceleration are not modelled."
+            .to_owned(),
+    );
+    lines.push(format!(
+        "The 3-D view rounds coordinates by at most {:.1e} {unit}. Long triangles are divided for colouring. The depth of \
+         findings is coloured by samples: the centre of each triangle, points near its corners, and the deepest points found.",
+        content.scene.1
+    ));
+    lines.push(format!(
+        "Depth and clearance along the program hold at the positions, not between them; findings hold for whole motions. \
+         Forces are sums over {POINTS} sampled points."
+    ));
+    if let Some((map, file)) = content.map {
+        let rules = crate::postures::picture::describe(map);
+        lines.push(format!("Posture map {}: {rules}.", file.display()));
+    }
+    lines
+}

@@ -1,0 +1,170 @@
+//! The data of the 3-D view, as JSON in the page.
+
+use super::body::Shown;
+use super::cameras::Place;
+use super::colouring::Layer;
+use super::tool_shape::ToolShape;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+use touchoff::postures::colormap;
+use touchoff::{Pose, Unit};
+
+/// Largest value of a rounded coordinate.
+const COORDINATE_STEPS: f64 = u16::MAX as f64;
+/// Largest value of a colour; 0 stands for none.
+const COLOUR_STEPS: f64 = 254.0;
+
+#[derive(Serialize)]
+pub(super) struct Scene<'a> {
+    unit: &'static str,
+    bodies: Vec<Body<'a>>,
+    layers: Vec<LayerRow<'a>>,
+    tools: Vec<Tool>,
+    /// The camera on each finding, in the order of the table; null without a place.
+    places: Vec<Option<PlaceRow>>,
+    /// Colours of values from the lowest to the greatest, red, green and blue.
+    colours: Vec<[u8; 3]>,
+}
+
+#[derive(Serialize)]
+struct Body<'a> {
+    name: &'a str,
+    own_frame: bool,
+    /// Lowest corner of its box, and the lengths of the steps of rounded coordinates.
+    low: [f64; 3],
+    step: [f64; 3],
+    /// Rounded coordinates of vertices, 16 bits each, little-endian, in base64.
+    vertices: String,
+    /// Vertices of triangles, 32 bits each.
+    triangles: String,
+}
+
+#[derive(Serialize)]
+struct LayerRow<'a> {
+    body: usize,
+    quantity: &'a str,
+    ends: Option<&'a [String; 2]>,
+    nothing: &'a str,
+    /// One byte per triangle: 0 without a value, else 1 to 255 along the scale.
+    values: String,
+}
+
+#[derive(Serialize)]
+struct Tool {
+    /// Lines of the profile: `d, z` of both ends, and 1 if it cuts.
+    lines: Vec<[f64; 5]>,
+}
+
+#[derive(Serialize)]
+struct PlaceRow {
+    body: Option<usize>,
+    tool: Option<usize>,
+    tip: Option<[f64; 3]>,
+    axis: Option<[f64; 3]>,
+    target: [f64; 3],
+    toward: [f64; 3],
+    extent: f64,
+    cut: f64,
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(
+        (shown, layers): (&'a [Shown], &'a [Layer]),
+        shapes: &[ToolShape],
+        places: &[Option<Place>],
+        unit: Unit,
+    ) -> Scene<'a> {
+        let tool = |shape: &ToolShape| Tool {
+            lines: shape
+                .lines
+                .iter()
+                .map(|(from, to, cuts)| {
+                    [from[0], from[1], to[0], to[1], f64::from(u8::from(*cuts))]
+                })
+                .collect(),
+        };
+        let place = |place: &Place| {
+            let pose = place.tool.as_ref().map(|(_, pose)| pose);
+            PlaceRow {
+                body: place.body,
+                tool: place.tool.as_ref().map(|(tool, _)| *tool),
+                tip: pose.map(|pose: &Pose| pose.tip().into()),
+                axis: pose.map(|pose| pose.axis().into()),
+                target: place.target.into(),
+                toward: place.toward.into(),
+                extent: place.extent,
+                cut: place.cut(),
+            }
+        };
+        const COLOURS: usize = 33;
+        Scene {
+            unit: unit.symbol(),
+            bodies: shown.iter().map(Body::new).collect(),
+            layers: layers.iter().map(LayerRow::new).collect(),
+            tools: shapes.iter().map(tool).collect(),
+            places: places.iter().map(|known| known.as_ref().map(place)).collect(),
+            colours: (0..COLOURS).map(|k| colormap(k as f64 / (COLOURS - 1) as f64)).collect(),
+        }
+    }
+
+    /// Returns the greatest difference of a shown coordinate from the one of the file.
+    pub(super) fn rounding_error(&self) -> f64 {
+        let steps = self.bodies.iter().flat_map(|body| body.step);
+        0.5 * steps.fold(0.0, f64::max)
+    }
+}
+
+impl<'a> Body<'a> {
+    fn new(shown: &'a Shown) -> Body<'a> {
+        let first = shown.vertices.first().copied().unwrap_or_default();
+        let ends = shown.vertices.iter();
+        let (low, high) =
+            ends.fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex)));
+        let step = (high - low) / COORDINATE_STEPS;
+        let vertices = shown.vertices.iter().flat_map(|vertex| {
+            [0, 1, 2].map(|k| {
+                let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
+                steps.round() as u16
+            })
+        });
+        let triangles = shown.triangles.iter().flatten();
+        Body {
+            name: &shown.name,
+            own_frame: shown.has_own_frame,
+            low: low.into(),
+            step: step.into(),
+            vertices: base64(vertices.flat_map(u16::to_le_bytes)),
+            triangles: base64(triangles.flat_map(|vertex| vertex.to_le_bytes())),
+        }
+    }
+}
+
+impl<'a> LayerRow<'a> {
+    fn new(layer: &'a Layer) -> LayerRow<'a> {
+        let scale = &layer.scale;
+        let byte = |value: &Option<f64>| {
+            value.map_or(0, |value| 1 + (scale.share(value) * COLOUR_STEPS).round() as u8)
+        };
+        LayerRow {
+            body: layer.body,
+            quantity: &scale.quantity,
+            ends: scale.has_values.then_some(&scale.ends),
+            nothing: scale.nothing,
+            values: base64(layer.values.iter().map(byte)),
+        }
+    }
+}
+
+/// Returns bytes as base64.
+pub(super) fn base64(bytes: impl Iterator<Item = u8>) -> String {
+    STANDARD.encode(bytes.collect::<Vec<u8>>())
+}
+
+/// Returns a value as JSON that may stand in a script element: `<` is written as its code, so that no text ends it.
+///
+/// # Errors
+/// If the value has no JSON form.
+pub(super) fn json(value: &impl Serialize) -> Result<String, serde_json::Error> {
+    Ok(serde_json::to_string(value)?.replace('<', "\\u003c"))
+}
