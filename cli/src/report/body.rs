@@ -17,16 +17,18 @@ pub(super) struct Shown {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The triangle of the file that each triangle is a piece of.
     pub(super) sources: Vec<u32>,
+    /// Set for a fixture, as opposed to the part and the stock.
+    pub(super) is_fixture: bool,
     /// Set if the body has a frame of its own, in which the tool's poses at it are given.
     pub(super) has_own_frame: bool,
 }
 
 impl Shown {
     /// Divides the triangles of a mesh.
-    pub(super) fn new(name: &str, mesh: &Mesh, has_own_frame: bool) -> Shown {
+    pub(super) fn new(name: &str, mesh: &Mesh, [is_fixture, has_own_frame]: [bool; 2]) -> Shown {
         let mut longest = extent(mesh.vertices()) / PIECES;
         loop {
-            let shown = Shown::divided((name, mesh, has_own_frame), longest);
+            let shown = Shown::divided((name, mesh, [is_fixture, has_own_frame]), longest);
             match shown {
                 Some(shown) => return shown,
                 None => longest *= 1.5,
@@ -35,13 +37,17 @@ impl Shown {
     }
 
     /// Divides edges that are longer than `longest`; `None` if that makes too many triangles.
-    fn divided((name, mesh, has_own_frame): (&str, &Mesh, bool), longest: f64) -> Option<Shown> {
+    fn divided(
+        (name, mesh, [is_fixture, has_own_frame]): (&str, &Mesh, [bool; 2]),
+        longest: f64,
+    ) -> Option<Shown> {
         let mut shown = Shown {
             name: name.to_owned(),
             unit: mesh.unit(),
             vertices: mesh.vertices().to_vec(),
             triangles: Vec::new(),
             sources: Vec::new(),
+            is_fixture,
             has_own_frame,
         };
         let limit = MAX_TRIANGLES.max(mesh.triangles().len());
@@ -111,7 +117,7 @@ mod tests {
     fn pieces_are_short_and_cover_the_mesh() {
         let (low, high) = (Point3::new(0.0, 0.0, 0.0), Point3::new(8.0, 3.0, 1.0));
         let cuboid = shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid");
-        let shown = Shown::new("part", &cuboid, false);
+        let shown = Shown::new("part", &cuboid, [false; 2]);
         let area = |[a, b, c]: [Point3<f64>; 3]| 0.5 * (b - a).cross(&(c - a)).norm();
         let mut areas = vec![0.0; cuboid.triangles().len()];
         for (corners, source) in shown.corners().zip(&shown.sources) {

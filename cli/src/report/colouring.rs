@@ -170,6 +170,7 @@ pub(super) fn stock(
         vertices: mesh.vertices().to_vec(),
         triangles: mesh.triangles().to_vec(),
         sources: (0..mesh.triangles().len() as u32).collect(),
+        is_fixture: false,
         has_own_frame: false,
     };
     let quantity = format!("material left over the finished part, {unit}");

@@ -147,7 +147,10 @@ impl<'a> Content<'a> {
         let start = Instant::now();
         let mut shown: Vec<Shown> = bodies
             .iter()
-            .map(|body| Shown::new(&body.name, &body.mesh, body.has_own_frame()))
+            .enumerate()
+            .map(|(index, body)| {
+                Shown::new(&body.name, &body.mesh, [index > 0, body.has_own_frame()])
+            })
             .collect();
         let mut layers = Vec::new();
         for (index, body) in shown.iter().enumerate() {
@@ -177,8 +180,9 @@ impl<'a> Content<'a> {
             inputs.tools.iter().map(|tool| ToolShape::new(tool.tool().info(), unit)).collect();
         let places: Vec<Option<Place>> =
             entries.iter().map(|entry| Place::of(entry, (inputs, &shown), &shapes)).collect();
-        let scene = Scene::new((&shown, &layers), &shapes, &places, unit);
         let pictures = Pictures { inputs, shown: &shown, layers: &layers, shapes: &shapes };
+        let title = format!("{}: {}", Escaped(&file_name(&inputs.job.part)), pictures.subtitle());
+        let scene = Scene::new((&shown, &layers), &shapes, &places, (&title, unit));
         let sheets = layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
         let mut close_ups = Vec::new();
         for (index, (entry, place)) in entries.iter().zip(&places).enumerate() {

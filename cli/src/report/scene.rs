@@ -17,6 +17,8 @@ const COLOUR_STEPS: f64 = 254.0;
 
 #[derive(Serialize)]
 pub(super) struct Scene<'a> {
+    /// The part, the program, the tools and the unit.
+    title: &'a str,
     unit: &'static str,
     bodies: Vec<Body<'a>>,
     layers: Vec<LayerRow<'a>>,
@@ -30,6 +32,9 @@ pub(super) struct Scene<'a> {
 #[derive(Serialize)]
 struct Body<'a> {
     name: &'a str,
+    /// Set for a fixture.
+    fixture: bool,
+    /// Set if the tool's poses at it are in a frame of its own.
     own_frame: bool,
     /// Lowest corner of its box, and the lengths of the steps of rounded coordinates.
     low: [f64; 3],
@@ -73,7 +78,7 @@ impl<'a> Scene<'a> {
         (shown, layers): (&'a [Shown], &'a [Layer]),
         shapes: &[ToolShape],
         places: &[Option<Place>],
-        unit: Unit,
+        (title, unit): (&'a str, Unit),
     ) -> Scene<'a> {
         let tool = |shape: &ToolShape| Tool {
             lines: shape
@@ -99,6 +104,7 @@ impl<'a> Scene<'a> {
         };
         const COLOURS: usize = 33;
         Scene {
+            title,
             unit: unit.symbol(),
             bodies: shown.iter().map(Body::new).collect(),
             layers: layers.iter().map(LayerRow::new).collect(),
@@ -131,6 +137,7 @@ impl<'a> Body<'a> {
         let triangles = shown.triangles.iter().flatten();
         Body {
             name: &shown.name,
+            fixture: shown.is_fixture,
             own_frame: shown.has_own_frame,
             low: low.into(),
             step: step.into(),
