@@ -25,8 +25,8 @@ Examples:
 
 Exit status:
   0  success; `verify` without findings, `check` without warnings
-  1  failure, or something is wrong: findings of `verify`, errors of `check`, files that `fmt --check` would
-     rewrite
+  1  failure, or something is wrong: findings of `verify` and `report`, errors of `check`, files that
+     `fmt --check` would rewrite
   2  wrong options, an output that is also an input, a part whose inside is undefined where it is needed, or a
      program that could not be checked
   3  `check` only warns; `import` or `export` left a tool out
@@ -41,8 +41,8 @@ disk, is a failure. A file is replaced once it is whole: one that cannot be writ
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    /// Print JSON, one object per row: per pose, per tool or per line of a table. `sample`, `expand` and `draw`
-    /// print no rows.
+    /// Print JSON, one object per row: per pose, per tool or per line of a table. `report`, `sample`, `expand` and
+    /// `draw` print no rows.
     #[arg(long, global = true)]
     pub(crate) json: bool,
 }

@@ -49,12 +49,9 @@ impl Overlay {
     /// Writes a line of text that is shortened to a width.
     pub(super) fn title(&mut self, at: [f64; 2], (size, room): (f64, f64), text: &str) {
         let mut shown = text.to_owned();
-        while width(&shown, size) > room && shown.pop().is_some() {
-            shown = format!("{}...", shown.trim_end_matches('.'));
-            let kept = shown.trim_end_matches('.').len();
-            if width(&shown, size) > room {
-                shown.truncate(kept);
-            }
+        let mut kept = text.to_owned();
+        while width(&shown, size) > room && kept.pop().is_some() {
+            shown = format!("{kept}...");
         }
         self.text(at, size, &shown);
     }

@@ -84,22 +84,34 @@ pub(crate) fn sheet(
     sheet.png()
 }
 
-/// Draws what a camera sees, with axes and a scale of length, as a PNG.
+/// Draws what a camera sees, with axes, a scale of length and the legend, as a PNG.
 ///
 /// # Errors
 /// If the picture cannot be made.
 pub(crate) fn close_up(
     facets: impl Iterator<Item = Facet>,
     camera: &Camera,
-    (heading, unit): (&Heading, Unit),
-    [width, height]: [usize; 2],
+    (heading, scale, unit): (&Heading, &Scale, Unit),
+    [columns, rows]: [usize; 2],
 ) -> Result<Vec<u8>, Failure> {
     const TITLE: usize = 52;
-    let mut sheet = Sheet::new([width, TITLE + height])?;
-    sheet.view(facets, camera, ([0, TITLE], [width, height]), unit);
-    let room = width as f64 - 24.0;
+    const LEGEND: usize = 34;
+    let mut sheet = Sheet::new([columns, TITLE + rows + LEGEND])?;
+    sheet.view(facets, camera, ([0, TITLE], [columns, rows]), unit);
+    let room = columns as f64 - 24.0;
     sheet.overlay.title([12.0, 22.0], (0.9 * LETTER, room), &heading.title);
     sheet.overlay.title([12.0, 43.0], (0.75 * LETTER, room), &heading.subtitle);
+    if scale.has_values {
+        let (size, base) = (0.7 * LETTER, (TITLE + rows) as f64 + 21.0);
+        let [low, high] = &scale.ends;
+        let left = 12.0 + width(low, size) + 8.0;
+        let wide = 0.5 * columns as f64 - left;
+        sheet.overlay.text([12.0, base], size, low);
+        ramp(&mut sheet.overlay, [left, base - 11.0], [wide, 12.0]);
+        sheet.overlay.text([left + wide + 8.0, base], size, high);
+        let legend = [left + wide + 24.0 + width(high, size), base];
+        sheet.overlay.title(legend, (size, room - legend[0]), &scale.quantity);
+    }
     sheet.png()
 }
 
@@ -165,17 +177,21 @@ fn legend(overlay: &mut Overlay, scale: &Scale, [columns, top]: [usize; 2]) {
     overlay.text([middle, base + 26.0], LETTER, quantity);
     overlay.rectangle([24.0, base + 40.0], [26.0; 2], NOTHING);
     overlay.text([24.0, base + 92.0], LETTER, scale.nothing);
-    const STEPS: usize = 120;
-    let step = (right - left) / STEPS as f64;
-    for k in 0..STEPS {
-        // A little wider than a step, so that no gap shows.
-        let share = (k as f64 + 0.5) / STEPS as f64;
-        let at = [left + step * k as f64, base + 40.0];
-        overlay.rectangle(at, [step + 0.5, 26.0], colormap(share));
-    }
+    ramp(overlay, [left, base + 40.0], [right - left, 26.0]);
     if scale.has_values {
         overlay.text([left, base + 92.0], LETTER, &ends[0]);
         overlay.text([right - width(&ends[1], LETTER), base + 92.0], LETTER, &ends[1]);
+    }
+}
+
+/// Draws the colours from the lowest to the greatest value.
+fn ramp(overlay: &mut Overlay, [left, top]: [f64; 2], [wide, high]: [f64; 2]) {
+    const STEPS: usize = 120;
+    let step = wide / STEPS as f64;
+    for k in 0..STEPS {
+        // A little wider than a step, so that no gap shows.
+        let share = (k as f64 + 0.5) / STEPS as f64;
+        overlay.rectangle([left + step * k as f64, top], [step + 0.5, high], colormap(share));
     }
 }
 

@@ -11,7 +11,7 @@ use touchoff::{Cloud, Law, Part, Probe, Sampling, SurfaceId};
 /// Number of positions per tool at which force and distances are computed.
 const SAMPLES: usize = 2000;
 /// Number of points of the part from which forces are summed.
-pub(super) const POINTS: usize = 20_000;
+pub(super) const POINTS: usize = 100_000;
 /// Tolerance of clearances, as a fraction of the tool's size.
 const CLEARANCE_TOLERANCE: f64 = 1.0 / 256.0;
 

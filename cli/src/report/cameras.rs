@@ -71,6 +71,12 @@ impl Place {
         }
     }
 
+    /// Returns whether the picture of this place also shows another one.
+    pub(super) fn shows(&self, other: &Place) -> bool {
+        let near = (other.target - self.target).norm() < 0.15 * self.extent;
+        self.body == other.body && near
+    }
+
     /// Returns the camera. What stands in front of the place is cut away.
     pub(super) fn camera(&self) -> Camera {
         let directions = [self.toward, Vector3::z()];

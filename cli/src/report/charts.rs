@@ -72,7 +72,8 @@ pub(super) fn along(along: &Along, (unit, limit): (Unit, f64)) -> Result<Vec<Cha
     }
     if along.samples.iter().any(|sample| sample.contact.is_some()) {
         let forces = line(&|sample| sample.contact.map(|(force, _)| force));
-        let nice = line(&|sample| sample.contact.map(|(_, niceness)| niceness));
+        let nice = along.samples.iter();
+        let nice = nice.filter_map(|sample| Some((sample.location as f64, sample.contact?.1)));
         charts.push(Chart {
             title: format!("Force where a cutting surface touches, {unit}³"),
             caption: format!(
@@ -84,7 +85,7 @@ pub(super) fn along(along: &Along, (unit, limit): (Unit, f64)) -> Result<Vec<Cha
         charts.push(Chart {
             title: "Niceness where a cutting surface touches".to_owned(),
             caption: format!("The least niceness of all points in contact, {steps}; 0 to 1."),
-            svg: draw(&along.lines, "niceness", &[Series::Line(GREEN, nice)])?,
+            svg: draw(&along.lines, "niceness", &[Series::Dots(GREEN, nice.collect())])?,
         });
     }
     Ok(charts)

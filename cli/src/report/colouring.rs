@@ -9,7 +9,7 @@ use nalgebra::Point3;
 use std::collections::HashMap;
 use touchoff::stock::PartComparison;
 use touchoff::verify::FindingKind;
-use touchoff::{Cloud, Part, Probe, TriangleId, Unit};
+use touchoff::{Cloud, Escaped, Part, Probe, TriangleId, Unit};
 
 /// A quantity on a body as it is shown.
 pub(super) struct Layer {
@@ -55,7 +55,8 @@ pub(super) fn depths(
             }
         }
     }
-    let quantity = format!("depth of the deepest finding, {}", shown.unit);
+    let place = if index == 0 { String::new() } else { format!(" in {}", Escaped(&shown.name)) };
+    let quantity = format!("depth of the deepest finding{place}, {}", shown.unit);
     let scale = scale_of_lengths(quantity, "no finding", &values, shown.unit);
     Ok(Layer { body: index, scale, values })
 }

@@ -181,12 +181,14 @@ impl<'a> Content<'a> {
         let places: Vec<Option<Place>> =
             entries.iter().map(|entry| Place::of(entry, (inputs, &shown), &shapes)).collect();
         let pictures = Pictures { inputs, shown: &shown, layers: &layers, shapes: &shapes };
-        let title = format!("{}: {}", Escaped(&file_name(&inputs.job.part)), pictures.subtitle());
+        let title = pictures.title();
         let scene = Scene::new((&shown, &layers), &shapes, &places, (&title, unit));
         let sheets = layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
-        let mut close_ups = Vec::new();
+        let mut close_ups: Vec<(usize, Picture)> = Vec::new();
         for (index, (entry, place)) in entries.iter().zip(&places).enumerate() {
-            if let (Some(place), true) = (place, close_ups.len() < CLOSE_UPS) {
+            let Some(place) = place else { continue };
+            let mut drawn = close_ups.iter().filter_map(|(drawn, _)| places[*drawn].as_ref());
+            if close_ups.len() < CLOSE_UPS && !drawn.any(|drawn| drawn.shows(place)) {
                 close_ups.push((index, pictures.close_up((index, entry), place)?));
             }
         }
@@ -260,10 +262,16 @@ impl Pictures<'_> {
         let line = format!("{}:{}", Escaped(&file_name(&self.inputs.job.program)), entry.line);
         let heading = Heading {
             title: format!("{}. {} at {line}", index + 1, entry.rule),
-            subtitle: Escaped(&entry.text).to_string(),
+            subtitle: self.title(),
         };
-        let png = close_up(facets, &place.camera(), (&heading, shown.unit), CLOSE_UP)?;
+        let png =
+            close_up(facets, &place.camera(), (&heading, &layer.scale, shown.unit), CLOSE_UP)?;
         Ok(Picture { caption: format!("{}. {line}: {}", index + 1, entry.text), png })
+    }
+
+    /// Describes the part, the program, the tools and the unit.
+    fn title(&self) -> String {
+        format!("{}: {}", Escaped(&file_name(&self.inputs.job.part)), self.subtitle())
     }
 
     /// Describes the program, the tools and the unit.

@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 use touchoff::postures::colormap;
-use touchoff::{Pose, Unit};
+use touchoff::{Escaped, Pose, Unit};
 
 /// Largest value of a rounded coordinate.
 const COORDINATE_STEPS: f64 = u16::MAX as f64;
@@ -168,10 +168,11 @@ pub(super) fn base64(bytes: impl Iterator<Item = u8>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// Returns a value as JSON that may stand in a script element: `<` is written as its code, so that no text ends it.
+/// Returns a value as JSON that may stand in a script element: `<` is written as its code, so that no text ends it, and so
+/// are characters that a display interprets.
 ///
 /// # Errors
 /// If the value has no JSON form.
 pub(super) fn json(value: &impl Serialize) -> Result<String, serde_json::Error> {
-    Ok(serde_json::to_string(value)?.replace('<', "\\u003c"))
+    Ok(Escaped(&serde_json::to_string(value)?).to_string().replace('<', "\\u003c"))
 }

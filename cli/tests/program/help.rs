@@ -4,10 +4,10 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "haptic", "sample", "bench", "import",
-    "export", "tools", "check", "explain", "fmt", "expand", "draw",
+    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "sample", "bench",
+    "import", "export", "tools", "check", "explain", "fmt", "expand", "draw",
 ];
 
 const TOOL: &str = "tool My {

@@ -93,7 +93,7 @@ fn joined(meshes: &[Mesh]) -> Mesh {
 }
 
 /// Returns the job of docs/verify.md, and a folder with its files.
-fn bracket() -> (Bench, String) {
+pub(super) fn bracket() -> (Bench, String) {
     let bench = Bench::new();
     bench.part("bracket.stl", &cuboid([-30.0, -20.0, -30.0], [30.0, 20.0, 0.0]));
     let jaws = [

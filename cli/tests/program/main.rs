@@ -16,6 +16,7 @@ mod params;
 mod parts;
 mod postures;
 mod proofs;
+mod report;
 mod tools;
 mod verify;
 

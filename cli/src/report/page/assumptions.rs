@@ -20,8 +20,8 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
                 tbody {
                     @for file in &content.files {
                         tr {
-                            td { (plain(&file.role)) }
-                            td { (plain(&file.name)) }
+                            td.name { (plain(&file.role)) }
+                            td.text { (plain(&file.name)) }
                             td.number { (file.bytes) }
                             td { code { (file.digest) } }
                         }
@@ -58,13 +58,13 @@ fn lines(content: &Content<'_>) -> Vec<String> {
         lines.push(format!("Allowances: {}.", allowed.join("; ")));
     }
     match &inputs.program {
-        CheckedProgram::Locations(program) => {
+        CheckedProgram::Locations(programs) => {
             lines.push(
                 "Between two positions the tip moves on a straight line and the axis turns evenly about the common normal of \
                  both axes."
                     .to_owned(),
             );
-            if let Some(words) = ignored_words(program) {
+            if let Some(words) = ignored_words(programs) {
                 lines.push(format!("Words that move nothing were ignored: {words}."));
             }
         }

@@ -23,10 +23,10 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
                             tr id={ "finding-" (index + 1) } {
                                 td.number { (index + 1) }
                                 td { span.badge.(class) { (severity) } }
-                                td { (entry.rule) }
+                                td.name { (entry.rule) }
                                 td.number { (entry.line) }
                                 td.number { (lines(entry.lines)) }
-                                td { (plain(&entry.text)) }
+                                td.text { (plain(&entry.text)) }
                                 td {
                                     @if content.has_place[index] {
                                         button.show type="button" data-finding=(index) { "show" }
@@ -39,10 +39,13 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
             }
             @if !content.close_ups.is_empty() {
                 h3 { "The worst in pictures" }
-                p.note { "The tool is drawn as glass, orange where it cuts. What stands in front of the place is cut away." }
+                p.note { "The tool is drawn as glass, orange where it cuts. What stands in front of the place is cut away. Findings near a worse one are left out." }
                 div.close-ups {
                     @for (index, close_up) in &content.close_ups {
-                        figure { a href={ "#finding-" (index + 1) } { (picture(close_up)) } }
+                        figure {
+                            a href={ "#finding-" (index + 1) } { (picture(close_up)) }
+                            figcaption { (plain(&content.entries[*index].text)) }
+                        }
                     }
                 }
             }

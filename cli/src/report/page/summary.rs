@@ -19,7 +19,7 @@ pub(super) fn section(content: &Content<'_>, title: &str) -> Markup {
             h2 { "Summary" }
             table.plain {
                 @for (key, values) in rows(content) {
-                    tr { th { (key) } td { @for value in &values { div { (value) } } } }
+                    tr { th { (key) } td.text { @for value in &values { div { (value) } } } }
                 }
             }
         }

@@ -290,7 +290,7 @@
   function colour(layer) {
     state.layer = layer;
     state.main = scene.layers[layer].body;
-    paint(bodies[state.main], scene.layers[layer]);
+    bodies.forEach((body, index) => paint(body, index === state.main ? scene.layers[layer] : null));
   }
 
   let flight = 0;
