@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use touchoff::AtomicFile;
 
+/// The digests of the Rust of all tools, which a test compares with the compiler's output. Figures of generated code change
+/// with them, and not with the compiler's sources.
+pub const GENERATED_CODE: &str = "tests/tests/compiler/snapshots/compiler__generated__digests.snap";
+
 /// A page of measurements and the files that belong to it.
 #[derive(Clone, Debug, Default)]
 pub struct Page {

@@ -6,7 +6,7 @@ use super::plots::{improving_front, plot};
 use super::row::{Label, Quantity, Row};
 use super::table::{cells, format_error, format_micros, format_setting};
 use super::{Measurements, Plan, SceneInfo};
-use crate::page::{Page, Section};
+use crate::page::{GENERATED_CODE, Page, Section};
 use std::fmt::{Error, Write};
 
 /// The prefix of all file names.
@@ -44,11 +44,8 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
             "runtime/src/pose.rs",
             "runtime/src/probe",
             "runtime/src/tool",
-            "tool-dsl/src",
-            ":!tool-dsl/src/prove",
-            ":!tool-dsl/src/diagnostic",
-            ":!tool-dsl/src/draw",
-            ":!tool-dsl/src/format",
+            "tool-dsl/src/interpret",
+            GENERATED_CODE,
             "tools-library/tools",
         ],
         sections: vec![Section { title: "", body, missed_limits: Vec::new() }],

@@ -171,6 +171,17 @@ fn cutter_locations_change_tools() {
             (&3.into(), &"the vise".into(), &9.into())
         );
     }
+    let program = bench.write("two.apt", program(-12.0));
+    let part = bench.folder.path().join("bracket.stl").display().to_string();
+    let options = ["--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
+    for (command, expected) in [
+        ("verify", "the program uses T1 and T3: give its tools by number in a job file"),
+        ("run", "two.apt:6: another tool than that of line 3: give one program per tool"),
+    ] {
+        let one = touchoff(&[&[command][..], &options].concat());
+        assert_eq!(one.status.code(), Some(2));
+        assert!(stderr(&one).contains(expected), "{}", stderr(&one));
+    }
     let other = job(&bench, &text.replace("mill10", "face40"), &[]);
     assert_eq!(other.status.code(), Some(2));
     assert!(stderr(&other).contains("two.apt:6: CUTTER/10 is not `Face40`"), "{}", stderr(&other));

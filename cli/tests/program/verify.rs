@@ -160,7 +160,7 @@ fn unknown_statements_are_refused() {
     let bench = Bench::new();
     let part = bench.folder.path().join("block.stl").display().to_string();
     let words = "GOTOX/1,2,3|GO TO/1,2,3|LINEAR/1,2,3|ARC/1,2,3|DRILL/1|ORIGIN/0,0,35|CUTCOM/LEFT|MODE/INCR|\
-                 THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5";
+                 THICK/-5|HEAD/2|CUTTER/50|INSERT G0 Z-5";
     for word in words.split('|') {
         let text = PROGRAM
             .replace("RAPID\n", &format!("{word}\n"))
