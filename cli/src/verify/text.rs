@@ -61,7 +61,8 @@ pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) 
         None => text,
     };
     if let Some(Tilt { angle, axis }) = remedy.tilt {
-        let [i, j, k] = [axis.x, axis.y, axis.z];
+        // Adding 0 to a rounded value makes -0 a 0.
+        let [i, j, k] = [axis.x, axis.y, axis.z].map(|value| (value * 1e5).round() * 1e-5 + 0.0);
         // Writing to a String does not fail.
         let _ = write!(
             text,
