@@ -122,6 +122,9 @@ pub(crate) struct Path {
     /// Output file for the program: APT-CL in `.apt`, a table in `.csv`, G-code for a machine in `.nc`.
     #[arg(short, long, value_name = "OUT.apt|.csv|.nc")]
     pub(crate) output: PathBuf,
+    /// Output file for a picture of the points that are left out, by reason.
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) picture: Option<PathBuf>,
 }
 
 /// The machine of a G-code program.

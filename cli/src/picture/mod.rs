@@ -50,6 +50,14 @@ impl Scale {
     }
 }
 
+/// What the colours of a picture mean.
+pub(crate) enum Legend<'a> {
+    /// Values of a quantity.
+    Scale(&'a Scale),
+    /// A meaning per colour.
+    Keys(&'a [([u8; 3], String)]),
+}
+
 /// The lines above a picture.
 pub(crate) struct Heading {
     pub(crate) title: String,
@@ -63,7 +71,7 @@ pub(crate) struct Heading {
 /// If the picture cannot be made.
 pub(crate) fn sheet(
     facets: &[Facet],
-    (heading, scale): (&Heading, &Scale),
+    (heading, legend): (&Heading, &Legend<'_>),
     unit: Unit,
     side: usize,
 ) -> Result<Vec<u8>, Failure> {
@@ -80,7 +88,16 @@ pub(crate) fn sheet(
     let room = columns as f64 - 48.0;
     sheet.overlay.title([24.0, 34.0], (1.3 * LETTER, room), &heading.title);
     sheet.overlay.title([24.0, 64.0], (0.9 * LETTER, room), &heading.subtitle);
-    legend(&mut sheet.overlay, scale, [columns, rows - LEGEND]);
+    match legend {
+        Legend::Scale(scale) => scale_legend(&mut sheet.overlay, scale, [columns, rows - LEGEND]),
+        Legend::Keys(keys) => {
+            for (index, (colour, text)) in keys.iter().enumerate() {
+                let top = (rows - LEGEND) as f64 + 34.0 * index as f64;
+                sheet.overlay.rectangle([24.0, top + 4.0], [26.0; 2], *colour);
+                sheet.overlay.text([64.0, top + 24.0], LETTER, text);
+            }
+        }
+    }
     sheet.png()
 }
 
@@ -169,7 +186,7 @@ fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
 }
 
 /// Draws the colour scale below the views.
-fn legend(overlay: &mut Overlay, scale: &Scale, [columns, top]: [usize; 2]) {
+fn scale_legend(overlay: &mut Overlay, scale: &Scale, [columns, top]: [usize; 2]) {
     let (columns, base) = (columns as f64, top as f64);
     let (left, right) = (columns * 0.2, columns * 0.8);
     let Scale { quantity, ends, .. } = scale;

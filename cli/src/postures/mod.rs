@@ -2,6 +2,7 @@
 //! path over it. `picture` draws a map on its part; `post` and `joints` write G-code, and `prove` checks what is written.
 
 mod joints;
+mod left_out;
 pub(crate) mod map;
 pub(crate) mod path;
 pub(crate) mod picture;

@@ -1,5 +1,6 @@
 //! `touchoff path`: a program over all that a tool reaches.
 
+use super::left_out;
 use super::map::read_part;
 use super::post::{Post, Words};
 use super::prove::{Location, Prover, planning_rules};
@@ -88,7 +89,7 @@ impl<'a> Format<'a> {
 pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let format = Format::of(arguments)?;
     refuse_inputs(
-        [&*arguments.output],
+        [&*arguments.output].into_iter().chain(arguments.picture.as_deref()),
         [&*arguments.map, &arguments.part, Path::new(&arguments.tool)]
             .into_iter()
             .chain(arguments.machine.machine.as_deref()),
@@ -140,7 +141,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     };
     let path = request.plan()?;
     let planned = path.locations.len();
-    let left_out =
+    let points_left_out =
         [LeftOutReason::NotReached, LeftOutReason::NoMotion].map(|why| path.count_left_out(why));
     let part = arguments.part.file_stem().unwrap_or_default().to_string_lossy();
     let header = AptHeader {
@@ -182,8 +183,8 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         contact_points: path.contact_points,
         inserted_locations: locations.len() - planned,
         points_left_out: path.left_out.len(),
-        points_not_reached: left_out[0],
-        points_without_motion: left_out[1],
+        points_not_reached: points_left_out[0],
+        points_without_motion: points_left_out[1],
         retracts: path.retracts,
         turn_before_smoothing_degrees: before,
         turn_degrees: after,
@@ -193,6 +194,10 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         first_upside_down_location: locations.iter().position(below),
     };
     write_file(&arguments.output, text)?;
+    if let Some(file) = &arguments.picture {
+        let part = (&mesh, &*arguments.part);
+        write_file(file, left_out::picture(part, (&tool.info().name, &path.left_out))?)?;
+    }
     let mut out = Output::lines();
     if json {
         serde_json::to_writer(&mut out, &summary)?;

@@ -3,13 +3,13 @@
 use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
 use crate::lengths::format_number;
-use crate::picture::{Heading, Scale, facets, sheet};
+use crate::picture::{Heading, Legend, Scale, facets, sheet};
 use std::path::Path;
 use touchoff::postures::{Directions, MapRow, PostureMap};
 use touchoff::{Escaped, Mesh, Unit};
 
 /// Side of a view, in pixels.
-const SIDE: usize = 700;
+pub(super) const SIDE: usize = 700;
 
 /// Renders a map on its part as a PNG.
 ///
@@ -25,11 +25,11 @@ pub(super) fn of(
     let facets: Vec<_> = facets(triangles, &values, &scale).collect();
     let title = format!("{}: {}", Escaped(&file_name(part)), scale.quantity);
     let heading = Heading { title, subtitle: describe(map) };
-    sheet(&facets, (&heading, &scale), mesh.unit(), SIDE)
+    sheet(&facets, (&heading, &Legend::Scale(&scale)), mesh.unit(), SIDE)
 }
 
 /// Returns the last part of a path.
-fn file_name(file: &Path) -> String {
+pub(super) fn file_name(file: &Path) -> String {
     file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 

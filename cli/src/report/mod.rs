@@ -21,7 +21,7 @@ use crate::arguments::Report;
 use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
 use crate::output::{extension, refuse_inputs, write_file};
-use crate::picture::{Heading, close_up, facets, sheet};
+use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::postures::picture::quantity;
 use crate::progress::Progress;
@@ -234,7 +234,8 @@ impl Pictures<'_> {
             if layer.body == 0 { file_name(&self.inputs.job.part) } else { shown.name.clone() };
         let title = format!("{}: {}", Escaped(&body), layer.scale.quantity);
         let heading = Heading { title: title.clone(), subtitle: self.subtitle() };
-        let png = sheet(&facets, (&heading, &layer.scale), shown.unit, SIDE)?;
+        let legend = Legend::Scale(&layer.scale);
+        let png = sheet(&facets, (&heading, &legend), shown.unit, SIDE)?;
         Ok(Picture { caption: title, png })
     }
 

@@ -1,6 +1,7 @@
 //! Sweeps, maps and paths: their output, their files and their error messages.
 
 use crate::bench::{Bench, stderr, stdout, touchoff};
+use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 use serde_json::Value;
 use std::process::Output;
 use touchoff::Unit;
@@ -251,6 +252,22 @@ fn verified(tube: &Tube, program: &str, more: &[&str]) {
     assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
 }
 
+/// Checks that a picture shows points of the colours of the reasons for which a path leaves points out.
+fn assert_picture_has_points(file: &str, summary: &Value) {
+    let picture = Pixmap::load_png(file).expect("a picture");
+    let keys = [("points_not_reached", [204, 60, 50]), ("points_without_motion", [40, 90, 200])];
+    // The legend shows each colour too, in its lowest part.
+    let above_legend = (picture.width() * (picture.height() - 120)) as usize;
+    for (key, [r, g, b]) in keys {
+        let is_point =
+            |pixel: &&PremultipliedColorU8| (pixel.red(), pixel.green(), pixel.blue()) == (r, g, b);
+        let pixels = picture.pixels()[..above_legend].iter().filter(is_point).count();
+        let count = summary[key].as_u64().expect("a number");
+        assert_eq!(pixels > 0, count > 0, "{key}: {count} points, {pixels} pixels");
+    }
+    assert!(summary["points_not_reached"].as_u64() > Some(0), "{summary}");
+}
+
 #[test]
 fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
     let tube = Tube::new();
@@ -292,7 +309,9 @@ fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
     let limit = 30f64.to_radians().cos();
     assert!(lowest(&text) < limit - 0.1, "without a limit the axis tilts more");
 
-    let tilted = object(&path(&tube, &output, &["--max-tilt", "30"]));
+    let picture = tube.place("left.png");
+    let tilted = object(&path(&tube, &output, &["--max-tilt", "30", "--picture", &picture]));
+    assert_picture_has_points(&picture, &tilted);
     assert_eq!(tilted["points_left_out"].as_u64(), Some(sum(&tilted)), "{tilted}");
     let text = std::fs::read_to_string(&output).expect("a program");
     assert!(lowest(&text) >= limit - 1e-9, "{}", lowest(&text));
