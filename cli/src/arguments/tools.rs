@@ -46,8 +46,8 @@ pub(crate) enum ToolsCommand {
 
 #[derive(Args)]
 pub(crate) struct Import {
-    /// Libraries: Fusion 360 (`.json`, `.tools`), Kiri:Moto and CAMotics (`.json`), FreeCAD (`.fctb`, `.fctl`,
-    /// `.fcholder`), HSM (`.hsmlib`), LinuxCNC (`.tbl`), APT and NX (`.apt`, `.cl`, `.cls`).
+    /// Libraries: Fusion 360 (`.json`, `.tools`), Kiri:Moto (`.json`), CAMotics (`.json`, `.camotics`), FreeCAD
+    /// (`.fctb`, `.fctl`, `.fcholder`), HSM (`.hsmlib`), LinuxCNC (`.tbl`), APT and NX (`.apt`, `.cl`, `.cls`).
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
     /// Output folder [default: the library's name, in the current folder].

@@ -1,4 +1,5 @@
-//! Tool tables of CAMotics, as JSON: an object with a tool for each number, or such an object `tools` in a project.
+//! Tool tables of CAMotics, as JSON: an object with a tool for each number, or such an object `tools` in a project
+//! (`.camotics`).
 //!
 //! A tool is one body of `length` from the tip: a cylinder, a cone, a cylinder with a ball as its end, or a truncated
 //! cone whose tip has the diameter `snub_diameter`.

@@ -24,10 +24,9 @@ pub enum ImportError {
     },
     /// Neither the name's ending nor the content is that of a format that can be read.
     #[error(
-        "{} is none of the formats that can be read: Fusion 360 (`.json`, `.tools`), Kiri:Moto and CAMotics \
-         (`.json`), FreeCAD (`.fctb`, `.fctl`, `.fcholder`), HSM (`.hsmlib`), LinuxCNC (`.tbl`), APT and NX (`.apt`, \
-         `.cl`, `.cls`): export the library in \
-         one of these", .file.display()
+        "{} is none of the formats that can be read: Fusion 360 (`.json`, `.tools`), Kiri:Moto (`.json`), \
+         CAMotics (`.json`, `.camotics`), FreeCAD (`.fctb`, `.fctl`, `.fcholder`), HSM (`.hsmlib`), LinuxCNC (`.tbl`), \
+         APT and NX (`.apt`, `.cl`, `.cls`): export the library in one of these", .file.display()
     )]
     UnknownFormat {
         /// The file.

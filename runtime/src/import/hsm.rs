@@ -1,8 +1,9 @@
 //! Tool libraries of HSMWorks and its kin (`.hsmlib`), as XML.
 //!
 //! Types and dimensions are those of Fusion 360, under longer names, so each tool is read as one of Fusion's. Two
-//! things differ: `taper-angle` is the whole angle of the point of a drill, and a `section` of a shaft or holder gives
-//! the diameter that the outline reaches after its length, so that the first one is the lower end.
+//! things differ: for tools that make holes `taper-angle` is the whole angle of the point, and `taper-angle2` that of a
+//! centre drill's body; and a `section` of a shaft or holder gives the diameter that the outline reaches after its
+//! length, so that the first one is the lower end.
 
 use super::{Found, fusion};
 use quick_xml::Reader;
@@ -12,7 +13,7 @@ use serde_json::{Map, Value, json};
 type Object = Map<String, Value>;
 
 /// The names of dimensions in HSM and in Fusion 360.
-const DIMENSIONS: [(&str, &str); 24] = [
+const DIMENSIONS: [(&str, &str); 25] = [
     ("axial-distance", "axial-distance"),
     ("body-length", "LB"),
     ("corner-radius", "RE"),
@@ -27,6 +28,7 @@ const DIMENSIONS: [(&str, &str); 24] = [
     ("shoulder-diameter", "shoulder-diameter"),
     ("shoulder-length", "shoulder-length"),
     ("taper-angle", "TA"),
+    ("taper-angle2", "taper-angle2"),
     ("thread-pitch", "TP"),
     ("thread-profile-angle", "thread-profile-angle"),
     ("thread-tip-radius", "thread-tip-radius"),
@@ -37,6 +39,18 @@ const DIMENSIONS: [(&str, &str); 24] = [
     ("tip-offset", "tip-offset"),
     ("upper-radius", "upper-radius"),
     ("assembly-gauge-length", "assemblyGaugeLength"),
+];
+
+/// The types that make holes. Fusion 360 states the angle of their point.
+const HOLE_MAKING: [&str; 8] = [
+    "drill",
+    "spot drill",
+    "center drill",
+    "counter sink",
+    "counter bore",
+    "reamer",
+    "boring bar",
+    "block drill",
 ];
 
 /// Reads the tools of a library.
@@ -53,7 +67,7 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
             Event::Start(element) => {
                 let name = local_name(&element);
                 match (name.as_str(), &mut open) {
-                    ("tool-library" | "tool-table", None) => is_library = true,
+                    (root, None) if is_root(root) => is_library = true,
                     ("tool", None) => open = Some(Tool::new(&element).map_err(|e| at(&e))?),
                     (_, Some(tool)) => tool.begin(&name, &element).map_err(|e| at(&e))?,
                     _ => {}
@@ -61,9 +75,12 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
             }
             Event::Empty(element) => {
                 let name = local_name(&element);
-                if let Some(tool) = &mut open {
-                    tool.begin(&name, &element).map_err(|e| at(&e))?;
-                    tool.end(&name);
+                match &mut open {
+                    Some(tool) => {
+                        tool.begin(&name, &element).map_err(|e| at(&e))?;
+                        tool.end(&name);
+                    }
+                    None => is_library |= is_root(&name),
                 }
             }
             Event::Text(text) => {
@@ -210,10 +227,16 @@ impl Tool {
 
     fn finish(mut self) -> Value {
         let kind = self.object.get("type").and_then(Value::as_str).unwrap_or("");
-        if matches!(kind, "drill" | "spot drill" | "counter sink")
+        let is_center_drill = kind == "center drill";
+        if HOLE_MAKING.contains(&kind)
             && let Some(angle) = self.geometry.remove("TA")
         {
             self.geometry.insert("SIG".to_owned(), angle);
+        }
+        if let Some(angle) = self.geometry.remove("taper-angle2")
+            && is_center_drill
+        {
+            self.geometry.insert("TA".to_owned(), angle);
         }
         self.object.insert("geometry".to_owned(), Value::Object(self.geometry));
         Value::Object(self.object)
@@ -233,6 +256,11 @@ fn segments(sections: &[(f64, f64)]) -> Value {
         below = *diameter;
     }
     Value::Array(segments)
+}
+
+/// Returns true for the root element of a library, in either of HSM's formats.
+fn is_root(name: &str) -> bool {
+    matches!(name, "tool-library" | "tool-table")
 }
 
 fn local_name(element: &BytesStart<'_>) -> String {

@@ -106,7 +106,7 @@ impl Library {
         let ending = file.extension().map(|ending| ending.to_ascii_lowercase());
         let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or("");
         let (format, found) = match ending {
-            "json" => (
+            "json" | "camotics" => (
                 "a tool library of Fusion 360, Kiri:Moto or CAMotics",
                 text(content).and_then(|t| json(&t)),
             ),
@@ -130,6 +130,9 @@ impl Library {
             format,
             reason,
         })?;
+        if found.is_empty() {
+            return Ok(Library::of(file, vec![Err(Problem::new("library", "it has no tools"))]));
+        }
         if found.len() > MAX_TOOLS {
             return Err(ImportError::TooManyTools { file: file.to_owned(), limit: MAX_TOOLS });
         }

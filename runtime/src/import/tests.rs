@@ -4,6 +4,7 @@ use super::{Entry, ImportError, Library, Note};
 use crate::tool::{Interpreted, Tool};
 use serde_json::{Value, json};
 
+mod formats;
 mod segments;
 mod threads;
 

@@ -1,0 +1,80 @@
+//! Entries as files of other programs have them, against the same tools in plain notation.
+
+use super::super::{ImportError, Library, Note};
+use super::{corners, fusion, library};
+use crate::tool::Tool;
+use serde_json::{Value, json};
+
+fn parse(name: &str, text: &str) -> Library {
+    Library::parse(name.as_ref(), text.as_bytes()).expect("a library")
+}
+
+/// Returns the corners of the outline of each tool.
+fn outlines(library: &Library) -> Vec<Vec<[f64; 2]>> {
+    assert!(library.skipped().is_empty(), "{:?}", library.skipped());
+    let corners = |tool: &super::super::ImportedTool| {
+        let tool = tool.load().expect("a tool");
+        tool.info().outline.iter().map(|segment| segment.to).collect()
+    };
+    library.tools().iter().map(corners).collect()
+}
+
+fn reasons(library: &Library) -> Vec<&str> {
+    library.skipped().iter().map(|skipped| &*skipped.reason).collect()
+}
+
+/// HSM has both angles of a centre drill, and the point of a reamer, as taper angles.
+#[test]
+fn angles_of_hole_making_tools_in_hsm_are_those_of_fusion() {
+    let tool = |kind: &str, angles: &str| {
+        parse(
+            "l.hsmlib",
+            &format!(
+                "<tool-library><tool type='{kind}' unit='millimeters'><body diameter='6' {angles} flute-length='12' \
+                 overall-length='36' shaft-diameter='6' tip-diameter='2' tip-length='2'/></tool></tool-library>"
+            ),
+        )
+    };
+    let plain = |kind: &str, angles: Value| {
+        let mut dimensions = json!({ "DC": 6, "LCF": 12, "OAL": 36, "SFDM": 6, "tip-diameter": 2,
+            "tip-length": 2 });
+        for (key, angle) in angles.as_object().expect("an object") {
+            dimensions[key] = angle.clone();
+        }
+        corners(&fusion(kind, &dimensions))
+    };
+    let center_drill = tool("center drill", "taper-angle='118' taper-angle2='90'");
+    assert_eq!(outlines(&center_drill)[0], plain("center drill", json!({ "SIG": 118, "TA": 90 })));
+    assert_eq!(
+        reasons(&tool("center drill", "taper-angle='118'")),
+        [
+            "the library does not state the body angle: correct it in the library and export it again"
+        ]
+    );
+    for kind in ["reamer", "counter bore", "boring bar"] {
+        let pointed = tool(kind, "taper-angle='120'");
+        assert_eq!(outlines(&pointed)[0], plain(kind, json!({ "SIG": 120 })), "{kind}");
+    }
+    let chamfer = tool("chamfer mill", "taper-angle='45' taper-angle2='5'");
+    assert_eq!(outlines(&chamfer)[0], plain("chamfer mill", json!({ "TA": 45 })));
+}
+
+#[test]
+fn a_library_without_tools_is_reported() {
+    let empty =
+        "<tool-library xmlns='http://www.hsmworks.com/xml/2004/cnc/tool-library' version='14'/>";
+    for (name, text) in
+        [("l.hsmlib", empty), ("l.json", r#"{ "data": [] }"#), ("l.tbl", "; none\n")]
+    {
+        assert_eq!(reasons(&parse(name, text)), ["it has no tools"], "{name}");
+    }
+}
+
+#[test]
+fn projects_of_camotics_are_read() {
+    let project = r#"{ "units": "metric", "tools": { "30": { "units": "metric", "shape": "conical",
+        "length": 12, "diameter": 10, "description": "" } }, "files": ["a.nc"] }"#;
+    assert_eq!(outlines(&parse("a.camotics", project)), [[[5.0, 12.0], [0.0, 12.0]]]);
+    let other = Library::parse("a.camotic".as_ref(), project.as_bytes());
+    assert!(matches!(other, Err(ImportError::UnknownFormat { .. })));
+}
