@@ -164,7 +164,7 @@ fn cutter(
             Shape::Form(form::profile(geometry.0.get("profile"))?)
         }
         "thread mill" => Shape::Thread {
-            pitch: geometry.require("TP", "thread pitch")?,
+            pitch: pitch(geometry, notes)?,
             angle: geometry.or("thread-profile-angle", "angle of the thread", 60.0, notes)?,
             teeth: geometry.or("NT", "number of teeth", 1.0, notes)?.clamp(1.0, 1e6) as u32,
             crest: crest(geometry, notes)?,
@@ -212,6 +212,16 @@ fn cutter(
         shoulder,
         shank_diameter: shank_diameter.filter(|shank| *shank > 0.0),
     })
+}
+
+/// Returns the pitch of a thread mill. Samples of Fusion 360 have 0, which states none.
+fn pitch(geometry: &Geometry<'_>, notes: &mut Vec<Note>) -> Result<f64, String> {
+    let pitch = geometry.require("TP", "thread pitch")?;
+    if pitch == 0.0 {
+        let drawn = "the teeth are drawn as a cylinder".to_owned();
+        notes.push(Note::Unstated("thread pitch", drawn));
+    }
+    Ok(pitch)
 }
 
 /// Returns the crests of a thread mill. They are points if their form or its size is not stated. Fusion 360 replaces a
@@ -267,7 +277,7 @@ fn sections(value: &Object) -> Result<Vec<Section>, String> {
         Some(_) => return Err("its `segments` are no list".to_owned()),
     };
     let length = |segment: &Value, key: &str| {
-        segment.get(key).and_then(Value::as_f64).ok_or_else(|| format!("a segment has no `{key}`"))
+        segment.get(key).and_then(number).ok_or_else(|| format!("a segment has no number `{key}`"))
     };
     list.iter()
         .map(|segment| {
@@ -288,8 +298,8 @@ impl Geometry<'_> {
     fn get(&self, key: &str) -> Result<Option<f64>, String> {
         match self.0.get(key) {
             None | Some(Value::Null) => Ok(None),
-            Some(value) => match value.as_f64().filter(|value| value.is_finite()) {
-                Some(value) => Ok(Some(value)),
+            Some(value) => match number(value) {
+                Some(number) => Ok(Some(number)),
                 None => Err(format!("its `{key}` is {value}, no number")),
             },
         }
@@ -327,7 +337,13 @@ pub(super) fn tool_number(value: &Value) -> Option<u32> {
 
 /// Returns a finite number of an object.
 pub(super) fn number_of(object: &Object, key: &str) -> Option<f64> {
-    object.get(key).and_then(Value::as_f64).filter(|value| value.is_finite())
+    object.get(key).and_then(number)
+}
+
+/// Returns a finite number. Some libraries have numbers as texts.
+fn number(value: &Value) -> Option<f64> {
+    let stated = value.as_f64().or_else(|| value.as_str()?.trim().parse().ok());
+    stated.filter(|number| number.is_finite())
 }
 
 /// Returns a text of an object without blanks around it; empty if there is none.

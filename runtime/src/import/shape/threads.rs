@@ -78,9 +78,10 @@ impl Cutter {
         if !(0.0..180.0).contains(&angle) || angle == 0.0 {
             return Err(ShapeError::OutOfRange("thread profile angle", angle));
         }
-        if pitch <= 0.0 {
+        if pitch == 0.0 {
             return self.flat(outline, radius, 0.0);
         }
+        positive("thread pitch", pitch)?;
         let count = self.whole_pitches(pitch).min(f64::from(teeth.max(1)));
         if count > MAX_TEETH {
             return Err(ShapeError::Contradiction(

@@ -71,6 +71,31 @@ fn a_library_without_tools_is_reported() {
 }
 
 #[test]
+fn numbers_may_be_texts_in_fusion() {
+    let mut tool = fusion("flat end mill", &json!({ "DC": "6.5", "SFDM": 6 }));
+    let holder = json!({ "type": "holder", "unit": "millimeters", "description": "H",
+        "segments": [{ "height": 15, "lower-diameter": "44", "upper-diameter": 40 }] });
+    tool["holder"] = holder;
+    let text = corners(&tool);
+    tool["geometry"]["DC"] = json!(6.5);
+    tool["holder"]["segments"][0]["lower-diameter"] = json!(44);
+    assert_eq!(text, corners(&tool));
+    tool["holder"]["segments"][0]["lower-diameter"] = json!("44 mm");
+    let reason = library(&tool).skipped()[0].reason.clone();
+    assert_eq!(reason, "its holder: a segment has no number `lower-diameter`");
+}
+
+#[test]
+fn a_thread_mill_without_a_pitch_is_a_cylinder_with_a_note() {
+    let tool = |pitch: f64| fusion("thread mill", &json!({ "TP": pitch, "NT": 1, "SFDM": 10 }));
+    assert_eq!(corners(&tool(0.0)), corners(&fusion("flat end mill", &json!({ "SFDM": 10 }))));
+    let notes = library(&tool(0.0)).tools()[0].entry.notes.clone();
+    let is_pitch = |note: &&Note| matches!(note, Note::Unstated("thread pitch", _));
+    assert_eq!(notes.iter().filter(is_pitch).count(), 1, "{notes:?}");
+    assert!(library(&tool(-1.0)).skipped()[0].reason.contains("thread pitch is -1"));
+}
+
+#[test]
 fn projects_of_camotics_are_read() {
     let project = r#"{ "units": "metric", "tools": { "30": { "units": "metric", "shape": "conical",
         "length": 12, "diameter": 10, "description": "" } }, "files": ["a.nc"] }"#;
