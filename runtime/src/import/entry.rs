@@ -217,6 +217,12 @@ impl Entry {
     pub(super) fn add_notes(&mut self) {
         let Some(cutter) = &self.cutter else { return };
         let mut notes = Vec::new();
+        let reach = self.stickout.filter(|_| self.holder.is_some()).unwrap_or(0.0);
+        let has_other_shank = cutter.shank_diameter.is_some_and(|shank| shank != cutter.diameter);
+        if has_other_shank && cutter.flute_length == cutter.length.max(reach) {
+            let drawn = "the flutes reach the overall length, so no shank is drawn".to_owned();
+            notes.push(Note::Unstated("length of the shank", drawn));
+        }
         if let (Some(holder), Some(stickout)) = (&self.holder, self.stickout) {
             if cutter.flute_length > stickout {
                 notes.push(Note::FlutesInHolder { flutes: cutter.flute_length, stickout });

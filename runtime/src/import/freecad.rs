@@ -1,7 +1,7 @@
 //! Tool bits (`.fctb`), libraries (`.fctl`) and holders (`.fcholder`) of FreeCAD.
 //!
-//! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units. A bit whose shape was
-//! changed by its user cannot be told from one of FreeCAD's own.
+//! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units, whose decimals follow a
+//! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
 use super::entry::{Entry, Holder, Note, Section};
 use super::fusion::tool_number;
@@ -42,7 +42,9 @@ fn listed_bit(tool: &Value, folder: &Path) -> Found {
         folder.join("Bit").join(relative),
     ];
     let Some(file) = places.iter().find(|place| place.is_file()) else {
-        return Err(problem("there is no such file beside the library: copy it there".to_owned()));
+        let reason =
+            "there is no such file in the library's folder, `Bit` or `../Bit`: copy it there";
+        return Err(problem(reason.to_owned()));
     };
     let content = bytes(file).map_err(|error| problem(error.to_string()))?;
     let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
@@ -112,12 +114,31 @@ fn entry(unit: Unit, kind: &str, title: &str, object: &Object) -> Entry {
     Entry::new(unit, kind, title, origin.collect())
 }
 
-fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cutter, String> {
+fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cutter, String> {
+    // Releases of FreeCAD differ in `-` and `_`, and have other names for two shapes.
+    let plain = stated.replace(['-', '_'], "");
+    let shape = match plain.as_str() {
+        "torus" => "bullnose",
+        "taperballnose" | "conicalballnose" => "taperedballnose",
+        other => other,
+    };
+    if shape.starts_with("iso") {
+        return Err("it is a turning insert, which is no solid of revolution".to_owned());
+    }
     let length = of.length("Length")?;
     let shank = if shape == "probe" { "ShaftDiameter" } else { "ShankDiameter" };
     let shank_diameter = of.optional_length(shank)?;
     if shank_diameter.is_none() {
         notes.push(Note::no_shank_diameter());
+    }
+    if shape != "taperedballnose"
+        && let Some(angle) = of.optional_angle("TaperAngle")?.filter(|angle| *angle != 0.0)
+    {
+        notes.push(Note::Contradiction {
+            first: ("taper angle", angle),
+            second: ("taper angle of the shape", 0.0),
+            taken: "shape",
+        });
     }
     let mut shoulder = None;
     let flutes = || of.length("CuttingEdgeHeight");
@@ -139,7 +160,7 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             }
             (Shape::Cone { tip_diameter, half_angle }, flutes()?)
         }
-        "v-bit" | "vbit" => {
+        "vbit" => {
             let tip_diameter = of.length_or("TipDiameter", "tip diameter", 0.0, notes)?;
             let point_angle = of.angle("CuttingEdgeAngle")?;
             let cone = (diameter - tip_diameter) / 2.0 / (point_angle / 2.0).to_radians().tan();
@@ -155,7 +176,15 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
                 flutes()?,
             )
         }
-        "drill" => (Shape::Drill { tip_diameter: 0.0, point_angle: of.angle("TipAngle")? }, length),
+        "drill" => {
+            // FreeCAD draws flutes up to the end; vendors state their length for the sake of a wider shank.
+            let flutes = of.optional_length("CuttingEdgeHeight")?.unwrap_or_else(|| {
+                let drawn = "the flutes reach the end of the tool".to_owned();
+                notes.push(Note::Unstated("flute length", drawn));
+                length
+            });
+            (Shape::Drill { tip_diameter: 0.0, point_angle: of.angle("TipAngle")? }, flutes)
+        }
         "tap" => {
             let point_angle = of.angle("TipAngle")?;
             let cone = diameter / 2.0 / (point_angle / 2.0).to_radians().tan();
@@ -191,16 +220,16 @@ fn cutter(shape: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cut
             });
         }
         "probe" => (Shape::Probe, diameter / 2.0),
-        "thread-mill" | "threadmill" => {
+        "threadmill" => {
             let neck_diameter = of.length("NeckDiameter")?;
             shoulder = Some((of.length("NeckLength")?, Some(neck_diameter)));
             let crest = of.length_or("Crest", "width of the crest", 0.0, notes)?;
             let key =
                 if of.0.contains_key("CuttingAngle") { "CuttingAngle" } else { "cuttingAngle" };
-            let angle = of.angle(key)?;
+            let angle = of.angle_or(key, "angle of the thread", 60.0, notes)?;
             (Shape::Tooth { neck_diameter, crest, angle }, diameter / 2.0)
         }
-        other => return Err(format!("the shape `{other}` is none of FreeCAD's own")),
+        _ => return Err(format!("the shape `{stated}` is none of FreeCAD's own")),
     };
     Ok(Cutter { shape, diameter, flute_length, length, shoulder, shank_diameter })
 }
@@ -252,12 +281,27 @@ impl Parameters<'_> {
 
     /// Returns an angle in degrees.
     fn angle(&self, key: &str) -> Result<f64, String> {
+        self.optional_angle(key)?.ok_or_else(|| format!("it does not state its `{key}`"))
+    }
+
+    fn optional_angle(&self, key: &str) -> Result<Option<f64>, String> {
         self.quantity(key, |unit| match unit {
             "" | "°" | "deg" => Some(1.0),
             "rad" => Some(180.0 / std::f64::consts::PI),
             _ => None,
-        })?
-        .ok_or_else(|| format!("it does not state its `{key}`"))
+        })
+    }
+
+    /// Returns an angle in degrees, or a default with a note.
+    fn angle_or(
+        &self,
+        key: &str,
+        name: &'static str,
+        default: f64,
+        notes: &mut Vec<Note>,
+    ) -> Result<f64, String> {
+        let angle = self.optional_angle(key)?;
+        Ok(angle.unwrap_or_else(|| Note::default_taken(notes, name, default)))
     }
 
     fn quantity(
@@ -272,10 +316,15 @@ impl Parameters<'_> {
             Some(other) => return Err(format!("its `{key}` is {other}, no quantity")),
         };
         let end = text
-            .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e' | 'E')))
+            .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+' | 'e' | 'E')))
             .unwrap_or(text.len());
         let (number, unit) = text.split_at(end);
-        let value: Option<f64> = number.parse().ok();
+        let value: Option<f64> = match number.split_once(',') {
+            Some((whole, decimals)) if !decimals.contains(['.', ',']) => {
+                format!("{whole}.{decimals}").parse().ok()
+            }
+            _ => number.parse().ok(),
+        };
         match (value.filter(|value| value.is_finite()), factor(unit.trim())) {
             (Some(value), Some(1.0)) => Ok(Some(value)),
             (Some(value), Some(factor)) => Ok(Some(super::term::rounded(value * factor))),

@@ -6,7 +6,7 @@ mod other;
 mod segments;
 mod threads;
 
-use super::outline::{Outline, Surface, cutting, plain};
+use super::outline::{Outline, SAME, Surface, cutting, plain};
 use super::term::Term;
 use other::form;
 pub(super) use threads::Crest;
@@ -361,7 +361,12 @@ impl Cutter {
         let d = match self.shank_diameter {
             Some(diameter) => {
                 positive("shank diameter", diameter)?;
-                outline.known_or_param("shank_diameter", diameter).half()
+                // A shank without a length would be a step that turns straight back.
+                if self.length - from.1.value() <= SAME * self.length {
+                    from.0.clone()
+                } else {
+                    outline.known_or_param("shank_diameter", diameter).half()
+                }
             }
             None => from.0.clone(),
         };

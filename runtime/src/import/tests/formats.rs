@@ -96,6 +96,76 @@ fn a_thread_mill_without_a_pitch_is_a_cylinder_with_a_note() {
 }
 
 #[test]
+fn freecad_has_commas_and_names_of_other_releases() {
+    let bit = |shape: &str, parameters: &str| {
+        parse(
+            "b.fctb",
+            &format!(
+                r#"{{ "name": "b", "shape": "{shape}.fcstd", "parameter": {{ "Diameter": "5,00 mm",
+                "Length": "58,5 mm", "ShankDiameter": "5 mm", {parameters} }} }}"#
+            ),
+        )
+    };
+    let endmill = bit("endmill", r#""CuttingEdgeHeight": "30.25 mm""#);
+    assert_eq!(outlines(&endmill), [[[2.5, 0.0], [2.5, 30.25], [2.5, 58.5], [0.0, 58.5]]]);
+    let wrong = bit("endmill", r#""CuttingEdgeHeight": "1,030.25 mm""#);
+    assert_eq!(
+        reasons(&wrong),
+        ["its `CuttingEdgeHeight` is `1,030.25 mm`, no number with a unit"]
+    );
+    let cut = r#""CuttingEdgeHeight": "30 mm", "TipDiameter": "1 mm", "CuttingEdgeAngle": "60 °""#;
+    let torus = r#""CuttingEdgeHeight": "30 mm", "TorusRadius": "1 mm""#;
+    for (name, other, parameters) in [("v-bit", "v_bit", cut), ("bullnose", "torus", torus)] {
+        assert_eq!(outlines(&bit(name, parameters)), outlines(&bit(other, parameters)));
+    }
+    // FreeCAD's own thread cutter leaves the angle to its shape.
+    let tooth = r#""NeckDiameter": "3 mm", "NeckLength": "20 mm", "Crest": "0.1 mm""#;
+    let stated = bit("thread-mill", &format!(r#"{tooth}, "cuttingAngle": "60 °""#));
+    let unstated = bit("threadmill", tooth);
+    assert_eq!(outlines(&stated), outlines(&unstated));
+    assert_eq!(
+        unstated.tools()[0].entry.notes,
+        [Note::Unstated("angle of the thread", "taken: 60".to_owned())]
+    );
+    // A vendor's tapered ball on the shape of a straight one.
+    let tapered = bit("ballend", r#""CuttingEdgeHeight": "15 mm", "TaperAngle": "5.000 °""#);
+    let notes = &tapered.tools()[0].entry.notes;
+    assert!(matches!(notes[..], [Note::Contradiction { first: ("taper angle", 5.0), .. }]));
+    let insert =
+        parse("b.fctb", r#"{ "shape": "Iso_shape_C.fcstd", "parameter": { "TipAngle": "80 °" } }"#);
+    assert_eq!(reasons(&insert), ["it is a turning insert, which is no solid of revolution"]);
+    let own = bit("my-cutter", r#""CuttingEdgeHeight": "30 mm""#);
+    assert_eq!(reasons(&own), ["the shape `my-cutter` is none of FreeCAD's own"]);
+}
+
+/// The shank of a drill is wider than its flutes, whose length FreeCAD's own drills do not state.
+#[test]
+fn a_shank_is_drawn_where_it_has_a_length() {
+    let bit = |flutes: &str| {
+        parse(
+            "b.fctb",
+            &format!(
+                r#"{{ "shape": "drill.fcstd", "parameter": {{ "Diameter": "2 mm", "Length": "38 mm",
+                "ShankDiameter": "3 mm", {flutes} "TipAngle": "90 °" }} }}"#
+            ),
+        )
+    };
+    let stated = bit(r#""CuttingEdgeHeight": "5 mm","#);
+    let expected = [[1.0, 1.0], [1.0, 5.0], [1.5, 5.0], [1.5, 38.0], [0.0, 38.0]];
+    assert_eq!(outlines(&stated), [expected]);
+    assert_eq!(stated.tools()[0].entry.notes, []);
+    let unstated = bit("");
+    assert_eq!(outlines(&unstated), [[[1.0, 1.0], [1.0, 38.0], [0.0, 38.0]]]);
+    let notes = &unstated.tools()[0].entry.notes;
+    let [Note::Unstated(first, _), Note::Unstated(second, _)] = &notes[..] else {
+        panic!("{notes:?}");
+    };
+    assert_eq!([*first, *second], ["flute length", "length of the shank"]);
+    let fluted = fusion("flat end mill", &json!({ "LCF": 60, "SFDM": 6 }));
+    assert_eq!(corners(&fluted), [[5.0, 0.0], [5.0, 60.0], [0.0, 60.0]]);
+}
+
+#[test]
 fn projects_of_camotics_are_read() {
     let project = r#"{ "units": "metric", "tools": { "30": { "units": "metric", "shape": "conical",
         "length": 12, "diameter": 10, "description": "" } }, "files": ["a.nc"] }"#;

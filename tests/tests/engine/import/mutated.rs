@@ -105,6 +105,8 @@ impl Run {
         }
         let mut numbers = numbers(&String::from_utf8_lossy(&text));
         if name.ends_with("fctb") {
+            // A comma is a decimal one.
+            numbers.extend(self::numbers(&String::from_utf8_lossy(&text).replace(',', ".")));
             add_lengths_in_mm(&mut numbers);
         }
         for tool in library.tools() {
