@@ -138,6 +138,14 @@ fn freecad_has_commas_and_names_of_other_releases() {
     assert_eq!(reasons(&own), ["the shape `my-cutter` is none of FreeCAD's own"]);
 }
 
+#[test]
+fn a_line_that_is_no_entry_does_not_hide_the_others_of_a_tool_table() {
+    let table = parse("t.tbl", "TOOLNO POCKET DIAMETER\nT1 P1 D6 ;ball\n (mill)\nT2 P2\n");
+    let skipped: Vec<&str> = table.skipped().iter().map(|skipped| &*skipped.name).collect();
+    assert_eq!(skipped, ["line 1", "T1 ball", "line 3", "T2"]);
+    assert_eq!(table.skipped()[2].reason, "`(mill)` is no word of a tool table");
+}
+
 /// The shank of a drill is wider than its flutes, whose length FreeCAD's own drills do not state.
 #[test]
 fn a_shank_is_drawn_where_it_has_a_length() {
