@@ -173,6 +173,73 @@ fn a_shank_is_drawn_where_it_has_a_length() {
     assert_eq!(corners(&fluted), [[5.0, 0.0], [5.0, 60.0], [0.0, 60.0]]);
 }
 
+/// Post processors of Autodesk write 0 for the centre of every corner.
+#[test]
+fn a_corner_of_apt_without_a_centre_touches_end_and_side() {
+    let zeros =
+        parse("p.apt", "UNITS/MM\nCUTTER/6, 3, 0, 0, 0, 0, 30\nCUTTER/6, 1, 0, 0, 0, 0, 30\n");
+    let full = parse("p.apt", "UNITS/MM\nCUTTER/6,3,0,3,0,0,30\nCUTTER/6,1,2,1,0,0,30\n");
+    assert_eq!(outlines(&zeros), outlines(&full));
+    let has_note = |library: &Library| {
+        let notes = library.tools()[0].entry.notes.iter();
+        notes.clone().any(|note| matches!(note, Note::Unstated("centre of the corner", _)))
+    };
+    assert!(has_note(&zeros) && !has_note(&full));
+}
+
+/// NX numbers its tools by `LOAD/TOOL`, names them by `TOOL PATH`, and states them again for each operation.
+#[test]
+fn tools_of_nx_have_their_names_and_numbers_once() {
+    let operation = |tool: &str, data: &str, number: u32| {
+        format!(
+            "TOOL PATH/CAVITY_MILL,TOOL,{tool}\nTLDATA/{data}\nPAINT/PATH\nSELECT/TOOL,9\n\
+             LOAD/TOOL,{number},ADJUST,1\nGOTO/0,0,0\nEND-OF-PATH\n"
+        )
+    };
+    let mill = "MILL,10.0,1.0,75.0,0.0,0.0";
+    let program = [
+        "UNITS/MM\n",
+        &operation("EM10", mill, 3),
+        &operation("EM10", mill, 3),
+        &format!("TOOL PATH/CONTOUR,TOOL,EM10\nTLDATA/{mill}\nEND-OF-PATH\n"),
+        &operation("BALL6", "MILL,6.0,3.0,75.0,0.0,0.0,0.0,3.0", 4),
+        &operation("EM10", "MILL,10.0,1.0,60.0,0.0,0.0", 3),
+        &operation("BARREL", "MILL,6.0,0.5,75.0,0.0,0.0,2.5,0.5,20,-17,10", 5),
+        &operation("OD", "TURN,RIGHT,ROUGH,XZ,1.2,20,95,5,25,0", 6),
+    ]
+    .concat();
+    let library = parse("p.cls", &program);
+    let tools: Vec<(Option<u32>, &str, Option<f64>)> = library
+        .tools()
+        .iter()
+        .map(|tool| (tool.entry.number, &*tool.entry.title, tool.entry.length()))
+        .collect();
+    let expected = [
+        (Some(3), "EM10", Some(75.0)),
+        (Some(4), "BALL6", Some(75.0)),
+        (Some(3), "EM10", Some(60.0)),
+    ];
+    assert_eq!(tools, expected);
+    assert_eq!(
+        reasons(&library),
+        [
+            "its upper corner of radius 20 cannot be read yet",
+            "it is a turning tool, which is no solid of revolution"
+        ]
+    );
+}
+
+/// A program that loads a tool again between two cutters gives the second its own number.
+#[test]
+fn a_number_after_a_cutter_is_not_that_of_the_next() {
+    let cutter = |d: u32| format!("CUTTER/{d},0,0,0,0,0,30\n");
+    let program =
+        format!("UNITS/MM\n{}LOADTL/1\nLOADTL/1\n{}LOADTL/2\nFINI\n", cutter(6), cutter(8));
+    let numbers: Vec<Option<u32>> =
+        parse("p.apt", &program).tools().iter().map(|tool| tool.entry.number).collect();
+    assert_eq!(numbers, [Some(1), Some(2)]);
+}
+
 #[test]
 fn projects_of_camotics_are_read() {
     let project = r#"{ "units": "metric", "tools": { "30": { "units": "metric", "shape": "conical",
