@@ -51,6 +51,8 @@ impl Haptics {
                 "runtime/src/bvh",
                 "runtime/src/cloud",
                 "runtime/src/haptic",
+                // Declarations only.
+                ":!runtime/src/haptic/mod.rs",
                 "runtime/src/part.rs",
                 "runtime/src/point_bvh",
                 "runtime/src/pose.rs",

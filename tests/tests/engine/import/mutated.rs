@@ -1,7 +1,8 @@
 //! Mutated tool libraries. The reader must not panic, a tool that it returns loads or is refused with a reason, and
 //! each dimension of it follows from numbers of the file.
 //!
-//! `MUTANTS=100000 cargo test --workspace --test engine mutated -- --nocapture` runs 10⁵ mutants of each format.
+//! `MUTANTS=100000 cargo test --workspace --test engine mutated -- --nocapture` runs 10⁵ mutants of each format, `mutated_tables`
+//! instead of `mutated` those of one.
 
 use std::collections::HashSet;
 use std::io::Write;
@@ -40,34 +41,62 @@ const VALUES: [&str; 24] = [
     "-3.5",
 ];
 
-#[test]
-fn mutated_libraries_are_read_or_refused() {
-    let count = case_count("MUTANTS", 300);
-    for seed in libraries::files() {
-        let mut run = Run::default();
-        for index in 0..count {
-            run.try_mutant(&seed, index as u64);
+/// Declares a test per format, so that one can be run by its name.
+macro_rules! formats {
+    ($($test:ident $file:literal;)*) => {
+        $(
+            #[test]
+            fn $test() {
+                try_mutants($file);
+            }
+        )*
+
+        #[test]
+        fn every_mutated_format_has_a_test() {
+            let names: Vec<&str> = libraries::files().iter().map(|file| file.name).collect();
+            assert_eq!(names, [$($file),*]);
         }
-        println!(
-            "{}: {count} mutants, {} refused; {} tools, {} left out, {} of {} that differ are no solid; \
-             slowest {:.1} ms to read, {:.1} ms to load",
-            seed.name,
-            run.refused,
-            run.tools,
-            run.skipped,
-            run.no_solid,
-            run.loaded.len(),
-            run.slowest[0].as_secs_f64() * 1e3,
-            run.slowest[1].as_secs_f64() * 1e3,
-        );
-        // Mutants that are all refused, or all read as before, would test nothing.
-        assert!(run.refused + run.skipped > 0, "{}: every mutant was read", seed.name);
-        assert!(run.tools > 0 || seed.name == "table.tbl", "{}: no mutant was read", seed.name);
+    };
+}
+
+formats! {
+    mutated_fusion "fusion.json";
+    mutated_kiri "kiri.json";
+    mutated_camotics "camotics.json";
+    mutated_bits "bits.fctb";
+    mutated_holders "holder.fcholder";
+    mutated_hsm "hsm.hsmlib";
+    mutated_cutters "cutters.apt";
+    mutated_tables "table.tbl";
+}
+
+/// Reads mutants of the library of this name.
+fn try_mutants(name: &str) {
+    let count = case_count("MUTANTS", 300);
+    let seeds = libraries::files();
+    let seed = seeds.iter().find(|seed| seed.name == name).expect("a library");
+    let mut run = Run::default();
+    for index in 0..count {
+        run.try_mutant(seed, index as u64);
     }
+    println!(
+        "{name}: {count} mutants, {} refused; {} tools, {} left out, {} of {} that differ are no solid; slowest {:.1} ms to \
+         read, {:.1} ms to load",
+        run.refused,
+        run.tools,
+        run.skipped,
+        run.no_solid,
+        run.loaded.len(),
+        run.slowest[0].as_secs_f64() * 1e3,
+        run.slowest[1].as_secs_f64() * 1e3,
+    );
     if let Ok(status) = std::fs::read_to_string("/proc/self/status") {
         let peak = status.lines().find(|line| line.starts_with("VmHWM"));
-        println!("peak memory of the whole test: {}", peak.unwrap_or("unknown"));
+        println!("{name}: peak memory of the process: {}", peak.unwrap_or("unknown"));
     }
+    // Mutants that are all refused, or all read as before, would test nothing.
+    assert!(run.refused + run.skipped > 0, "{name}: every mutant was read");
+    assert!(run.tools > 0 || name == "table.tbl", "{name}: no mutant was read");
 }
 
 /// The counts of one format.
