@@ -106,7 +106,8 @@
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
 //! | `import` | tool libraries of CAM systems as `.tool` files, and back: `import::Library`, `export::export`; implies `interpreter` |
-//! | `haptic` | the haptic loop |
+//! | `haptic` | the haptic loop; implies `session` |
+//! | `session` | a cycle of the haptic loop without threads and clock: `haptic::Session` |
 //! | `spacenav` | a SpaceMouse in the loop; implies `haptic` |
 //! | `postures` | posture maps, sweeps and paths; implies `parallel` |
 
@@ -141,7 +142,7 @@ mod escape;
 #[cfg(feature = "import")]
 pub mod export;
 pub mod gcode;
-#[cfg(feature = "haptic")]
+#[cfg(feature = "session")]
 pub mod haptic;
 mod id;
 #[cfg(feature = "import")]

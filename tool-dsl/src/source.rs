@@ -1,8 +1,10 @@
 //! The source text of a tool, and locations in it.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
@@ -74,6 +76,8 @@ pub struct Source {
     path: Option<PathBuf>,
     /// The folder that contains all files that may be mounted, if it is not the text's own folder.
     root: Option<PathBuf>,
+    /// The files that may be mounted, by path, if they are not read from the file system.
+    files: Option<Arc<BTreeMap<PathBuf, String>>>,
     /// The range and origin of each token, for a text made from Rust tokens.
     tokens: Option<Vec<(Span, proc_macro2::Span)>>,
     /// The location of the `mount` that requested the text.
@@ -89,6 +93,7 @@ impl Source {
             base: 0,
             path: None,
             root: None,
+            files: None,
             tokens: None,
             by: None,
         }
@@ -122,6 +127,14 @@ impl Source {
     #[must_use]
     pub fn with_root(mut self, root: impl Into<PathBuf>) -> Source {
         self.root = Some(root.into());
+        self
+    }
+
+    /// Sets the texts of the files that may be mounted, by path, for a system without files. The text's own
+    /// [path](Source::with_path) is one among them. Nothing is read from the file system then.
+    #[must_use]
+    pub fn with_files(mut self, files: Arc<BTreeMap<PathBuf, String>>) -> Source {
+        self.files = Some(files);
         self
     }
 
@@ -299,6 +312,9 @@ impl Sources {
     /// Returns whether a file lies below the folder that must contain mounted files, with links followed. For
     /// a file that does not exist, its name decides.
     pub(crate) fn may_mount(&self, path: &Path) -> bool {
+        if self.main().files.is_some() {
+            return without_steps_up(path).is_some();
+        }
         let Some(root) = self.main().root() else { return false };
         let root = if root == Path::new("") { Path::new(".") } else { root };
         let real = |path: &Path| {
@@ -322,6 +338,9 @@ impl Sources {
         by: Span,
         (shown, path): (String, PathBuf),
     ) -> io::Result<&Source> {
+        if let Some(files) = self.main().files.clone() {
+            return self.read_from(&files, by, (shown, &path));
+        }
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let path_on_disk = real(&path);
         let same = |source: &Source| {
@@ -333,4 +352,34 @@ impl Sources {
         let source = Source::read_as(shown, &path)?;
         Ok(self.add(Source { by: Some(by), ..source }))
     }
+
+    /// Takes a file that a `mount` mentions from the given ones, unless it was taken before.
+    fn read_from(
+        &mut self,
+        files: &BTreeMap<PathBuf, String>,
+        by: Span,
+        (shown, path): (String, &Path),
+    ) -> io::Result<&Source> {
+        let path = without_steps_up(path).unwrap_or_default();
+        let known = self.0.iter().position(|source| source.path() == Some(&*path));
+        if let Some(known) = known {
+            return Ok(&self.0[known]);
+        }
+        let text = files.get(&path).ok_or(io::ErrorKind::NotFound)?;
+        Ok(self.add(Source { by: Some(by), ..Source::new(shown, text.as_str()).with_path(path) }))
+    }
+}
+
+/// Removes the steps `.` and `..` from a relative path; `None` if it leads out of the folder that it begins in.
+fn without_steps_up(path: &Path) -> Option<PathBuf> {
+    let mut normal = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::Normal(name) => normal.push(name),
+            Component::CurDir => {}
+            Component::ParentDir if normal.pop() => {}
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return None,
+        }
+    }
+    Some(normal)
 }

@@ -40,7 +40,9 @@ mod frame;
 mod hand;
 mod input_filter;
 mod passivity;
+#[cfg(feature = "haptic")]
 mod realtime;
+#[cfg(feature = "haptic")]
 mod run;
 mod session;
 mod setting;
@@ -54,7 +56,9 @@ pub use device::{
 pub use hand::{HandImpedance, SimulatedHand, Tremor};
 pub use input_filter::{DeviceFaults, SpeedLimit};
 pub use passivity::EnergyBalance;
+#[cfg(feature = "haptic")]
 pub use realtime::{Realtime, RealtimeError, check_core};
+#[cfg(feature = "haptic")]
 pub use run::{
     Clock, LatencyHistogram, LatestState, LoopReport, MonotonicClock, SimulatedClock,
     StatePublisher, StateStream, state_channel,

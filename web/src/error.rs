@@ -1,0 +1,46 @@
+//! Errors that reach the page.
+
+use touchoff::haptic::SettingError;
+use touchoff::mesh::{GeometryError, MeshError};
+use touchoff::{CloudError, ParseUnitError, PoseError};
+
+/// A request that could not be met. The message is meant for people.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum EngineError {
+    /// The file of a part could not be read.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// A generated part is invalid.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The part could not be sampled.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+    /// A unit is unknown.
+    #[error(transparent)]
+    Unit(#[from] ParseUnitError),
+    /// A pose is invalid.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// A setting of the session is out of its range.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// A file has points only.
+    #[error("{0} has points without triangles, which cannot be drawn: open a mesh")]
+    NoTriangles(String),
+    /// A generated part is unknown.
+    #[error("no generated part is named `{0}`: take `pocket` or `tube`")]
+    UnknownShape(String),
+    /// A library tool is unknown.
+    #[error("no library tool is in the file `{0}`")]
+    UnknownTool(String),
+    /// There is no part, tool or session yet.
+    #[error("there is nothing to touch yet: load a part and a tool, then start")]
+    NotLoaded,
+    /// A pose has the wrong number of values.
+    #[error("a pose has 7 values, the tip and a quaternion (x, y, z, w), not {0}")]
+    PoseLength(usize),
+    /// The files given with a tool are not a JSON object of texts.
+    #[error("the files of a tool must be a JSON object from path to text: {0}")]
+    Files(#[from] serde_json::Error),
+}
