@@ -56,6 +56,14 @@ pub(crate) enum Failure {
     /// A signal ended a session.
     #[error("the session was interrupted; what was recorded until then is complete")]
     Interrupted,
+    /// The port of the page is taken or not allowed.
+    #[error("cannot listen at 127.0.0.1:{port}: {source}; give another `--port`, or none for a free one")]
+    Port {
+        /// The port.
+        port: u16,
+        /// The reason.
+        source: std::io::Error,
+    },
     /// The daemon of a SpaceMouse cannot be reached.
     #[error(
         "cannot reach the SpaceMouse at {socket}: {source}: start `spacenavd`, or take another `--device`"

@@ -16,6 +16,7 @@ mod fmt;
 mod haptic;
 mod import;
 mod lengths;
+mod live;
 mod loaded_tool;
 mod part;
 mod picture;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Verify(arguments) => verify::verify(*arguments, json),
         Command::Report(arguments) => report::report(*arguments, json),
         Command::Haptic(arguments) => haptic::haptic(&arguments, json).map(success),
+        Command::Live(arguments) => live::live(&arguments, json).map(success),
         Command::Sweep(arguments) => postures::sweep::sweep(&arguments, json).map(success),
         Command::Map(arguments) => postures::map::map(&arguments, json).map(success),
         Command::Path(arguments) => postures::path::path(&arguments, json).map(success),

@@ -1,5 +1,5 @@
 //! Simulates a hand that presses a ball onto a block for three seconds at 1000 cycles per second, while another
-//! thread watches: `cargo run --release --features haptic --example haptic_loop`.
+//! thread watches: `cargo run --release --features realtime --example haptic_loop`.
 
 use nalgebra::{Point3, Vector3};
 use std::sync::atomic::AtomicBool;

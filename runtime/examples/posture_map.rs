@@ -1,5 +1,5 @@
 //! Leads a tool along a sphere by hand, leaning it back and forth, and keeps the acceptable postures per
-//! triangle: `cargo run --release --features haptic,postures --example posture_map`.
+//! triangle: `cargo run --release --features postures,realtime --example posture_map`.
 
 use nalgebra::{Point3, Vector3};
 use std::fs::File;

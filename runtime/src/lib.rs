@@ -76,7 +76,7 @@
 //! direction, `postures::PostureMap` keeps the result, and `postures::path::PathRequest` plans a path over it
 //! (`examples/sweep.rs`).
 //!
-//! **Run the loop.** With the feature `haptic`, `haptic::Session` drives a haptic device at 1 kHz
+//! **Run the loop.** With the feature `realtime`, `haptic::Session` drives a haptic device at 1 kHz
 //! (`examples/haptic_loop.rs`).
 //!
 //! Shorter programs: `examples/first_contact.rs`, `examples/check_program.rs` and `examples/posture_map.rs`.
@@ -106,9 +106,9 @@
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
 //! | `import` | tool libraries of CAM systems as `.tool` files, and back: `import::Library`, `export::export`; implies `interpreter` |
-//! | `haptic` | the haptic loop; implies `session` |
-//! | `session` | a cycle of the haptic loop without threads and clock: `haptic::Session` |
-//! | `spacenav` | a SpaceMouse in the loop; implies `haptic` |
+//! | `haptic` | a cycle of the haptic loop, without threads and clock: `haptic::Session` |
+//! | `realtime` | the loop in a thread, at a fixed rate; implies `haptic` |
+//! | `spacenav` | a SpaceMouse in the loop; implies `realtime` |
 //! | `postures` | posture maps, sweeps and paths; implies `parallel` |
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
@@ -142,7 +142,7 @@ mod escape;
 #[cfg(feature = "import")]
 pub mod export;
 pub mod gcode;
-#[cfg(feature = "session")]
+#[cfg(feature = "haptic")]
 pub mod haptic;
 mod id;
 #[cfg(feature = "import")]

@@ -3,17 +3,21 @@
 use crate::error::EngineError;
 use crate::hand::{self, Hand};
 use crate::outline::Triangles;
-use crate::part::{self, LoadedPart};
+use crate::part;
 use crate::tool;
 use crate::touch::{SurfaceContact, Touch, Touched};
 use serde::Serialize;
 use std::rc::Rc;
-use touchoff::Pose;
-use touchoff::Tool;
-use touchoff::haptic::{DeviceAxes, DeviceLimits, SessionSettings, SessionState};
+use touchoff::haptic::{
+    Coupling, DeviceAxes, DeviceLimits, Rendering, SessionSettings, SessionState,
+};
 use touchoff::tool::{Interpreted, Symmetry};
+use touchoff::{Mesh, Part, Pose, Sampling, Tool};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
+/// Time constant of the coupling's damper, s. A tool without contact follows the hand with this delay. The longer it is, the
+/// shorter are the steps of a tool that a hand far inside the part pulls at, and the thinner the walls that hold it.
+const DAMPING: f64 = 0.02;
 /// Contacts that are listed for drawing.
 const MAX_DRAWN_CONTACTS: usize = 4000;
 
@@ -24,7 +28,8 @@ pub struct Engine {
     rate: f64,
     /// Contact stiffness, N/mm³.
     stiffness: f64,
-    part: Option<Rc<LoadedPart>>,
+    mesh: Option<Rc<Mesh>>,
+    part: Option<Rc<Part>>,
     tool: Option<Rc<Interpreted>>,
     triangles: Triangles,
     hand: Hand,
@@ -41,6 +46,7 @@ impl Engine {
         Engine {
             rate,
             stiffness,
+            mesh: None,
             part: None,
             tool: None,
             triangles: Triangles::default(),
@@ -65,35 +71,45 @@ impl Engine {
         Ok(tool::library_text(file)?)
     }
 
-    /// Takes a generated part, `pocket` or `tube`, and returns the facts about it as JSON.
+    /// Takes the mesh of a generated part, `pocket` or `tube`. [`sample_part`](Engine::sample_part) makes it touchable.
     ///
     /// # Errors
-    /// Fails for another name, and for a number of points that cannot be drawn.
+    /// Fails for another name.
     #[wasm_bindgen(js_name = generatePart)]
-    pub fn generate_part(&mut self, name: &str, points: usize) -> Result<String, JsError> {
-        Ok(self.take_part(LoadedPart::new(part::generate(name)?, points)?))
+    pub fn generate_part(&mut self, name: &str) -> Result<(), JsError> {
+        self.take_mesh(part::generate(name)?);
+        Ok(())
     }
 
-    /// Reads a part from the bytes of an STL, PLY or OBJ file whose lengths are in `unit`, and returns the facts about it
-    /// as JSON.
+    /// Reads the mesh of a part from the bytes of an STL, PLY or OBJ file whose lengths are in `unit`.
     ///
     /// # Errors
-    /// Fails if the file cannot be read or sampled.
+    /// Fails if the file cannot be read.
     #[wasm_bindgen(js_name = readPart)]
-    pub fn read_part(
-        &mut self,
-        bytes: &[u8],
-        name: &str,
-        unit: &str,
-        points: usize,
-    ) -> Result<String, JsError> {
-        Ok(self.take_part(LoadedPart::new(part::read(bytes, name, unit)?, points)?))
+    pub fn read_part(&mut self, bytes: &[u8], name: &str, unit: &str) -> Result<(), JsError> {
+        self.take_mesh(part::read(bytes, name, unit)?);
+        Ok(())
+    }
+
+    /// Returns the facts about the part's mesh as JSON; `null` without a part.
+    #[wasm_bindgen(js_name = partFacts)]
+    pub fn part_facts(&self) -> String {
+        json(&self.mesh.as_deref().map(part::facts))
+    }
+
+    /// Samples points of the part, in place of earlier ones. Returns their covering radius.
+    ///
+    /// # Errors
+    /// Fails without a part, and for a number of points that cannot be drawn.
+    #[wasm_bindgen(js_name = samplePart)]
+    pub fn sample_part(&mut self, points: usize) -> Result<Option<f64>, JsError> {
+        Ok(self.sample(points)?)
     }
 
     /// Returns the corners of the part's triangles, 9 values per triangle.
     #[wasm_bindgen(js_name = partPositions)]
     pub fn part_positions(&self) -> Vec<f32> {
-        self.part.as_ref().map(|part| part.positions()).unwrap_or_default()
+        self.mesh.as_deref().map(part::positions).unwrap_or_default()
     }
 
     /// Compiles a tool's text, and takes the tool unless the text has errors. `files` are more texts that it may mount, a
@@ -159,7 +175,7 @@ impl Engine {
     pub fn move_to(&mut self, pose: &[f64], cycles: f64) -> Result<(), JsError> {
         let pose = hand::pose(pose)?;
         if let Some((part, tool)) = self.part.as_ref().zip(self.tool.as_ref()) {
-            let unit = part.mesh.unit().millimetres();
+            let unit = part.unit().millimetres();
             self.hand.move_to(pose, cycles, tool.info().symmetry, unit);
         }
         Ok(())
@@ -181,7 +197,7 @@ impl Engine {
         self.state.as_ref().map(values).unwrap_or_default()
     }
 
-    /// Returns contacts at the tool's pose, 9 values each: point, depth, niceness, surface, normal of the part. Of many, it
+    /// Returns contacts at the tool's pose, 10 values each: point, depth, niceness, surface, normal and triangle of the part. Of many, it
     /// lists some, evenly chosen.
     pub fn contacts(&mut self) -> Vec<f32> {
         match (&mut self.touch, &self.state) {
@@ -240,17 +256,25 @@ impl Engine {
 }
 
 impl Engine {
-    fn take_part(&mut self, part: LoadedPart) -> String {
-        let facts = json(&part.facts());
-        self.part = Some(Rc::new(part));
+    fn take_mesh(&mut self, mesh: Mesh) {
+        self.mesh = Some(Rc::new(mesh));
+        self.part = None;
         self.touch = None;
         self.make_triangles();
-        facts
+    }
+
+    fn sample(&mut self, points: usize) -> Result<Option<f64>, EngineError> {
+        let mesh = self.mesh.as_ref().ok_or(EngineError::NotLoaded)?;
+        let part = Part::from_mesh(mesh, Sampling::new(points))?;
+        let cover = part.tree().covering_radius().map(|cover| cover.radius);
+        self.part = Some(Rc::new(part));
+        self.touch = None;
+        Ok(cover)
     }
 
     fn make_triangles(&mut self) {
-        if let Some((part, tool)) = self.part.as_ref().zip(self.tool.as_ref()) {
-            let scale = tool.info().unit.factor_to(part.mesh.unit());
+        if let Some((mesh, tool)) = self.mesh.as_ref().zip(self.tool.as_ref()) {
+            let scale = tool.info().unit.factor_to(mesh.unit());
             self.triangles = tool::triangles(tool, scale);
         }
     }
@@ -267,7 +291,11 @@ impl Engine {
         self.hand = Hand::new(hand::pose(pose)?, limits);
         let settings = SessionSettings {
             // From N/mm³ to N per cube of the part's unit.
-            stiffness: self.stiffness * part.mesh.unit().millimetres().powi(3),
+            stiffness: self.stiffness * part.unit().millimetres().powi(3),
+            rendering: Some(Rendering::Coupled(Coupling {
+                damping: DAMPING,
+                ..Coupling::of(&limits)
+            })),
             ..SessionSettings::new(self.rate)
         };
         let touched = Touched { part: Rc::clone(part), tool: Rc::clone(tool) };

@@ -3,15 +3,9 @@
 use crate::error::EngineError;
 use nalgebra::Point3;
 use serde::Serialize;
+use std::collections::HashMap;
 use touchoff::mesh::Geometry;
-use touchoff::{Mesh, Part, Sampling, Unit, scenes};
-
-/// A part with the mesh that it was sampled from.
-#[derive(Debug)]
-pub(crate) struct LoadedPart {
-    pub(crate) part: Part,
-    pub(crate) mesh: Mesh,
-}
+use touchoff::{Mesh, Unit, scenes};
 
 /// The facts about a part that the page shows.
 #[derive(Debug, Serialize)]
@@ -19,42 +13,28 @@ pub(crate) struct PartFacts {
     unit: &'static str,
     /// The length of the unit in mm.
     millimetres: f64,
-    triangles: usize,
-    points: usize,
-    /// The covering radius of the points.
-    covering_radius: Option<f64>,
     lowest: [f64; 3],
     highest: [f64; 3],
     /// The findings about the mesh, as sentences.
     findings: Vec<String>,
 }
 
-impl LoadedPart {
-    pub(crate) fn new(mesh: Mesh, points: usize) -> Result<LoadedPart, EngineError> {
-        let part = Part::from_mesh(&mesh, Sampling::new(points))?;
-        Ok(LoadedPart { part, mesh })
+/// Returns the facts about a part's mesh.
+pub(crate) fn facts(mesh: &Mesh) -> PartFacts {
+    let [lowest, highest] = mesh.bounds();
+    PartFacts {
+        unit: mesh.unit().symbol(),
+        millimetres: mesh.unit().millimetres(),
+        lowest: lowest.coords.into(),
+        highest: highest.coords.into(),
+        findings: mesh.diagnostics().findings(),
     }
+}
 
-    pub(crate) fn facts(&self) -> PartFacts {
-        let tree = self.part.tree();
-        let [lowest, highest] = self.mesh.bounds();
-        PartFacts {
-            unit: self.mesh.unit().symbol(),
-            millimetres: self.mesh.unit().millimetres(),
-            triangles: self.mesh.triangles().len(),
-            points: tree.len(),
-            covering_radius: tree.covering_radius().map(|cover| cover.radius),
-            lowest: lowest.coords.into(),
-            highest: highest.coords.into(),
-            findings: self.mesh.diagnostics().findings(),
-        }
-    }
-
-    /// Returns the corners of all triangles, 9 values per triangle.
-    pub(crate) fn positions(&self) -> Vec<f32> {
-        let corners = self.mesh.ids().flat_map(|id| self.mesh.triangle(id));
-        corners.flat_map(|corner| corner.coords.data.0[0]).map(|value| value as f32).collect()
-    }
+/// Returns the corners of all triangles, 9 values per triangle.
+pub(crate) fn positions(mesh: &Mesh) -> Vec<f32> {
+    let corners = mesh.ids().flat_map(|id| mesh.triangle(id));
+    corners.flat_map(|corner| corner.coords.data.0[0]).map(|value| value as f32).collect()
 }
 
 /// Reads a mesh of an STL, PLY or OBJ file in memory.
@@ -80,46 +60,56 @@ pub(crate) fn generate(name: &str) -> Result<Mesh, EngineError> {
     }
 }
 
-/// The edges of the plate and of its pocket along x and y, and the heights of its top, floor and bottom, in mm.
-const X: [f64; 4] = [-20.0, -12.0, 8.0, 20.0];
-const Y: [f64; 4] = [-15.0, -8.0, 8.0, 15.0];
-const TOP: f64 = 0.0;
-const FLOOR: f64 = -6.0;
-const BOTTOM: f64 = -10.0;
+/// The plate's size and the pocket, whose floor is at `z = FLOOR`, in cells of 1 mm.
+const PLATE: [i32; 3] = [40, 30, 10];
+const POCKET: [std::ops::Range<i32>; 2] = [8..28, 7..23];
+const FLOOR: i32 = 4;
 
-/// Generates a plate of 40 by 30 by 10 mm with a pocket of 20 by 16 by 6 mm; the top is at z = 0.
+/// Generates a plate of 40 by 30 by 10 mm with a pocket of 20 by 16 by 6 mm, in squares of 1 mm. The top is at z = 0 and
+/// the centre at x = y = 0.
 fn pocket() -> Result<Mesh, EngineError> {
+    let is_material = |cell: [i32; 3]| {
+        let in_plate = (0..3).all(|axis| (0..PLATE[axis]).contains(&cell[axis]));
+        let in_pocket = (0..2).all(|axis| POCKET[axis].contains(&cell[axis])) && cell[2] >= FLOOR;
+        in_plate && !in_pocket
+    };
     let mut vertices = Vec::new();
-    for z in [TOP, FLOOR, BOTTOM] {
-        vertices.extend(Y.iter().flat_map(|y| X.iter().map(move |x| Point3::new(*x, *y, z))));
-    }
-    let corner = |layer: u32, x: u32, y: u32| 16 * layer + 4 * y + x;
-    let cell = |layer: u32, x: u32, y: u32| {
-        [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| corner(layer, x, y))
+    let mut known = HashMap::new();
+    let mut vertex = |corner: [i32; 3]| {
+        *known.entry(corner).or_insert_with(|| {
+            let [x, y, z] = [0, 1, 2].map(|axis| f64::from(corner[axis]));
+            let [width, depth, height] = PLATE.map(f64::from);
+            vertices.push(Point3::new(x - width / 2.0, y - depth / 2.0, z - height));
+            vertices.len() as u32 - 1
+        })
     };
-    let mut quads: Vec<[u32; 4]> = Vec::new();
-    for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
-        let is_pocket = (x, y) == (1, 1);
-        quads.push(cell(if is_pocket { 1 } else { 0 }, x, y));
-        let [a, b, c, d] = cell(2, x, y);
-        quads.push([d, c, b, a]);
+    let mut triangles = Vec::new();
+    let [columns, rows, layers] = PLATE;
+    for index in 0..columns * rows * layers {
+        let cell = [index % columns, index / columns % rows, index / (columns * rows)];
+        for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+            let mut neighbour = cell;
+            neighbour[axis] += 2 * side - 1;
+            if !is_material(cell) || is_material(neighbour) {
+                continue;
+            }
+            let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+            // Counter-clockwise seen from outside.
+            let around = if side == 1 {
+                [(0, 0), (1, 0), (1, 1), (0, 1)]
+            } else {
+                [(0, 0), (0, 1), (1, 1), (1, 0)]
+            };
+            let [a, b, c, d] = around.map(|steps| {
+                let mut corner = cell;
+                corner[axis] += side;
+                corner[second] += steps.0;
+                corner[third] += steps.1;
+                vertex(corner)
+            });
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
     }
-    // A wall from one layer down to another: the material is on the left of its upper edge.
-    let mut wall = |from: (u32, u32), to: (u32, u32), lower: u32| {
-        let at = |layer, (x, y)| corner(layer, x, y);
-        quads.push([at(0, to), at(0, from), at(lower, from), at(lower, to)]);
-    };
-    for k in 0..3 {
-        wall((k, 0), (k + 1, 0), 2);
-        wall((3, k), (3, k + 1), 2);
-        wall((3 - k, 3), (2 - k, 3), 2);
-        wall((0, 3 - k), (0, 2 - k), 2);
-    }
-    let ring = [(1, 1), (1, 2), (2, 2), (2, 1)];
-    for (k, from) in ring.into_iter().enumerate() {
-        wall(from, ring[(k + 1) % 4], 1);
-    }
-    let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     Ok(Mesh::new(vertices, triangles, Unit::Millimetre)?)
 }
 

@@ -2,17 +2,16 @@
 
 use crate::error::EngineError;
 use crate::hand::Hand;
-use crate::part::LoadedPart;
 use self_cell::self_cell;
 use std::rc::Rc;
 use touchoff::haptic::{Session, SessionSettings, SessionState};
 use touchoff::tool::Interpreted;
-use touchoff::{Contact, Law, Pose, Probe};
+use touchoff::{Contact, Law, Part, Pose, Probe};
 
 /// A part and a tool that are shared with the engine.
 #[derive(Debug)]
 pub(crate) struct Touched {
-    pub(crate) part: Rc<LoadedPart>,
+    pub(crate) part: Rc<Part>,
     pub(crate) tool: Rc<Interpreted>,
 }
 
@@ -43,7 +42,7 @@ pub(crate) struct SurfaceContact {
 }
 
 /// Values per contact in the list for the page.
-pub(crate) const CONTACT_VALUES: usize = 9;
+pub(crate) const CONTACT_VALUES: usize = 10;
 
 impl Touch {
     /// Begins a session.
@@ -57,7 +56,7 @@ impl Touch {
     ) -> Result<Touch, EngineError> {
         use touchoff::haptic::Device;
         Touch::try_new(touched, |touched| {
-            let probe = Probe::new(&touched.part.part, &*touched.tool).with_law(Law::Gradient);
+            let probe = Probe::new(&touched.part, &*touched.tool).with_law(Law::Gradient);
             let session = Session::new(probe.clone(), settings, hand.limits())?;
             Ok(Queries { session, probe })
         })
@@ -68,8 +67,8 @@ impl Touch {
         self.with_dependent_mut(|_, queries| queries.session.cycle(hand))
     }
 
-    /// Lists the contacts at a pose: at most `most` of them, evenly chosen, each as its point, depth, niceness, surface
-    /// and part normal; and the contact by surface, of all.
+    /// Lists the contacts at a pose: at most `most` of them, evenly chosen, each as its point, depth, niceness, surface,
+    /// part normal and triangle; and the contact by surface, of all.
     pub(crate) fn contacts(&mut self, pose: &Pose, most: usize) -> (Vec<f32>, Vec<SurfaceContact>) {
         self.with_dependent_mut(|touched, queries| {
             use touchoff::Tool;
@@ -88,7 +87,7 @@ impl Touch {
         })
     }
 
-    /// Returns all contacts at a pose, for comparisons of bits.
+    /// Queries the probe.
     pub(crate) fn probe<R>(&mut self, query: impl FnOnce(&mut Probe<'_, Interpreted>) -> R) -> R {
         self.with_dependent_mut(|_, queries| query(&mut queries.probe))
     }
@@ -107,5 +106,6 @@ fn values(contact: &Contact) -> [f32; CONTACT_VALUES] {
         normal.x,
         normal.y,
         normal.z,
+        contact.triangle.0 as f32,
     ]
 }

@@ -1,4 +1,4 @@
-//! The arguments of the commands that compute contact: `run`, `verify`, `report`, `haptic`, `sample` and `bench`.
+//! The arguments of the commands that compute contact: `run`, `verify`, `report`, `haptic`, `live`, `sample` and `bench`.
 
 use super::values::{allowance, core, count, length, point, positive, rate};
 use super::{PartFile, ToolArguments};
@@ -186,6 +186,25 @@ pub(crate) struct Haptic {
     /// Posture map, old or new, to which acceptable postures of the session are added.
     #[arg(long, value_name = "MAP")]
     pub(crate) postures: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Live {
+    /// Part: a mesh in STL, PLY or OBJ [default: a generated plate with a pocket].
+    #[arg(long, value_name = "FILE", requires = "unit")]
+    pub(crate) part: Option<PathBuf>,
+    /// Unit of the part: `mm`, `inch` or `m`.
+    #[arg(long, requires = "part")]
+    pub(crate) unit: Option<Unit>,
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file [default: `D2Ball`].
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: Option<OsString>,
+    /// Port to listen at, on 127.0.0.1; 0 is any that is free.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    pub(crate) port: u16,
+    /// Open no browser, only print the address.
+    #[arg(long)]
+    pub(crate) no_open: bool,
 }
 
 /// The device that moves the tool.

@@ -35,6 +35,13 @@ Examples:
   Play a program once in 5 seconds, and record every state:
     touchoff haptic --part part.stl --unit mm --tool D2Ball --device playback --program program.apt --duration 5 --record states.csv";
 
+pub(super) const LIVE: &str = "\
+Examples:
+  Touch a part with a 2 mm ball end mill in the browser:
+    touchoff live --part part.stl --unit mm --tool D2Ball
+  Only serve the page and print its address, with a tool of your own and a generated part:
+    touchoff live --tool my.tool --no-open";
+
 pub(super) const SWEEP: &str = "\
 Examples:
   Find the postures of two tools to 0.05 mm from 50 directions per hemisphere, and keep them in a map:

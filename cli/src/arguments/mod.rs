@@ -8,7 +8,9 @@ mod tools;
 mod values;
 
 pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
-pub(crate) use contact::{Bench, CheckArguments, DeviceKind, Haptic, Report, Run, Sample, Verify};
+pub(crate) use contact::{
+    Bench, CheckArguments, DeviceKind, Haptic, Live, Report, Run, Sample, Verify,
+};
 pub(crate) use tools::{
     Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
 };
@@ -73,6 +75,12 @@ pub(crate) enum Command {
     /// energy.
     #[command(after_help = examples::HAPTIC)]
     Haptic(Box<Haptic>),
+    /// Touch a part with a tool in the browser: serve a page on this machine, and open it.
+    ///
+    /// The tool is dragged by mouse, touch, gamepad or SpaceMouse, and its text can be edited. Nothing leaves the machine.
+    /// The server runs until Ctrl-C.
+    #[command(after_help = examples::LIVE)]
+    Live(Live),
     /// Try tools at every triangle of a part, from every direction: find which tools reach it, and the best
     /// posture.
     ///

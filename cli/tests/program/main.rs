@@ -9,6 +9,7 @@ mod help;
 mod import;
 mod job;
 mod keys;
+mod live;
 mod measured;
 mod mistakes;
 mod output;

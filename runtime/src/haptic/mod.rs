@@ -8,7 +8,8 @@
 //!                               └──▶ all of them, as far as there is room: record
 //! ```
 //!
-//! A [`Session`] computes one cycle and needs no clock; [`Session::run`] executes it at a fixed rate.
+//! A [`Session`] computes one cycle and needs no clock; with the feature `realtime`, `Session::run` executes it at a fixed
+//! rate.
 //!
 //! ```
 //! use nalgebra::{Point3, Vector3};
@@ -40,9 +41,9 @@ mod frame;
 mod hand;
 mod input_filter;
 mod passivity;
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 mod realtime;
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 mod run;
 mod session;
 mod setting;
@@ -56,9 +57,9 @@ pub use device::{
 pub use hand::{HandImpedance, SimulatedHand, Tremor};
 pub use input_filter::{DeviceFaults, SpeedLimit};
 pub use passivity::EnergyBalance;
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 pub use realtime::{Realtime, RealtimeError, check_core};
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 pub use run::{
     Clock, LatencyHistogram, LatestState, LoopReport, MonotonicClock, SimulatedClock,
     StatePublisher, StateStream, state_channel,

@@ -8,7 +8,7 @@ mod map;
 pub mod path;
 mod placement;
 mod record;
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 mod recorder;
 pub mod sweep;
 mod validator;
@@ -20,6 +20,6 @@ pub use map::{
     ToolFingerprint,
 };
 pub use record::{Accessibility, MapRow, PostureRecord};
-#[cfg(feature = "haptic")]
+#[cfg(feature = "realtime")]
 pub use recorder::{Recorder, RecorderError, RecorderStats};
 pub use validator::{Rules, RulesError, Validator, ValidatorError};

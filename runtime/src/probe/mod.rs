@@ -147,7 +147,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     }
 
     /// Returns the compliance centre in the tool's frame, and the length of the part's unit in mm.
-    #[cfg(feature = "session")]
+    #[cfg(feature = "haptic")]
     pub(crate) fn centre_and_unit(&self) -> (Point3<f64>, f64) {
         (self.state.centre, self.state.unit.factor_to(Unit::Millimetre))
     }

@@ -1,0 +1,120 @@
+//! `touchoff live`: a page on loopback in which one drags a tool against a part.
+
+mod page;
+mod server;
+
+use crate::arguments::{Live, ParamArguments};
+use crate::failure::Failure;
+use crate::loaded_tool::{built_in, load_file, read_source};
+use crate::output::Output;
+use crate::part;
+use page::{Content, Page};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::io::Write;
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::Path;
+use tool_dsl::compile;
+use tools_library::{SOURCES, TOOLS};
+use touchoff::Unit;
+
+/// The part and the tool that the page begins with.
+#[derive(Serialize)]
+struct Begin {
+    part: Option<BeginPart>,
+    tool: Option<BeginTool>,
+}
+
+#[derive(Serialize)]
+struct BeginPart {
+    name: String,
+    unit: &'static str,
+}
+
+/// A library tool by its file, or the text of a tool and of the files that it mounts.
+#[derive(Serialize)]
+struct BeginTool {
+    name: String,
+    text: Option<String>,
+    files: BTreeMap<String, String>,
+}
+
+/// The page's address, for programs.
+#[derive(Serialize)]
+struct AddressRow<'a> {
+    address: &'a str,
+}
+
+/// Serves the page until the program is ended.
+pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
+    let part = match (&arguments.part, arguments.unit) {
+        (Some(file), Some(unit)) => Some(read_part(file, unit)?),
+        _ => None,
+    };
+    let tool = arguments.tool.as_deref().map(begin_tool).transpose()?;
+    let (part, bytes) = part.unzip();
+    let begin = serde_json::to_vec(&Begin { part, tool })?;
+    let mut page = Page::embedded();
+    page.add("/session.json", Content::json(begin));
+    if let Some(bytes) = bytes {
+        page.add("/part", Content::bytes(bytes));
+    }
+    let port = arguments.port;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
+        .map_err(|source| Failure::Port { port, source })?;
+    let port = listener.local_addr()?.port();
+    let address = format!("http://127.0.0.1:{port}/");
+    let mut out = Output::lines();
+    if json {
+        serde_json::to_writer(&mut out, &AddressRow { address: &address })?;
+        writeln!(out)?;
+    } else {
+        writeln!(out, "{address}")?;
+        message!("serving the page until Ctrl-C");
+    }
+    out.flush()?;
+    drop(out);
+    if !arguments.no_open
+        && let Err(error) = open::that_detached(&address)
+    {
+        message!("cannot open a browser: {error}; open the address in one");
+    }
+    server::serve(&listener, port, page);
+    Ok(())
+}
+
+/// Reads a part's file, after a check that it is a mesh.
+fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
+    part::mesh(file, unit, "`touchoff live`")?;
+    let bytes = std::fs::read(file)?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok((BeginPart { name, unit: unit.symbol() }, bytes))
+}
+
+/// Returns a tool as the page takes it.
+fn begin_tool(name: &OsStr) -> Result<BeginTool, Failure> {
+    let path = Path::new(name);
+    if path.extension().is_none_or(|extension| extension != "tool") {
+        let name = name.to_string_lossy();
+        built_in(&name)?;
+        let mut sources = TOOLS.iter().zip(SOURCES);
+        let files = sources.find(|(tool, _)| tool.info().name == name).map(|(_, files)| files);
+        let Some([(file, _), ..]) = files else { unreachable!("every built-in tool has a source") };
+        return Ok(BeginTool { name: (*file).to_owned(), text: None, files: BTreeMap::new() });
+    }
+    let arguments = ParamArguments::default();
+    // Fails with the diagnostics if the file has errors.
+    load_file(path, &arguments)?;
+    let compiled = compile(&read_source(path, &arguments)?);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = BTreeMap::new();
+    for source in &compiled.sources.all()[1..] {
+        if let Some(mounted) = source.path() {
+            let relative = mounted.strip_prefix(folder).unwrap_or(mounted);
+            files.insert(relative.display().to_string(), source.text.clone());
+        }
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(BeginTool { name, text: Some(compiled.sources.main().text.clone()), files })
+}

@@ -1,0 +1,320 @@
+// The page: brings the engine, the picture, the hand and the editor together.
+
+import { Quaternion } from 'three';
+import { Editor } from './editor.js';
+import { Hand } from './hand.js';
+import { TouchMap } from './map.js';
+import { Readout } from './readout.js';
+import { CONTACT_VALUES, Scene } from './scene.js';
+import { stateOf } from './state.js';
+
+const SHAPES = { pocket: 'plate with a pocket', tube: 'tube of the thesis' };
+const DEFAULT_TOOL = 'd2_ball.tool';
+const id = (name) => /** @type {any} */ (document.getElementById(name));
+
+const scene = new Scene(id('canvas'));
+const hand = new Hand(scene);
+const readout = new Readout();
+const map = new TouchMap();
+const worker = new Worker('worker.js', { type: 'module' });
+const editor = new Editor(id('editor'), (text) => compile(toolName, text, toolFiles));
+
+/** The file and the facts of part and tool, and the texts that the tool may mount. */
+let partName = '';
+/** @type {any} */ let part = null;
+let isSampled = false;
+let toolName = '';
+let toolFiles = {};
+/** @type {any} */ let tool = null;
+let version = 0;
+/** @type {import('./state.js').State | null} */
+let state = null;
+let waiting = false;
+let lastFrame = performance.now();
+let interval = 16;
+let fps = 0;
+let lastLoop = 0;
+
+const ask = (kind, rest = {}, transfer = []) => worker.postMessage({ kind, ...rest }, transfer);
+
+function compile(name, text, files) {
+  toolName = name;
+  toolFiles = files;
+  ask('tool', { name, text, files, version: ++version });
+}
+
+/** Places the tool upright above the part, as high as a tenth of its size. */
+function place() {
+  if (!part || !tool) return;
+  const { lowest, highest } = part;
+  const middle = [0, 1].map((k) => 0.5 * (lowest[k] + highest[k]));
+  hand.place([lowest[0] + 0.1 * (highest[0] - lowest[0]), middle[1], highest[2] + 0.06 * scene.size]);
+  restart();
+}
+
+/** Begins a session where the tool stands, which is outside the part even if the hand is not. */
+function restart() {
+  state = null;
+  if (isSampled && tool) ask('start', { pose: [...(hand.stands ?? hand.tip.toArray()), ...hand.turn.toArray()] });
+}
+
+function title() {
+  if (part && tool) readout.showTitle(partName, tool.name, tool.title);
+}
+
+const replies = {
+  async ready({ library }) {
+    const options = library.map(({ file, name, title }) => {
+      const option = new Option(`${name}${title ? `: ${title}` : ''}`, file);
+      return option;
+    });
+    id('tool').replaceChildren(...options);
+    await begin();
+  },
+  part({ facts, positions, tool: triangles }) {
+    part = facts;
+    hand.millimetre = facts.millimetres;
+    scene.setPart(positions);
+    map.reset(positions);
+    coverage();
+    readout.setUnit(facts);
+    if (tool) scene.setTool(triangles, tool.surfaces);
+    title();
+  },
+  /** The part has points now, and can be touched. */
+  points({ points, radius }) {
+    isSampled = true;
+    const cover = radius ? `, none of the surface farther than ${radius.toFixed(3)} ${part.unit} from one` : '';
+    id('facts').textContent = `${partName}: ${part.findings.join('; ')}.\n${points.toLocaleString('en')} points${cover}.`;
+    readout.message('');
+    place();
+  },
+  text({ text }) {
+    editor.text = text;
+  },
+  tool({ version: of, result, tool: triangles, milliseconds }) {
+    // A later text is on its way.
+    if (of !== version) return;
+    const first = result.diagnostics[0];
+    editor.show(result.diagnostics);
+    const problem = id('problem');
+    problem.className = first?.severity ?? '';
+    const count = result.diagnostics.length;
+    problem.textContent = first
+      ? `${first.file ? `${first.file}: ` : ''}${first.message}; ${first.help}${count > 1 ? ` (and ${count - 1} more)` : ''}`
+      : `no errors, compiled in ${milliseconds.toFixed(0)} ms`;
+    id('drawing').classList.toggle('stale', !result.tool);
+    if (!result.tool) {
+      if (id('editor-pane').hidden) readout.message(problem.textContent, true);
+      return;
+    }
+    const isNew = !tool || tool.name !== result.tool.name;
+    tool = result.tool;
+    id('drawing').innerHTML = tool.svg;
+    readout.setSurfaces(tool.surfaces);
+    if (part) {
+      scene.setTool(triangles, tool.surfaces);
+      if (isNew) place();
+      else restart();
+    }
+    title();
+  },
+  frame({ state: list, contacts, surfaces, timing, skipped }) {
+    waiting = false;
+    state = stateOf(list);
+    if (state && tool && surfaces.length === 3 * tool.surfaces.length) {
+      hand.stands = state.tool.tip;
+      scene.show(state, contacts);
+      readout.show(state, surfaces);
+      if (state.count > 0 && hand.drag) {
+        const better = map.record(contacts, CONTACT_VALUES, tool.surfaces, hand.pose, tool.name);
+        if (better.length) {
+          scene.colorTriangles(better);
+          coverage();
+        }
+      }
+      // For scripts: where the tool is on the canvas.
+      id('canvas').dataset.tip = scene.project(state.tool.tip).map((value) => value.toFixed(1)).join();
+      id('canvas').dataset.force = state.force.join();
+      id('canvas').dataset.timing = JSON.stringify({ ...timing, skipped, fps });
+    }
+    const now = performance.now();
+    if (now - lastLoop > 250) {
+      lastLoop = now;
+      readout.showLoop(timing, fps);
+    }
+  },
+  error({ message }) {
+    waiting = false;
+    readout.message(message, true);
+  },
+};
+
+worker.onmessage = ({ data }) => replies[data.kind](data);
+worker.onerror = (event) => readout.message(`the engine has stopped: ${event.message}; load the page again`, true);
+
+function coverage() {
+  id('coverage').textContent = (100 * map.coverage).toFixed(1);
+}
+
+/** Draws, and asks the engine for the next state. */
+function frame(now) {
+  requestAnimationFrame(frame);
+  const elapsed = Math.min(now - lastFrame, 250);
+  lastFrame = now;
+  interval += 0.1 * (elapsed - interval);
+  fps = 1000 / Math.max(interval, 1);
+  hand.advance(elapsed / 1000, state ? Math.hypot(...state.force) : 0);
+  if (isSampled && tool && !waiting) {
+    waiting = true;
+    ask('frame', { pose: hand.pose, interval: Math.min(Math.max(interval, 4), 100) });
+  }
+  scene.draw();
+  if (part) readout.showView(scene, state?.tool.tip ?? scene.orbit.target.toArray(), part.unit);
+}
+
+/** Reads a part's file. */
+async function openPart(file) {
+  readout.message(`reading ${file.name}`);
+  const bytes = await file.arrayBuffer();
+  loadPart(file.name, { bytes, unit: id('unit').value });
+}
+
+function loadPart(name, request) {
+  partName = name;
+  part = null;
+  isSampled = false;
+  readout.message(`sampling ${name}`);
+  ask('part', { name, points: Number(id('points').value), ...request }, request.bytes ? [request.bytes] : []);
+  // Kept for another number of points or another unit.
+  lastPart = request.bytes ? null : request;
+}
+let lastPart = null;
+let lastFile = null;
+
+/** Opens files of tools: the first is shown, the others can be mounted. */
+async function openTools(files) {
+  const texts = await Promise.all(files.map(async (file) => [file.name, await file.text()]));
+  const [[name, text]] = texts;
+  editor.text = text;
+  compile(name, text, Object.fromEntries(texts.slice(1)));
+}
+
+/** Begins with what the server was given, or a default part and tool. */
+async function begin() {
+  const session = await (await fetch('session.json')).json();
+  for (const [shape, name] of Object.entries(SHAPES)) id('part').add(new Option(name, shape));
+  if (session.part) {
+    const { name, unit } = session.part;
+    id('part').add(new Option(name, ''), 0);
+    id('part').value = '';
+    id('unit').value = unit;
+    lastFile = new File([await (await fetch('part')).arrayBuffer()], name);
+    await openPart(lastFile);
+  } else {
+    loadPart(SHAPES.pocket, { shape: 'pocket' });
+  }
+  if (session.tool) {
+    const { name, text, files } = session.tool;
+    if (text) {
+      id('tool').add(new Option(name, ''), 0);
+      id('tool').value = '';
+      editor.text = text;
+      compile(name, text, files);
+    } else {
+      id('tool').value = name;
+      takeTool(name);
+    }
+  } else {
+    id('tool').value = DEFAULT_TOOL;
+    takeTool(DEFAULT_TOOL);
+  }
+  requestAnimationFrame(frame);
+}
+
+function takeTool(file) {
+  toolName = file;
+  toolFiles = {};
+  ask('libraryTool', { file, version: ++version });
+}
+
+const on = (name, event, handler) => id(name).addEventListener(event, handler);
+on('part', 'change', () => (id('part').value ? loadPart(SHAPES[id('part').value], { shape: id('part').value }) : openPart(lastFile)));
+on('points', 'change', () => {
+  isSampled = false;
+  readout.message(`sampling ${partName}`);
+  ask('points', { points: Number(id('points').value) });
+});
+on('unit', 'change', () => lastFile && !lastPart && openPart(lastFile));
+on('tool', 'change', () => id('tool').value && takeTool(id('tool').value));
+on('open-part', 'click', () => id('part-file').click());
+on('open-tool', 'click', () => id('tool-file').click());
+on('part-file', 'change', () => take([...id('part-file').files]));
+on('tool-file', 'change', () => take([...id('tool-file').files]));
+on('stiffness', 'change', () => {
+  ask('stiffness', { value: Number(id('stiffness').value) });
+  restart();
+});
+on('edit', 'click', () => {
+  const pane = id('editor-pane');
+  pane.hidden = !pane.hidden;
+  id('edit').setAttribute('aria-expanded', String(!pane.hidden));
+});
+on('spacemouse', 'click', async () => {
+  try {
+    readout.message(`connected: ${await hand.connectSpaceMouse()}`);
+  } catch (error) {
+    readout.message(error.message, true);
+  }
+});
+on('canvas', 'pointerdown', () => {
+  id('canvas').focus();
+  map.beginStroke();
+});
+for (const button of document.querySelectorAll('[data-view]')) {
+  button.addEventListener('click', () => scene.view(button.dataset.view));
+}
+const undo = () => {
+  scene.colorTriangles(map.undo());
+  coverage();
+};
+on('undo', 'click', undo);
+on('canvas', 'keydown', (event) => {
+  if (event.key === 'z' && (event.ctrlKey || event.metaKey)) undo();
+});
+on('clear', 'click', () => {
+  scene.colorTriangles(map.clear());
+  coverage();
+});
+on('export', 'click', () => {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([map.table()], { type: 'text/csv' }));
+  link.download = 'touched.csv';
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+});
+
+/** Takes files that were opened or dropped: tools by their ending, else a part. */
+function take(files) {
+  const tools = files.filter((file) => file.name.endsWith('.tool'));
+  if (tools.length) {
+    id('tool').add(new Option(tools[0].name, ''), 0);
+    id('tool').selectedIndex = 0;
+    openTools(tools).catch((error) => readout.message(error.message, true));
+  }
+  const [mesh] = files.filter((file) => !file.name.endsWith('.tool'));
+  if (mesh) {
+    lastFile = mesh;
+    id('part').add(new Option(mesh.name, ''), 0);
+    id('part').selectedIndex = 0;
+    openPart(mesh).catch((error) => readout.message(error.message, true));
+  }
+}
+for (const name of ['dragenter', 'dragover', 'dragleave', 'drop']) {
+  document.addEventListener(name, (event) => {
+    event.preventDefault();
+    id('view').classList.toggle('drop', name === 'dragover' || name === 'dragenter');
+    if (name === 'drop') take([...event.dataTransfer.files]);
+  });
+}
+coverage();

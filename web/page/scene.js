@@ -1,0 +1,259 @@
+// The picture: part, tool, hand, contacts, force.
+
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { CUTTING, OTHER, colorOf } from './colors.js';
+
+const PART = new THREE.Color('#c9ced4');
+const FORCE = 0xc2410c;
+const MAX_CONTACTS = 4096;
+/** Values of a contact in the engine's list. */
+export const CONTACT_VALUES = 10;
+
+/** @typedef {{positions: Float32Array, normals: Float32Array, surfaces: Uint32Array}} ToolTriangles */
+
+export class Scene {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setClearColor(0xfbfcfd);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1e5);
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.enableDamping = false;
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa3ad, 2.6));
+    const lamp = new THREE.DirectionalLight(0xffffff, 1.1);
+    lamp.position.set(0.3, 0.5, 1);
+    this.camera.add(lamp);
+    this.scene.add(this.camera);
+    this.size = 1;
+    this.box = new THREE.Box3();
+    /** @type {THREE.Mesh | null} */
+    this.part = null;
+    this.tool = new THREE.Group();
+    this.ghost = new THREE.Group();
+    for (const group of [this.tool, this.ghost]) {
+      group.matrixAutoUpdate = false;
+      this.scene.add(group);
+    }
+    this.contacts = this.#points();
+    this.arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, FORCE);
+    this.arrow.visible = false;
+    for (const part of [this.arrow.line, this.arrow.cone]) {
+      part.material.depthTest = false;
+      part.renderOrder = 3;
+    }
+    this.spring = new THREE.Line(
+      new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3)),
+      new THREE.LineDashedMaterial({ color: 0x16202c, depthTest: false, transparent: true, opacity: 0.7 }),
+    );
+    this.spring.frustumCulled = false;
+    this.scene.add(this.arrow, this.spring);
+  }
+
+  #points() {
+    const geometry = new THREE.BufferGeometry();
+    for (const name of ['position', 'color']) {
+      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * MAX_CONTACTS), 3));
+    }
+    geometry.setDrawRange(0, 0);
+    const material = new THREE.PointsMaterial({ size: 7, sizeAttenuation: false, vertexColors: true, depthTest: false });
+    const points = new THREE.Points(geometry, material);
+    points.frustumCulled = false;
+    points.renderOrder = 2;
+    this.scene.add(points);
+    return points;
+  }
+
+  /**
+   * Shows a part.
+   * @param {Float32Array} positions
+   */
+  setPart(positions) {
+    if (this.part) {
+      this.scene.remove(this.part);
+      this.part.geometry.dispose();
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    const colors = new Float32Array(positions.length);
+    for (let k = 0; k < colors.length; k += 3) PART.toArray(colors, k);
+    geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+    geometry.computeVertexNormals();
+    // A flat face drawn behind its edges.
+    const material = new THREE.MeshLambertMaterial({ vertexColors: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, side: THREE.DoubleSide });
+    this.part = new THREE.Mesh(geometry, material);
+    const edges = new THREE.LineSegments(
+      new THREE.EdgesGeometry(geometry, 30),
+      new THREE.LineBasicMaterial({ color: 0x5b6775 }),
+    );
+    this.part.add(edges);
+    this.scene.add(this.part);
+    this.box.setFromBufferAttribute(geometry.getAttribute('position'));
+    this.size = this.box.getSize(new THREE.Vector3()).length();
+    this.view('corner');
+  }
+
+  /**
+   * Colours triangles of the part by niceness; `null` for the part's own colour.
+   * @param {Iterable<[number, number | null]>} values triangle and niceness
+   */
+  colorTriangles(values) {
+    const colors = this.part?.geometry.getAttribute('color');
+    if (!colors) return;
+    const color = new THREE.Color();
+    for (const [triangle, niceness] of values) {
+      if (niceness === null) color.copy(PART);
+      else color.setRGB(...colorOf(niceness), THREE.SRGBColorSpace);
+      for (let corner = 0; corner < 3; corner++) color.toArray(colors.array, 9 * triangle + 3 * corner);
+    }
+    colors.needsUpdate = true;
+  }
+
+  /**
+   * Shows a tool and the hand's ghost of it.
+   * @param {ToolTriangles} triangles
+   * @param {{cutting: boolean}[]} surfaces
+   */
+  setTool(triangles, surfaces) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(triangles.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(triangles.normals, 3));
+    const colors = new Float32Array(triangles.positions.length);
+    const palette = surfaces.map(({ cutting }, k) => {
+      const same = surfaces.slice(0, k).filter((other) => other.cutting === cutting).length;
+      const list = cutting ? CUTTING : OTHER;
+      return new THREE.Color(list[same % list.length]);
+    });
+    triangles.surfaces.forEach((surface, triangle) => {
+      for (let corner = 0; corner < 3; corner++) palette[surface].toArray(colors, 9 * triangle + 3 * corner);
+    });
+    geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+    for (const group of [this.tool, this.ghost]) {
+      group.children.forEach((child) => child.geometry.dispose());
+      group.clear();
+    }
+    this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
+    this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.1, depthWrite: false })));
+  }
+
+  /**
+   * Looks at the part from a corner, the front or the top, with room for the tool above it.
+   * @param {'corner' | 'front' | 'top'} name
+   */
+  view(name) {
+    const from = { corner: [0.75, -1, 0.62], front: [0, -1, 0.0001], top: [0, -0.0001, 1] }[name];
+    const direction = new THREE.Vector3(...from).normalize();
+    const target = this.box.getCenter(new THREE.Vector3());
+    target.z += 0.12 * this.size;
+    const distance = (0.62 * this.size) / Math.tan((this.camera.fov * Math.PI) / 360);
+    this.orbit.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(direction, distance);
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 100;
+    this.camera.updateProjectionMatrix();
+    this.orbit.update();
+  }
+
+  /**
+   * Shows a state of the engine.
+   * @param {import('./state.js').State} state
+   * @param {Float32Array} contacts
+   */
+  show(state, contacts) {
+    const place = (group, { tip, rotation }) => {
+      const [a, b, c, d, e, f, g, h, i] = rotation;
+      group.matrix.set(a, d, g, tip[0], b, e, h, tip[1], c, f, i, tip[2], 0, 0, 0, 1);
+      group.matrixWorldNeedsUpdate = true;
+    };
+    place(this.tool, state.tool);
+    place(this.ghost, state.hand);
+    const apart = Math.hypot(...state.tool.tip.map((value, k) => value - state.hand.tip[k]));
+    this.ghost.visible = apart > 0.002 * this.size;
+    this.spring.visible = this.ghost.visible;
+    this.spring.geometry.getAttribute('position').copyArray([...state.tool.tip, ...state.hand.tip]).needsUpdate = true;
+
+    const count = Math.min(contacts.length / CONTACT_VALUES, MAX_CONTACTS);
+    const { position, color } = this.contacts.geometry.attributes;
+    const shade = new THREE.Color();
+    const centre = new THREE.Vector3();
+    for (let k = 0; k < count; k++) {
+      const at = CONTACT_VALUES * k;
+      position.setXYZ(k, contacts[at], contacts[at + 1], contacts[at + 2]);
+      shade.setRGB(...colorOf(contacts[at + 4]), THREE.SRGBColorSpace).toArray(color.array, 3 * k);
+      centre.add(new THREE.Vector3(contacts[at], contacts[at + 1], contacts[at + 2]));
+    }
+    position.needsUpdate = color.needsUpdate = true;
+    this.contacts.geometry.setDrawRange(0, count);
+
+    const force = new THREE.Vector3(...state.force);
+    const size = force.length();
+    this.arrow.visible = size > 0.01;
+    if (this.arrow.visible) {
+      // From the middle of the contact, a twentieth of the part's size per newton.
+      this.arrow.position.copy(count ? centre.divideScalar(count) : new THREE.Vector3(...state.tool.tip));
+      this.arrow.setDirection(force.divideScalar(size));
+      const length = (0.05 * Math.min(size, 8) + 0.02) * this.size;
+      this.arrow.setLength(length, 0.03 * this.size, 0.018 * this.size);
+    }
+  }
+
+  /** Draws a picture, at the size that the canvas has. */
+  draw() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio)) {
+      this.renderer.setPixelRatio(ratio);
+      this.renderer.setSize(width, height, false);
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+    }
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /**
+   * Returns where a point is on the canvas, in CSS pixels.
+   * @param {number[]} point
+   */
+  project(point) {
+    const { x, y } = new THREE.Vector3(...point).project(this.camera);
+    return [(0.5 + 0.5 * x) * this.canvas.clientWidth, (0.5 - 0.5 * y) * this.canvas.clientHeight];
+  }
+
+  /**
+   * Returns the length of a pixel at a point.
+   * @param {number[]} point
+   */
+  pixel(point) {
+    const depth = new THREE.Vector3(...point).sub(this.camera.position).dot(this.camera.getWorldDirection(new THREE.Vector3()));
+    return (2 * depth * Math.tan((this.camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
+  }
+
+  /**
+   * Returns the ray at a position of the canvas.
+   * @param {number} x
+   * @param {number} y
+   */
+  ray(x, y) {
+    const at = new THREE.Vector2((2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(at, this.camera);
+    return caster;
+  }
+
+  /** Returns whether the tool is at a position of the canvas. */
+  hits(x, y) {
+    return this.ray(x, y).intersectObjects([this.tool, ...(this.ghost.visible ? [this.ghost] : [])], true).length > 0;
+  }
+
+  /** Returns the directions of the screen: to the right, up, and away. */
+  directions() {
+    const right = new THREE.Vector3();
+    const up = new THREE.Vector3();
+    const back = new THREE.Vector3();
+    this.camera.matrixWorld.extractBasis(right, up, back);
+    return { right, up, away: back.negate() };
+  }
+}

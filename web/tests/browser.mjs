@@ -1,0 +1,132 @@
+// The page in headless Chromium. `web/tests/run` installs what it needs and runs it.
+//   node web/tests/browser.mjs [FOLDER_FOR_SCREENSHOTS]
+
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { openPage } from './chromium.mjs';
+
+const pictures = process.argv[2];
+if (pictures) mkdirSync(pictures, { recursive: true });
+const { page, address, outside, problems, close, press } = await openPage();
+
+const text = (selector) => page.textContent(selector);
+const number = async (selector) => Number.parseFloat(await text(selector));
+const data = (name) => page.getAttribute('#canvas', `data-${name}`);
+const shot = async (name) => { if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) }); };
+const until = (condition, argument) => page.waitForFunction(condition, argument, { timeout: 60_000 });
+
+/** Returns how many colours the canvas shows. */
+const colors = () => page.evaluate(() => {
+  const canvas = document.getElementById('canvas');
+  const copy = document.createElement('canvas');
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  const found = new Set();
+  for (let k = 0; k < data.length; k += 4 * 7) found.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+  return found.size;
+});
+
+async function check(name, body) {
+  const before = performance.now();
+  await body();
+  console.log(`ok: ${name} (${((performance.now() - before) / 1000).toFixed(1)} s)`);
+}
+
+try {
+  await check('the page opens with a part and a tool', async () => {
+    const before = performance.now();
+    await page.goto(address);
+    await until(() => document.getElementById('canvas').dataset.tip);
+    console.log(`    first state after ${((performance.now() - before) / 1000).toFixed(2)} s`);
+    assert.match(await text('#title'), /D2Ball on plate with a pocket/);
+    assert.match(await text('#scale-text'), /^\d+ mm$/);
+    assert.ok((await page.locator('#axes text').count()) === 3);
+  });
+
+  await check('the canvas shows a picture', async () => {
+    const count = await colors();
+    assert.ok(count > 100, `${count} colours`);
+    await shot('open');
+  });
+
+  await check('a drag pushes the ball 5 mm into the plate: the tool stays outside, and the force points out', async () => {
+    await page.click('[data-view=front]');
+    await page.waitForTimeout(300);
+    const scale = await page.evaluate(() => document.getElementById('scale-bar').getBoundingClientRect().width / Number.parseFloat(document.getElementById('scale-text').textContent));
+    const above = (await text('#tip')).trim().split(/\s+/).map(Number)[2];
+    await press(0, (above + 5) * scale);
+    await page.waitForTimeout(700);
+    const [depth, stretch] = [await number('#depth'), await number('#stretch')];
+    const force = (await data('force')).split(',').map(Number);
+    console.log(`    hand ${stretch.toFixed(2)} mm from the tool, depth ${depth} mm, force ${force.map((f) => f.toFixed(2)).join(' ')} N`);
+    assert.ok(stretch > 4.7 && stretch < 5.3, `the hand is ${stretch} mm away`);
+    assert.ok(depth > 0 && depth <= 0.05, `${depth} mm deep`);
+    assert.ok(force[2] > 4 && Math.hypot(force[0], force[1]) < 0.2 * force[2], force.join());
+    assert.ok((await number('#force')) > 4);
+    await shot('pressed');
+  });
+
+  await check('the loop keeps its rate while the tool slides', async () => {
+    const box = await page.locator('#canvas').boundingBox();
+    for (let k = 0; k < 40; k++) {
+      await page.mouse.move(box.x + box.width / 2 - 150 + 6 * k, box.y + box.height / 2 + 60);
+      await page.waitForTimeout(50);
+    }
+    const timing = JSON.parse(await data('timing'));
+    console.log(`    ${timing.rate.toFixed(0)} cycles/s, cycle p50 ${timing.p50.toFixed(0)} µs, p99 ${timing.p99.toFixed(0)} µs, ${timing.fps.toFixed(0)} pictures/s, ${timing.count} cycles, ${timing.skipped} skipped`);
+    assert.ok(timing.count > 500);
+    assert.ok((await number('#coverage')) > 0);
+    await page.click('[data-view=corner]').catch(() => {});
+    await page.waitForTimeout(300);
+    await shot('slid');
+    await page.mouse.up();
+  });
+
+  await check('letting go releases the force', async () => {
+    await page.waitForTimeout(800);
+    assert.ok((await number('#force')) < 0.5, await text('#force'));
+  });
+
+  await check('an error in the text shows under the cursor with its remedy, and goes with it', async () => {
+    await page.click('#edit');
+    await page.click('.cm-content');
+    await page.keyboard.press('Control+Home');
+    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('End');
+    await page.keyboard.type(' let s = rr;');
+    await page.waitForSelector('.cm-problem.error', { timeout: 20_000 });
+    const problem = await text('.cm-problem');
+    console.log(`    ${problem}`);
+    assert.match(problem, /rr/);
+    assert.match(problem, /T\d{4}/);
+    await shot('error');
+    for (let k = 0; k < ' let s = rr;'.length; k++) await page.keyboard.press('Backspace');
+    await until(() => /compiled in/.test(document.getElementById('problem').textContent));
+    console.log(`    ${await text('#problem')}`);
+    assert.ok((await page.locator('.cm-problem').count()) === 0);
+    assert.ok((await page.locator('#drawing svg').count()) === 1);
+  });
+
+  await check('a tool of the library that mounts files compiles', async () => {
+    await page.selectOption('#tool', 'ball_er16.tool');
+    await until(() => /BallEr16/.test(document.getElementById('title').textContent));
+    await page.waitForTimeout(800);
+    console.log(`    ${await text('#problem')}`);
+    await shot('mounted');
+  });
+
+  await check('no request leaves the page, and nothing fails', async () => {
+    assert.deepEqual(outside, []);
+    assert.deepEqual(problems, []);
+  });
+} catch (error) {
+  await shot('failed');
+  console.error(error, problems);
+  process.exitCode = 1;
+} finally {
+  await close();
+}
