@@ -259,6 +259,7 @@ on('edit', 'click', () => {
   const pane = id('editor-pane');
   pane.hidden = !pane.hidden;
   id('edit').setAttribute('aria-expanded', String(!pane.hidden));
+  document.querySelector('main').classList.toggle('editing', !pane.hidden);
 });
 on('spacemouse', 'click', async () => {
   try {

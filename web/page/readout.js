@@ -86,8 +86,10 @@ export class Readout {
    */
   showLoop({ rate, p50, p99 }, fps) {
     id('rate').textContent = rate ? rate.toFixed(0) : 'rests';
-    id('p50').textContent = p50.toFixed(0);
-    id('p99').textContent = p99.toFixed(0);
+    // The clock resolves 5 µs at best.
+    const time = (value) => (value < 5 ? 'below 5' : value.toFixed(0));
+    id('p50').textContent = time(p50);
+    id('p99').textContent = time(p99);
     id('fps').textContent = fps.toFixed(0);
   }
 

@@ -39,17 +39,19 @@ export class Scene {
       this.scene.add(group);
     }
     this.contacts = this.#points();
-    this.arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, FORCE);
+    // An arrow of length 1 along y, from its base.
+    const red = new THREE.MeshBasicMaterial({ color: FORCE, depthTest: false, transparent: true });
+    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.006, 0.006, 1, 16).translate(0, 0.5, 0), red);
+    this.head = new THREE.Mesh(new THREE.ConeGeometry(0.018, 0.05, 20).translate(0, 0.025, 0), red);
+    this.arrow = new THREE.Group().add(this.shaft, this.head);
     this.arrow.visible = false;
-    for (const part of [this.arrow.line, this.arrow.cone]) {
-      part.material.depthTest = false;
-      part.renderOrder = 3;
-    }
+    this.shaft.renderOrder = this.head.renderOrder = 4;
     this.spring = new THREE.Line(
       new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3)),
       new THREE.LineDashedMaterial({ color: 0x16202c, depthTest: false, transparent: true, opacity: 0.7 }),
     );
     this.spring.frustumCulled = false;
+    this.spring.renderOrder = 3;
     this.scene.add(this.arrow, this.spring);
   }
 
@@ -59,10 +61,10 @@ export class Scene {
       geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * MAX_CONTACTS), 3));
     }
     geometry.setDrawRange(0, 0);
-    const material = new THREE.PointsMaterial({ size: 7, sizeAttenuation: false, vertexColors: true, depthTest: false });
+    const material = new THREE.PointsMaterial({ size: 7, sizeAttenuation: false, vertexColors: true, depthTest: false, transparent: true });
     const points = new THREE.Points(geometry, material);
     points.frustumCulled = false;
-    points.renderOrder = 2;
+    points.renderOrder = 5;
     this.scene.add(points);
     return points;
   }
@@ -136,7 +138,7 @@ export class Scene {
       group.clear();
     }
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
-    this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.1, depthWrite: false })));
+    this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.14, depthTest: false, depthWrite: false })));
   }
 
   /**
@@ -194,9 +196,11 @@ export class Scene {
     if (this.arrow.visible) {
       // From the middle of the contact, a twentieth of the part's size per newton.
       this.arrow.position.copy(count ? centre.divideScalar(count) : new THREE.Vector3(...state.tool.tip));
-      this.arrow.setDirection(force.divideScalar(size));
-      const length = (0.05 * Math.min(size, 8) + 0.02) * this.size;
-      this.arrow.setLength(length, 0.03 * this.size, 0.018 * this.size);
+      this.arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), force.divideScalar(size));
+      this.arrow.scale.setScalar(this.size);
+      const length = 0.05 * Math.min(size, 8);
+      this.shaft.scale.y = length;
+      this.head.position.y = length;
     }
   }
 
