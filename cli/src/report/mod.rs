@@ -116,8 +116,8 @@ struct Content<'a> {
     comparison: Option<PartComparison>,
     files: Vec<InputFile>,
     shapes: Vec<ToolShape>,
-    /// The data of the 3-D view as JSON, and the rounding of its coordinates.
-    scene: (String, f64),
+    /// The data of the 3-D view as JSON, and the rounding of its coordinates; `null` and `None` without a view.
+    scene: (String, Option<f64>),
     /// One picture per quantity.
     sheets: Vec<Picture>,
     /// The worst findings, by their index.
@@ -206,7 +206,7 @@ impl<'a> Content<'a> {
             files: files
                 .map(|(role, file)| InputFile::read(role, file))
                 .collect::<Result<_, _>>()?,
-            scene: (scene::json(&scene)?, scene.rounding_error()),
+            scene: (scene::json(&scene)?, scene.map(|scene| scene.rounding_error())),
             sheets,
             close_ups,
             has_place: places.iter().map(Option::is_some).collect(),

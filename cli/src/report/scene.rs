@@ -10,6 +10,8 @@ use serde::Serialize;
 use touchoff::postures::colormap;
 use touchoff::{Escaped, Pose, Unit};
 
+/// Number of triangles above which there is no 3-D view, so that the file stays below 15 MB.
+const MAX_TRIANGLES: usize = 500_000;
 /// Largest value of a rounded coordinate.
 const COORDINATE_STEPS: f64 = u16::MAX as f64;
 /// Largest value of a colour; 0 stands for none.
@@ -74,12 +76,16 @@ struct PlaceRow {
 }
 
 impl<'a> Scene<'a> {
+    /// Returns the data of the view; `None` if there are too many triangles for one.
     pub(super) fn new(
         (shown, layers): (&'a [Shown], &'a [Layer]),
         shapes: &[ToolShape],
         places: &[Option<Place>],
         (title, unit): (&'a str, Unit),
-    ) -> Scene<'a> {
+    ) -> Option<Scene<'a>> {
+        if shown.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
+            return None;
+        }
         let tool = |shape: &ToolShape| Tool {
             lines: shape
                 .lines
@@ -103,7 +109,7 @@ impl<'a> Scene<'a> {
             }
         };
         const COLOURS: usize = 33;
-        Scene {
+        Some(Scene {
             title,
             unit: unit.symbol(),
             bodies: shown.iter().map(Body::new).collect(),
@@ -111,7 +117,7 @@ impl<'a> Scene<'a> {
             tools: shapes.iter().map(tool).collect(),
             places: places.iter().map(|known| known.as_ref().map(place)).collect(),
             colours: (0..COLOURS).map(|k| colormap(k as f64 / (COLOURS - 1) as f64)).collect(),
-        }
+        })
     }
 
     /// Returns the greatest difference of a shown coordinate from the one of the file.

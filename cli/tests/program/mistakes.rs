@@ -50,13 +50,16 @@ const FILES: [(&str, &str); 21] = [
 ];
 
 /// Command lines, without `touchoff`. `PART` stands for `--part part.stl --unit mm`.
-const MISTAKES: [&str; 81] = [
+const MISTAKES: [&str; 84] = [
     // The command and its options.
     "verfy PART",
     "run --part part.stl --tool D2Ball --program program.apt",
     "run PART --tool D2Ball --path program.apt",
     "verify PART --tool D2Ball --program program.apt --tolerence 0.1",
     "run PART --tool D2Ball",
+    "report part.stl --unit mm -o report.html",
+    "report part.stl --unit mm --tool D2Ball --program program.apt -o report.pdf",
+    "report job.toml --tool D2Ball -o report.html",
     "tools my.tool list",
     "tools part.stl",
     "export D2Ball -o tool.step",

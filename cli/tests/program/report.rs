@@ -58,6 +58,7 @@ impl Page {
 /// Asserts that nothing in a page is loaded from elsewhere.
 fn assert_self_contained(page: &Page) {
     assert!(page.text.contains("content=\"default-src 'none'; img-src data:;"), "no policy");
+    assert!(!page.text.contains("unsafe-"), "a policy with exceptions");
     for word in
         ["http:", "https:", "//www", "@import", "url(", "fetch(", "XMLHttpRequest", "import("]
     {

@@ -94,11 +94,17 @@ fn lines(content: &Content<'_>) -> Vec<String> {
          and acceleration are not modelled."
             .to_owned(),
     );
-    lines.push(format!(
-        "The 3-D view rounds coordinates by at most {:.1e} {unit}. Long triangles are divided for colouring. The depth of \
-         findings is coloured by samples: the centre of each triangle, points near its corners, and the deepest points found.",
-        content.scene.1
-    ));
+    lines.push(match content.scene.1 {
+        Some(error) => format!("The 3-D view rounds coordinates by at most {error:.1e} {unit}."),
+        None => {
+            "The part has too many triangles for a 3-D view; pictures stand in for it.".to_owned()
+        }
+    });
+    lines.push(
+        "Long triangles are divided for colouring. The depth of findings is coloured by samples: the centre of each triangle, \
+         points near its corners, and the deepest points found."
+            .to_owned(),
+    );
     lines.push(format!(
         "Depth and clearance along the program hold at the positions, not between them; findings hold for whole motions. \
          Forces are sums over {POINTS} sampled points."

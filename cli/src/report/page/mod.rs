@@ -10,14 +10,20 @@ use super::scene::{base64, json};
 use super::{Content, Picture, file_name};
 use crate::failure::Failure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest, Sha256};
 use touchoff::Escaped;
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("viewer.js");
 
-/// Nothing may be loaded: neither by the page nor by a script in a name from a file.
-const POLICY: &str =
-    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+/// Returns the policy of the page: nothing is loaded, and no script runs but its own, not even one in the name of a file.
+fn policy() -> String {
+    let [style, script] =
+        [STYLE, SCRIPT].map(|text| base64(Sha256::digest(text.as_bytes()).into_iter()));
+    format!(
+        "default-src 'none'; img-src data:; style-src 'sha256-{style}'; script-src 'sha256-{script}'"
+    )
+}
 
 /// Returns the page.
 ///
@@ -33,7 +39,7 @@ pub(super) fn html(content: &Content<'_>) -> Result<String, Failure> {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta http-equiv="Content-Security-Policy" content=(policy());
                 title { (title) " - touchoff report" }
                 style { (PreEscaped(STYLE)) }
             }
@@ -100,7 +106,7 @@ fn view(content: &Content<'_>) -> Markup {
                     span id="nothing" {}
                 }
                 p.note {
-                    "Drag to turn, shift and drag or two fingers to move, wheel to zoom; arrow keys turn, + and - zoom. A \
+                    "Drag to turn, shift and drag or two fingers to move; then the wheel zooms. Arrow keys turn, + and - zoom. A \
                      click on a finding moves the view there. The tool is drawn as glass, orange where it cuts."
                 }
             }

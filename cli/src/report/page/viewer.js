@@ -5,7 +5,7 @@
   const element = id => document.getElementById(id);
   const scene = JSON.parse(element("scene").textContent);
   const canvas = element("canvas");
-  const gl = canvas.getContext("webgl2", { antialias: false });
+  const gl = scene && canvas.getContext("webgl2", { antialias: false });
   if (!gl) return;
 
   const SURFACE = `#version 300 es
@@ -366,6 +366,8 @@
   for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, event => pointers.delete(event.pointerId));
   canvas.addEventListener("contextmenu", event => event.preventDefault());
   canvas.addEventListener("wheel", event => {
+    // The wheel scrolls the page until the view is in use.
+    if (document.activeElement !== canvas) return;
     event.preventDefault();
     flight++;
     zoom(Math.exp(Math.sign(event.deltaY) * Math.min(Math.abs(event.deltaY), 100) * 0.0016));
