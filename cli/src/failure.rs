@@ -57,7 +57,9 @@ pub(crate) enum Failure {
     #[error("the session was interrupted; what was recorded until then is complete")]
     Interrupted,
     /// The port of the page is taken or not allowed.
-    #[error("cannot listen at 127.0.0.1:{port}: {source}; give another `--port`, or none for a free one")]
+    #[error(
+        "cannot listen at 127.0.0.1:{port}: {source}; give another `--port`, or none for a free one"
+    )]
     Port {
         /// The port.
         port: u16,
