@@ -204,16 +204,6 @@ async function openTools(files) {
 async function begin() {
   const session = await (await fetch('session.json')).json();
   for (const [shape, name] of Object.entries(SHAPES)) id('part').add(new Option(name, shape));
-  if (session.part) {
-    const { name, unit } = session.part;
-    id('part').add(new Option(name, ''), 0);
-    id('part').value = '';
-    id('unit').value = unit;
-    lastFile = new File([await (await fetch('part')).arrayBuffer()], name);
-    await openPart(lastFile);
-  } else {
-    loadPart(SHAPES.pocket, { shape: 'pocket' });
-  }
   if (session.tool) {
     const { name, text, files } = session.tool;
     if (text) {
@@ -228,6 +218,16 @@ async function begin() {
   } else {
     id('tool').value = DEFAULT_TOOL;
     takeTool(DEFAULT_TOOL);
+  }
+  if (session.part) {
+    const { name, unit } = session.part;
+    id('part').add(new Option(name, ''), 0);
+    id('part').value = '';
+    id('unit').value = unit;
+    lastFile = new File([await (await fetch('part')).arrayBuffer()], name);
+    await openPart(lastFile);
+  } else {
+    loadPart(SHAPES.pocket, { shape: 'pocket' });
   }
   requestAnimationFrame(frame);
 }

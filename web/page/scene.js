@@ -150,7 +150,9 @@ export class Scene {
     const direction = new THREE.Vector3(...from).normalize();
     const target = this.box.getCenter(new THREE.Vector3());
     target.z += 0.12 * this.size;
-    const distance = (0.62 * this.size) / Math.tan((this.camera.fov * Math.PI) / 360);
+    // A narrow view needs more distance.
+    const narrow = Math.min(1, this.canvas.clientWidth / this.canvas.clientHeight);
+    const distance = (0.62 * this.size) / Math.tan((this.camera.fov * Math.PI) / 360) / narrow;
     this.orbit.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.camera.near = distance / 100;

@@ -59,20 +59,6 @@ const toolTriangles = () => ({ positions: engine.toolPositions(), normals: engin
 /** The text to compile next. @type {{name: string, text: string, files: Record<string, string>, version: number} | null} */
 let waitingTool = null;
 
-/** Compiles the text that waits, and takes the tool unless it has errors. */
-function compile() {
-  const { name, text, files, version } = waitingTool;
-  waitingTool = null;
-  try {
-    const before = performance.now();
-    const result = JSON.parse(engine.compileTool(name, text, JSON.stringify(files)));
-    const milliseconds = performance.now() - before;
-    postMessage({ kind: 'tool', version, result, milliseconds, tool: result.tool && toolTriangles() });
-  } catch (error) {
-    postMessage({ kind: 'error', message: String(error.message ?? error) });
-  }
-}
-
 /** @type {Record<string, (message: any) => void>} */
 const requests = {
   part({ shape, bytes, name, unit, points }) {
@@ -81,7 +67,8 @@ const requests = {
     const positions = engine.partPositions();
     const facts = JSON.parse(engine.partFacts());
     postMessage({ kind: 'part', facts, positions, tool: toolTriangles() }, [positions.buffer]);
-    requests.points({ points });
+    // A tool that waits is compiled before, so that there is a picture meanwhile.
+    setTimeout(() => answer({ kind: 'points', points }), 0);
   },
   /** Samples the part: it can be touched then. */
   points({ points }) {
@@ -89,8 +76,17 @@ const requests = {
   },
   tool(request) {
     // Of texts that arrive while one compiles, the last one counts.
-    if (!waitingTool) setTimeout(compile, 0);
+    if (!waitingTool) setTimeout(() => answer({ kind: 'compile' }), 0);
     waitingTool = request;
+  },
+  /** Compiles the text that waits, and takes the tool unless it has errors. */
+  compile() {
+    const { name, text, files, version } = waitingTool;
+    waitingTool = null;
+    const before = performance.now();
+    const result = JSON.parse(engine.compileTool(name, text, JSON.stringify(files)));
+    const milliseconds = performance.now() - before;
+    postMessage({ kind: 'tool', version, result, milliseconds, tool: result.tool && toolTriangles() });
   },
   libraryTool({ file, version }) {
     const text = Engine.libraryText(file);
@@ -128,7 +124,8 @@ async function engineBytes() {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 }
 
-onmessage = ({ data }) => {
+/** Answers a request, or says why it cannot be met. */
+function answer(data) {
   try {
     requests[data.kind](data);
   } catch (error) {
@@ -136,7 +133,9 @@ onmessage = ({ data }) => {
     // A page that waits for a frame gets the next one.
     if (data.kind === 'frame') postMessage({ kind: 'frame', state: new Float64Array(), contacts: new Float32Array(), surfaces: new Float64Array(), timing: timing.summary(false), skipped });
   }
-};
+}
+
+onmessage = ({ data }) => answer(data);
 
 await init({ module_or_path: await WebAssembly.compile(await engineBytes()) });
 engine = new Engine(1000 / PERIOD, 4000);

@@ -40,6 +40,8 @@ try {
   await check('the page opens with a part and a tool', async () => {
     const before = performance.now();
     await page.goto(address);
+    await until(() => document.getElementById('title').textContent);
+    console.log(`    first picture after ${((performance.now() - before) / 1000).toFixed(2)} s`);
     await until(() => document.getElementById('canvas').dataset.tip);
     console.log(`    first state after ${((performance.now() - before) / 1000).toFixed(2)} s`);
     assert.match(await text('#title'), /D2Ball on plate with a pocket/);
@@ -121,6 +123,23 @@ try {
     await page.waitForTimeout(800);
     console.log(`    ${await text('#problem')}`);
     await shot('mounted');
+  });
+
+  await check('a part of a file is read in its unit, and a broken one is refused with the reason', async () => {
+    const corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    const facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map((facet) => `facet normal 0 0 0\nouter loop\n${facet
+      .map((corner) => `vertex ${corners[corner].join(' ')}`).join('\n')}\nendloop\nendfacet\n`);
+    const file = (name, content) => ({ name, mimeType: 'model/stl', buffer: Buffer.from(content) });
+    await page.selectOption('#unit', 'inch');
+    await page.setInputFiles('#part-file', file('corner.stl', `solid s\n${facets.join('')}endsolid s\n`));
+    await until(() => /^corner\.stl: closed.*volume 0\.166667 inch³/s.test(document.getElementById('facts').textContent));
+    assert.match(await text('#scale-text'), /^[\d.]+ inch$/);
+    await page.waitForTimeout(500);
+    await shot('file');
+    await page.setInputFiles('#part-file', file('broken.stl', 'solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 nan\n'));
+    await page.waitForSelector('#message.error');
+    console.log(`    ${await text('#message')}`);
+    assert.match(await text('#message'), /broken\.stl/);
   });
 
   await check('no request leaves the page, and nothing fails', async () => {
