@@ -7,6 +7,7 @@ use crate::program::extent;
 use crate::verify::{self, CheckedPair, Severity};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
+use touchoff::Unit;
 use touchoff::stock::DeviationPoint;
 
 pub(super) fn section(content: &Content<'_>, title: &str) -> Markup {
@@ -71,9 +72,9 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
         )
     };
     let mut rows = vec![("Part", vec![plain(&job.part.display().to_string()), sides])];
-    let pair = verification.pairs.iter().find(|pair| pair.is_part && pair.report.moves > 0);
+    let pairs = verification.pairs.iter().filter(|pair| pair.is_part && pair.report.moves > 0);
     let mut program = vec![plain(&job.program.display().to_string())];
-    program.extend(pair.iter().flat_map(|pair| travel(pair, content)));
+    program.extend(pairs.flat_map(|pair| travel(pair, unit)));
     rows.push(("Program", program));
     let tools = inputs.tools.iter().map(|tool| {
         let info = tool.tool().info();
@@ -123,8 +124,7 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
 }
 
 /// Describes where a program goes.
-fn travel(pair: &CheckedPair<'_>, content: &Content<'_>) -> Vec<String> {
-    let unit = content.inputs.job.unit;
+fn travel(pair: &CheckedPair<'_>, unit: Unit) -> [String; 3] {
     let report = &pair.report;
     let approach = &report.approach;
     let nearest = match (approach.distance, approach.line) {
@@ -138,7 +138,7 @@ fn travel(pair: &CheckedPair<'_>, content: &Content<'_>) -> Vec<String> {
     };
     let tool = pair.scope.number.map_or(String::new(), |number| format!("T{number}: "));
     let [feed, rapid] = approach.travel;
-    vec![
+    [
         format!(
             "{tool}{} positions, tips in {} in {unit}",
             report.moves,
