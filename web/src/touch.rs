@@ -54,7 +54,6 @@ impl Touch {
         settings: &SessionSettings,
         hand: &Hand,
     ) -> Result<Touch, EngineError> {
-        use touchoff::haptic::Device;
         Touch::try_new(touched, |touched| {
             let probe = Probe::new(&touched.part, &*touched.tool).with_law(Law::Gradient);
             let session = Session::new(probe.clone(), settings, hand.limits())?;

@@ -28,15 +28,16 @@ const random = () => {
   return seed / 4294967296;
 };
 
-for (const [shape, file] of [['tube', 'd2_ball.tool'], ['pocket', 'ball_er16.tool'], ['tube', 'fig_7_3.tool'], ['pocket', 'l_bracket.tool']]) {
+// A part with exact coordinates: those of the tube are sines, of which each platform has its own last bit.
+for (const file of ['d2_ball.tool', 'ball_er16.tool', 'fig_7_3.tool', 'l_bracket.tool']) {
   const engine = new Engine(1000, 4000);
-  engine.generatePart(shape);
-  const radius = engine.samplePart(20000);
+  engine.generatePart('pocket');
+  const radius = engine.samplePart(5000);
   engine.compileTool(file, Engine.libraryText(file), '{}');
   engine.start(new Float64Array([0, 0, 50, 0, 0, 0, 1]));
-  lines.push(`${shape} ${file} ${hex(radius)}`);
+  lines.push(`${file} ${hex(radius)}`);
   for (let k = 0; k < 30; k++) {
-    const tip = [12 * random() - 6, 12 * random() - 6, 14 * random() - 4];
+    const tip = [36 * random() - 18, 26 * random() - 13, 10 * random() - 8];
     const turn = [random() - 0.5, random() - 0.5, random() - 0.5, 0.5 + random()];
     const norm = Math.sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
     const pose = new Float64Array([...tip, ...turn.map((value) => value / norm)]);

@@ -33,26 +33,22 @@ fn the_native_engine_has_the_kept_bits() {
     let mut random = Random(1);
     let mut found = String::new();
     let mut touching = 0;
-    for (shape, file) in [
-        ("tube", "d2_ball.tool"),
-        ("pocket", "ball_er16.tool"),
-        ("tube", "fig_7_3.tool"),
-        ("pocket", "l_bracket.tool"),
-    ] {
+    // A part with exact coordinates: those of the tube are sines, of which each platform has its own last bit.
+    for file in ["d2_ball.tool", "ball_er16.tool", "fig_7_3.tool", "l_bracket.tool"] {
         let mut engine = Engine::new(1000.0, 4000.0);
-        engine.generate_part(shape).expect("a part");
-        let radius = engine.sample_part(20_000).expect("points").expect("a radius");
+        engine.generate_part("pocket").expect("a part");
+        let radius = engine.sample_part(5_000).expect("points").expect("a radius");
         let text = Engine::library_text(file).expect("a library tool");
         engine.compile_tool(file, &text, "{}").expect("a tool");
         engine.start(&[0.0, 0.0, 50.0, 0.0, 0.0, 0.0, 1.0]).expect("a session");
-        writeln!(found, "{shape} {file} {}", hex(radius)).expect("memory");
+        writeln!(found, "{file} {}", hex(radius)).expect("memory");
         for _ in 0..30 {
-            let tip = [12.0, 12.0, 14.0].map(|size| size * random.next());
+            let tip = [36.0, 26.0, 10.0].map(|size| size * random.next());
             let turn = [-0.5, -0.5, -0.5, 0.5].map(|from| random.next() + from);
             let [x, y, z, w] = turn;
             let norm = (x * x + y * y + z * z + w * w).sqrt();
             let [x, y, z, w] = turn.map(|value| value / norm);
-            let pose = [tip[0] - 6.0, tip[1] - 6.0, tip[2] - 4.0, x, y, z, w];
+            let pose = [tip[0] - 18.0, tip[1] - 13.0, tip[2] - 8.0, x, y, z, w];
             let contacts = engine.contacts_at(&pose).expect("a pose");
             let wrench = engine.wrench(&pose).expect("a pose");
             touching += usize::from(wrench[0] > 0.0);
@@ -61,7 +57,7 @@ fn the_native_engine_has_the_kept_bits() {
             writeln!(found, "{} {} {}", line.0, line.1, line.2).expect("memory");
         }
     }
-    assert!(touching > 40, "{touching} poses touch");
+    assert!(touching > 80, "{touching} poses touch");
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bits.txt");
     if std::env::var_os("UPDATE_BITS").is_some() {
         std::fs::write(path, &found).expect("a writable folder");
