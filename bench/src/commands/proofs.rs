@@ -61,6 +61,7 @@ boxes where the proof did not come to an end. Times are those of the proof alone
                 ":!tool-dsl/src/diagnostic",
                 ":!tool-dsl/src/draw",
                 ":!tool-dsl/src/format",
+                ":!tool-dsl/src/source.rs",
                 "tools-library/tools",
             ],
             sections: vec![

@@ -62,6 +62,7 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
                 ":!tool-dsl/src/diagnostic",
                 ":!tool-dsl/src/draw",
                 ":!tool-dsl/src/format",
+                ":!tool-dsl/src/source.rs",
                 "tools-library/tools",
             ],
             sections: vec![Section {
