@@ -179,7 +179,7 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
         "{} locations, {} contact points, {} left out, {} retracts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
         path.locations.len(),
         path.contact_points,
-        path.unreached + path.unlinked,
+        path.left_out.len(),
         path.retracts,
         path.turns
     );
@@ -198,9 +198,9 @@ fn plan_and_check(mesh: Mesh, normal: [f64; 3], spacing: [f64; 2]) -> ToolPath {
 fn covers_a_sphere() {
     let path = plan_and_check(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
     assert!(
-        (path.unreached + path.unlinked) * 20 < path.contact_points,
+        path.left_out.len() * 20 < path.contact_points,
         "{} of {}",
-        path.unreached + path.unlinked,
+        path.left_out.len(),
         path.contact_points
     );
     // The tool rolls over the edges between triangles that meet at up to 10 degrees.
@@ -315,7 +315,7 @@ fn covers_a_single_triangle() {
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a mesh");
     let case = Case::new(mesh, &Mill);
     let path = case.plan_over_planes(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
-    assert_eq!(path.unreached + path.unlinked, 0);
+    assert_eq!(path.left_out.len(), 0);
     // Planes parallel to the triangle do not cut it.
     let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
     assert_eq!(case.plan(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
@@ -330,7 +330,7 @@ fn a_tool_larger_than_the_part_reaches_it() {
     assert!(
         path.contact_points >= 120 && path.unreached + path.unlinked == 0,
         "{} of {}",
-        path.unreached + path.unlinked,
+        path.left_out.len(),
         path.contact_points
     );
 }
