@@ -61,7 +61,34 @@ impl Number {
 
     /// Returns the nearest double; an infinity if the number is out of range.
     pub fn to_f64(&self) -> f64 {
-        *self.near.get_or_init(|| self.exact.to_f64().value())
+        *self.near.get_or_init(|| {
+            let (significand, exponent) = (self.exact.repr().significand(), self.exponent());
+            // Far from the ends of the range, scaling the rounded significand is exact.
+            match exponent {
+                Some(exponent) => significand.to_f64().value() * 2f64.powi(exponent),
+                None => self.exact.to_f64().value(),
+            }
+        })
+    }
+
+    /// Returns the exponent of the significand, an integer of up to 256 bits, if the number is far from the
+    /// ends of a double's range.
+    fn exponent(&self) -> Option<i32> {
+        let exponent = i32::try_from(self.exact.repr().exponent()).ok()?;
+        (-700..=500).contains(&exponent).then_some(exponent)
+    }
+
+    /// Returns whether the number is a double.
+    pub(crate) fn is_double(&self) -> bool {
+        let significand = i64::try_from(self.exact.repr().significand());
+        match (significand, self.exponent()) {
+            (Ok(significand), Some(_))
+                if significand.unsigned_abs() < 1 << f64::MANTISSA_DIGITS =>
+            {
+                true
+            }
+            _ => Number::from_f64(self.to_f64()).as_ref() == Some(self),
+        }
     }
 
     /// Returns whether a file may contain this number: zero, or a magnitude from 1e-90 to 1e90, so that sums

@@ -35,7 +35,7 @@ impl Interval {
     pub(crate) fn enclosing(value: &Number) -> Interval {
         let nearest = value.to_f64();
         // Most constants are doubles.
-        if Number::from_f64(nearest).as_ref() == Some(value) {
+        if value.is_double() {
             return Interval { low: nearest, high: nearest };
         }
         Interval::out(nearest, nearest)

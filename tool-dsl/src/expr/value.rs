@@ -63,32 +63,8 @@ impl<'g> Evaluator<'g> {
     /// Evaluates all nodes that the roots need, at a point.
     pub fn evaluate(&mut self, at: EvaluationPoint) {
         for &id in &self.order {
-            let v = |id: Id| self.values[id.index()];
-            self.values[id.index()] = match self.graph.node(id) {
-                // Constants are not in `order`.
-                Node::Const(_) => v(id),
-                Node::Coord(Coord::X) => at.x,
-                Node::Coord(Coord::Y) => at.y,
-                Node::Coord(Coord::Z) => at.z,
-                Node::Coord(Coord::D) => at.d,
-                Node::Coord(Coord::Q) => at.q,
-                Node::Coord(Coord::Length) => at.length,
-                Node::Coord(Coord::PerLength) => 1.0 / at.length,
-                Node::Neg(a) => -v(*a),
-                Node::Add(a, b) => v(*a) + v(*b),
-                Node::Sub(a, b) => v(*a) - v(*b),
-                Node::Mul(a, b) => v(*a) * v(*b),
-                Node::Div(a, b) => v(*a) / v(*b),
-                Node::Quotient(a, b) => quotient(v(*a), v(*b)),
-                Node::Min(a, b) => min(v(*a), v(*b)),
-                Node::Max(a, b) => max(v(*a), v(*b)),
-                Node::Abs(a) => v(*a).abs(),
-                Node::Sqrt(a) => v(*a).sqrt(),
-                Node::Select { low, high, then, other } => {
-                    // A comparison with NaN is false, so `other` is taken.
-                    if v(*low) <= v(*high) { v(*then) } else { v(*other) }
-                }
-            };
+            self.values[id.index()] =
+                node_value(self.graph.node(id), at, |id| self.values[id.index()]);
         }
     }
 
@@ -96,6 +72,89 @@ impl<'g> Evaluator<'g> {
     /// others have the value 0, as have all but constants before the first evaluation.
     pub fn get(&self, id: Id) -> f64 {
         self.values[id.index()]
+    }
+}
+
+/// Evaluates chosen nodes of a graph at one point after another. At each point only the requested nodes are computed, to the
+/// same values as an [`Evaluator`] gives.
+#[derive(Clone, Debug)]
+pub(crate) struct LazyEvaluator<'g> {
+    graph: &'g Graph,
+    /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
+    needed: Vec<Vec<Id>>,
+    values: Vec<f64>,
+    /// The number of the point for which each value was last computed.
+    computed_for: Vec<u64>,
+    point_number: u64,
+    point: EvaluationPoint,
+}
+
+impl<'g> LazyEvaluator<'g> {
+    /// Creates an evaluator of `roots`.
+    pub(crate) fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> LazyEvaluator<'g> {
+        let mut values = vec![0.0; graph.nodes().len()];
+        let mut needed = vec![Vec::new(); values.len()];
+        for root in roots {
+            let mut order = graph.dependencies([root]);
+            order.retain(|id| match graph.constant(*id) {
+                Some(value) => {
+                    values[id.index()] = value.to_f64();
+                    false
+                }
+                None => true,
+            });
+            needed[root.index()] = order;
+        }
+        let computed_for = vec![0; values.len()];
+        let point = EvaluationPoint::new(0.0, 0.0, 0.0);
+        LazyEvaluator { graph, needed, values, computed_for, point_number: 0, point }
+    }
+
+    /// Selects a point.
+    pub(crate) fn set(&mut self, point: EvaluationPoint) {
+        self.point = point;
+        self.point_number += 1;
+    }
+
+    /// Returns the value at the selected point of one of the roots.
+    pub(crate) fn get(&mut self, root: Id) -> f64 {
+        for &id in &self.needed[root.index()] {
+            let index = id.index();
+            if self.computed_for[index] != self.point_number {
+                self.computed_for[index] = self.point_number;
+                self.values[index] =
+                    node_value(self.graph.node(id), self.point, |id| self.values[id.index()]);
+            }
+        }
+        self.values[root.index()]
+    }
+}
+
+/// Returns the value of a node at a point where its operands have the values `v`.
+fn node_value(node: &Node, at: EvaluationPoint, v: impl Fn(Id) -> f64) -> f64 {
+    match node {
+        Node::Const(value) => value.to_f64(),
+        Node::Coord(Coord::X) => at.x,
+        Node::Coord(Coord::Y) => at.y,
+        Node::Coord(Coord::Z) => at.z,
+        Node::Coord(Coord::D) => at.d,
+        Node::Coord(Coord::Q) => at.q,
+        Node::Coord(Coord::Length) => at.length,
+        Node::Coord(Coord::PerLength) => 1.0 / at.length,
+        Node::Neg(a) => -v(*a),
+        Node::Add(a, b) => v(*a) + v(*b),
+        Node::Sub(a, b) => v(*a) - v(*b),
+        Node::Mul(a, b) => v(*a) * v(*b),
+        Node::Div(a, b) => v(*a) / v(*b),
+        Node::Quotient(a, b) => quotient(v(*a), v(*b)),
+        Node::Min(a, b) => min(v(*a), v(*b)),
+        Node::Max(a, b) => max(v(*a), v(*b)),
+        Node::Abs(a) => v(*a).abs(),
+        Node::Sqrt(a) => v(*a).sqrt(),
+        Node::Select { low, high, then, other } => {
+            // A comparison with NaN is false, so `other` is taken.
+            if v(*low) <= v(*high) { v(*then) } else { v(*other) }
+        }
     }
 }
 

@@ -13,9 +13,9 @@ use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
-use crate::formula::{CurveIndex, one_side};
+use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
-use crate::model::Model;
+
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
@@ -38,24 +38,21 @@ struct End {
 type Ends = Vec<End>;
 
 /// The segments of a profile.
-pub(super) struct ProfileFeet<'m> {
-    model: &'m Model,
+pub(super) struct ProfileFeet {
     /// The ends of each region's segment; a corner has none.
     ends: Vec<Ends>,
+    /// The curves that are polynomials.
+    curves: Vec<Option<Polynomial>>,
     /// The largest difference of depths from these distances.
     pub(super) max_difference: f64,
     /// A lower bound of each end's function on a side of a curve.
     bounds: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
 }
 
-impl<'m> ProfileFeet<'m> {
+impl ProfileFeet {
     /// Returns the segments of a profile, if each region's depth is the distance from the line, circle or
     /// corner of its own segment.
-    pub(super) fn of(
-        tool: &'m PlannedTool,
-        forms: &mut Forms<'_>,
-        size: f64,
-    ) -> Option<ProfileFeet<'m>> {
+    pub(super) fn of(tool: &PlannedTool, forms: &mut Forms<'_>, size: f64) -> Option<ProfileFeet> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
         let (features, whole) = (section.inner.features(), tool.extent.cell());
@@ -77,7 +74,9 @@ impl<'m> ProfileFeet<'m> {
             (difference <= DISTANCE_TOLERANCE_FRACTION * size).then_some(ends)
         });
         let ends = ends.collect::<Option<_>>()?;
-        Some(ProfileFeet { model, ends, max_difference, bounds: HashMap::new() })
+        let curve = |curve: &Curve| forms.polynomial(curve.value);
+        let curves = model.curves.iter().map(curve).collect();
+        Some(ProfileFeet { ends, curves, max_difference, bounds: HashMap::new() })
     }
 
     /// Returns an upper bound of the distance of feet past the ends of their owner's segment, for a claim's
@@ -112,9 +111,9 @@ impl<'m> ProfileFeet<'m> {
         (curve, below): (CurveIndex, bool),
         cell: Cell,
     ) -> Option<f64> {
-        let (model, ends) = (self.model, &self.ends);
+        let (curves, ends) = (&self.curves, &self.ends);
         let bound = || {
-            let curve = Polynomial::from_expression(&model.graph, model.curves[curve].value)?;
+            let curve = curves[curve].as_ref()?;
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
                 // Where the end's function is negative, the conic has the opposite sign throughout.

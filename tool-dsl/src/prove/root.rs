@@ -46,7 +46,7 @@ impl Order {
 }
 
 /// A difference of two forms, with roots eliminated by squaring.
-struct Difference {
+pub(super) struct Difference {
     /// A polynomial that is 0 wherever the difference is.
     squared: Polynomial,
     /// A polynomial that is not negative where the difference is 0.
@@ -54,6 +54,36 @@ struct Difference {
     /// True if the difference has the opposite sign of `squared` where `branch` and `positive` are positive.
     is_opposite: bool,
     positive: Option<RootForm>,
+}
+
+impl Difference {
+    /// Returns how the two forms agree wherever a curve's polynomial is zero, if they do. `square` is that
+    /// polynomial's square, if it has one.
+    ///
+    /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
+    /// includes a polynomial that is at least 0 where it is this branch.
+    pub(super) fn agreement_on(
+        &self,
+        curve: &Polynomial,
+        square: Option<&Polynomial>,
+    ) -> Option<Agreement> {
+        let Difference { squared, branch, is_opposite, positive } = self;
+        let is_square = square.is_some_and(|square| squared.ratio(square).is_some());
+        let (smooth, ratio) = (squared.is_zero() || is_square, squared.ratio(curve));
+        let agrees = smooth || ratio.is_some() || squared.vanishes_on_line(curve);
+        agrees.then(|| Agreement {
+            smooth,
+            branch: branch.clone(),
+            order: ratio.map(|ratio| Order {
+                falls: ratio.is_negative() != *is_opposite,
+                positive: branch
+                    .iter()
+                    .map(RootForm::from_polynomial)
+                    .chain(positive.clone())
+                    .collect(),
+            }),
+        })
+    }
 }
 
 /// The forms of nodes, each computed once.
@@ -77,6 +107,11 @@ impl<'g> Forms<'g> {
             }
         }
         self.forms.get(&id).cloned().flatten()
+    }
+
+    /// Returns a node as a polynomial, if it is one.
+    pub(super) fn polynomial(&mut self, id: Id) -> Option<Polynomial> {
+        self.polynomials.of(self.graph, id).cloned()
     }
 
     fn node(&mut self, id: Id) -> Option<RootForm> {
@@ -192,22 +227,8 @@ impl RootForm {
         Some(conjugate.scaled(&self.polynomial.ratio(&divisor.times_conjugate(k, p)?)?))
     }
 
-    /// Returns how two forms agree wherever a curve's polynomial is zero, if they do.
-    ///
-    /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
-    /// includes a polynomial that is at least 0 where it is this branch.
-    pub(super) fn agrees_on(&self, other: &RootForm, curve: &Polynomial) -> Option<Agreement> {
-        let Difference { squared, branch, is_opposite, positive } = self.difference(other)?;
-        let smooth = squared.is_zero() || squared.is_square_of(curve);
-        let order = squared.ratio(curve).map(|ratio| Order {
-            falls: ratio.is_negative() != is_opposite,
-            positive: branch.iter().map(RootForm::from_polynomial).chain(positive).collect(),
-        });
-        (smooth || squared.vanishes_on(curve)).then_some(Agreement { smooth, branch, order })
-    }
-
     /// Returns the difference of two forms, with roots eliminated by squaring.
-    fn difference(&self, other: &RootForm) -> Option<Difference> {
+    pub(super) fn difference(&self, other: &RootForm) -> Option<Difference> {
         let minus = Number::int(-1);
         if let Some(difference) = self.plus(&other.scaled(&minus)) {
             // l + k √P = 0 where l² = k² P and l does not have the sign of k.

@@ -5,10 +5,11 @@ use super::{JumpPoint, TOLERANCE};
 use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
-use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::expr::value::{EvaluationPoint, LazyEvaluator};
 use crate::formula::CurveIndex;
 use crate::geometry::outline::{Segment, points_with_normals};
 use crate::plan::PlannedTool;
+use std::cell::RefCell;
 
 /// The number of points from which shares are estimated.
 const SHARE_SAMPLES: usize = 10_000;
@@ -20,7 +21,7 @@ pub(super) const TEST_OFFSET_FRACTION: f64 = 1e-4;
 /// Evaluates depths and owners at points.
 pub(super) struct Witness<'t> {
     tool: &'t PlannedTool,
-    values: Evaluator<'t>,
+    values: LazyEvaluator<'t>,
     size: f64,
 }
 
@@ -29,7 +30,7 @@ impl<'t> Witness<'t> {
         let model = &tool.model;
         let depths = model.regions.iter().map(|region| region.depth);
         let outputs = depths.chain(model.curves.iter().map(|curve| curve.value));
-        Witness { tool, values: Evaluator::new(&model.graph, outputs), size }
+        Witness { tool, values: LazyEvaluator::new(&model.graph, outputs), size }
     }
 
     /// Returns each region's share of the solid, estimated from evenly spread points.
@@ -102,9 +103,11 @@ impl<'t> Witness<'t> {
     }
 
     pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
-        self.values.evaluate(EvaluationPoint::new(x, y, z));
+        self.values.set(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
-        *self.tool.plan.owner.leaf_at(&|curve: CurveIndex| self.values.get(curves[curve].value))
+        let values = RefCell::new(&mut self.values);
+        let value = |curve: CurveIndex| values.borrow_mut().get(curves[curve].value);
+        *self.tool.plan.owner.leaf_at(&value)
     }
 
     /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether

@@ -5,7 +5,7 @@ mod order;
 mod signs;
 
 use super::cover::{Claim, Cover, half_diagonal};
-use super::root::{Agreement, Forms, RootForm};
+use super::root::{Agreement, Difference, Forms, RootForm};
 use super::sum::RootSum;
 use super::tangency::Contact;
 use super::tangent::{DepthDifference, Tangency};
@@ -17,7 +17,7 @@ use crate::expr::{Id, Node};
 use crate::formula::{ANY_SIGN, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
-use order::LowerByLinear;
+use order::{ExcessBesideLine, LowerByLinear};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -83,12 +83,15 @@ pub(super) struct BorderProver<'m> {
     /// The curves that are not polynomials but sums of roots.
     sums: Vec<Option<RootSum>>,
     differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
-    /// Straight curves with a gradient of length 1.
-    lines: HashMap<CurveIndex, Option<Polynomial>>,
+    /// For a depth, whether it is the greater of two, a straight curve, and the side below it: its excess there.
+    beside_line: HashMap<(usize, bool, CurveIndex, bool), Option<ExcessBesideLine>>,
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
     agreements: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
+    /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
+    depth_differences: BTreeMap<Pair, Option<Difference>>,
+    squares: Vec<Option<Polynomial>>,
     /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
     conic_signs: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
     /// The signs of a curve that linear curves leave possible.
@@ -107,6 +110,8 @@ pub(super) struct BorderProver<'m> {
     contacts: HashMap<(CurveIndex, CurveIndex), ContactSearch>,
     tangencies: HashMap<(Pair, CurveIndex), Option<Tangency>>,
     values: Evaluator<'m>,
+    /// The point at which depths were evaluated last.
+    evaluated_at: Option<[f64; 3]>,
     /// The current box.
     cell: Cell,
 }
@@ -128,9 +133,15 @@ impl<'m> BorderProver<'m> {
             Some(_) => None,
             None => RootSum::of(&model.graph, forms, value),
         });
+        let square = |curve: &Option<Curve>| {
+            let (curve, _) = curve.as_ref()?;
+            curve.times(curve)
+        };
         BorderProver {
             model,
             size,
+            depth_differences: BTreeMap::new(),
+            squares: curves.iter().map(square).collect(),
             may_jump,
             max_jump: finest.min(MAX_TANGENT_JUMP) * size,
             check_listed_owners: !model.is_exact(),
@@ -151,7 +162,8 @@ impl<'m> BorderProver<'m> {
             excluded: HashMap::new(),
             no_deeper: HashMap::new(),
             excesses: HashMap::new(),
-            lines: HashMap::new(),
+            beside_line: HashMap::new(),
+            evaluated_at: None,
             contacts: HashMap::new(),
             tangencies: HashMap::new(),
             cell,
@@ -346,9 +358,14 @@ impl<'m> BorderProver<'m> {
         if let Some(known) = self.agreements.get(&(pair, curve)) {
             return known.clone();
         }
-        let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
-        let agreement = match (&self.depths[pair.0], other, &self.curves[curve]) {
-            (Some(own), Some(other), Some((curve, _))) => own.agrees_on(other, curve),
+        let difference = self.depth_differences.entry(pair).or_insert_with(|| {
+            let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
+            self.depths[pair.0].as_ref()?.difference(other?)
+        });
+        let agreement = match (difference, &self.curves[curve]) {
+            (Some(difference), Some((polynomial, _))) => {
+                difference.agreement_on(polynomial, self.squares[curve].as_ref())
+            }
             _ => None,
         };
         let agreement = agreement.map(Rc::new);

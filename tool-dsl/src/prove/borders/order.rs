@@ -25,6 +25,14 @@ pub(super) enum LowerByLinear {
     Each([bool; 2]),
 }
 
+/// The excess of one of two depths over the other, one of which is the distance from a line.
+pub(super) enum ExcessBesideLine {
+    /// The excess itself.
+    Polynomial(Polynomial),
+    /// An upper bound of it everywhere.
+    Bound(f64),
+}
+
 /// The index of a depth in [`Model::depths`](crate::model::Model::depths); `None` for the outside, whose
 /// depth is 0.
 type Owner = Option<usize>;
@@ -127,19 +135,24 @@ impl BorderProver<'_> {
         let (curves, depth) = (&self.curves, self.depths[own].as_ref()?);
         let lines = claim.signs.iter().filter_map(|(curve, signs)| {
             let is_below = one_side(*signs)?;
-            let line = self.lines.entry(*curve).or_insert_with(|| {
+            let entry = self.beside_line.entry((own, is_more, *curve, is_below));
+            let known = entry.or_insert_with(|| {
                 let (line, _) = curves[*curve].as_ref()?;
-                line.is_linear().then(|| line.with_unit_slope())?
-            });
-            let sign = Number::int(if is_below == is_more { -1 } else { 1 });
-            let line = RootForm::from_polynomial(&line.as_ref()?.scaled(&sign));
-            let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
-            match (less.polynomial(), more.polynomial()) {
-                (Some(less), Some(more)) => {
-                    let minus = more.scaled(&Number::int(-1));
-                    Some(less.clone().plus(&minus).over(&self.cell).high.max(0.0))
+                let line = line.is_linear().then(|| line.with_unit_slope())??;
+                let sign = Number::int(if is_below == is_more { -1 } else { 1 });
+                let line = RootForm::from_polynomial(&line.scaled(&sign));
+                let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
+                match (less.polynomial(), more.polynomial()) {
+                    (Some(less), Some(more)) => {
+                        let minus = more.scaled(&Number::int(-1));
+                        Some(ExcessBesideLine::Polynomial(less.clone().plus(&minus)))
+                    }
+                    _ => excess(less, more).map(ExcessBesideLine::Bound),
                 }
-                _ => excess(less, more),
+            });
+            match known.as_ref()? {
+                ExcessBesideLine::Polynomial(excess) => Some(excess.over(&self.cell).high.max(0.0)),
+                ExcessBesideLine::Bound(bound) => Some(*bound),
             }
         });
         lines.reduce(f64::min)
@@ -209,8 +222,11 @@ impl BorderProver<'_> {
         if reach > SMALL_BOX_FRACTION * self.size {
             return Vec::new();
         }
-        let [x, y, z] = self.cell.middle();
-        self.values.evaluate(EvaluationPoint::new(x, y, z));
+        let middle @ [x, y, z] = self.cell.middle();
+        if self.evaluated_at != Some(middle) {
+            self.evaluated_at = Some(middle);
+            self.values.evaluate(EvaluationPoint::new(x, y, z));
+        }
         let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
         let is_near = |third: &Owner| {
             let difference = |owner: Owner| (depth(*third) - depth(owner)).abs();

@@ -125,7 +125,7 @@ struct Survey<'t> {
     jump_points: BTreeMap<(Pair, CurveIndex), JumpPoint>,
     /// The segments of a profile. They prove that depth is at least the distance to the surface. Without
     /// them, descents of depth prove it.
-    feet: Option<ProfileFeet<'t>>,
+    feet: Option<ProfileFeet>,
     /// The largest distance of a foot past the end of its segment.
     overshoot: f64,
     /// The least slope toward the surface.
