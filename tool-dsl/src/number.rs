@@ -78,17 +78,12 @@ impl Number {
         (-700..=500).contains(&exponent).then_some(exponent)
     }
 
-    /// Returns whether the number is a double.
+    /// Returns whether the number is a double. May be false for one near the ends of a double's range.
     pub(crate) fn is_double(&self) -> bool {
+        // Significands of this type are odd, or 0.
         let significand = i64::try_from(self.exact.repr().significand());
-        match (significand, self.exponent()) {
-            (Ok(significand), Some(_))
-                if significand.unsigned_abs() < 1 << f64::MANTISSA_DIGITS =>
-            {
-                true
-            }
-            _ => Number::from_f64(self.to_f64()).as_ref() == Some(self),
-        }
+        let fits = |significand: i64| significand.unsigned_abs() < 1 << f64::MANTISSA_DIGITS;
+        self.exponent().is_some() && significand.is_ok_and(fits)
     }
 
     /// Returns whether a file may contain this number: zero, or a magnitude from 1e-90 to 1e90, so that sums

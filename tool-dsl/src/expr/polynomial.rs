@@ -210,8 +210,10 @@ impl Polynomial {
     /// Encloses the values where d, x, y and z have these enclosures.
     fn at(&self, bases: [Interval; 4]) -> Interval {
         let term = |(monomial, value): (&Monomial, &Number)| {
-            let powers = monomial.iter().zip(bases).map(|(exponent, base)| base.power(*exponent));
-            powers.fold(Interval::enclosing(value), Interval::times)
+            let powers = monomial.iter().zip(bases).filter(|(exponent, _)| **exponent > 0);
+            powers.fold(Interval::enclosing(value), |product, (exponent, base)| {
+                product.times(base.power(*exponent))
+            })
         };
         self.0.iter().map(term).fold(ZERO, Interval::plus)
     }

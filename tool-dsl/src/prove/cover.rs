@@ -7,12 +7,16 @@ use crate::formula::possible;
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::Tree;
+use std::collections::HashMap;
 
 /// A leaf that a box may have points of, and the signs demanded on its path down the tree.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
     pub(super) owner: Option<usize>,
     pub(super) signs: Vec<(CurveIndex, Signs)>,
+    /// The number of the path's signs, without those that leave any sign possible. It is the same in every box
+    /// where these are.
+    pub(super) path: usize,
 }
 
 /// Determines the leaves that a box may have points of.
@@ -20,12 +24,15 @@ pub(super) struct Cover<'m> {
     model: &'m Model,
     tree: &'m Tree<Option<usize>>,
     encloser: Encloser<'m>,
+    /// The signs of the paths found so far, with their numbers.
+    paths: HashMap<Vec<(CurveIndex, Signs)>, usize>,
 }
 
 impl<'m> Cover<'m> {
     pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
         let values = model.curves.iter().map(|curve| curve.value);
-        Cover { model, tree, encloser: Encloser::new(&model.graph, values) }
+        let encloser = Encloser::new(&model.graph, values);
+        Cover { model, tree, encloser, paths: HashMap::new() }
     }
 
     /// Returns the signs that a curve can have in the current box.
@@ -56,7 +63,10 @@ impl<'m> Cover<'m> {
     ) {
         let Tree::Split { curve, strict, below, above } = tree else {
             if let Tree::Leaf(owner) = tree {
-                claims.push(Claim { owner: *owner, signs: path.clone() });
+                let demanded = path.iter().copied().filter(|(_, signs)| *signs != ANY_SIGN);
+                let next = self.paths.len();
+                let number = *self.paths.entry(demanded.collect()).or_insert(next);
+                claims.push(Claim { owner: *owner, signs: path.clone(), path: number });
             }
             return;
         };

@@ -20,10 +20,14 @@ pub(super) struct Tangency {
     slope: Number,
     rest: Number,
     roots: Vec<Root>,
+    /// For each combination of roots before whose feet a point may be, as bits: the affine part with these
+    /// roots in place of their distances from the feet.
+    affine: Vec<[Interval; 2]>,
     /// The largest slope of a depth across the line, without roots.
     slope_across: f64,
-    /// The radicands of two roots with the same factor, if the difference consists of these alone.
-    radicands: Option<[Polynomial; 2]>,
+    /// The radicands of two roots with the same factor, if the difference consists of these alone, and their
+    /// difference.
+    radicands: Option<[Polynomial; 3]>,
 }
 
 /// `factor · √((t - foot)² + (distance/scale)²)`, which differs from `factor · |t - foot|` by at most
@@ -32,6 +36,7 @@ pub(super) struct Tangency {
 struct Root {
     factor: Number,
     foot: Number,
+    enclosed_foot: Interval,
     /// The distance of the root's point from the line.
     distance: f64,
     /// The length along the line per unit of its coordinate.
@@ -71,6 +76,7 @@ impl Tangency {
             slope: Number::int(0),
             rest: Number::int(0),
             roots: Vec::new(),
+            affine: Vec::new(),
             slope_across: 0.0,
             radicands: None,
         };
@@ -80,8 +86,12 @@ impl Tangency {
             && k.nearly_equals(m)
             && tangency.rest.is_zero()
         {
-            tangency.radicands = Some([p.on_line(line)?, q.on_line(line)?]);
+            let [p, q] = [p.on_line(line)?, q.on_line(line)?];
+            let difference = p.clone().plus(&q.scaled(&Number::int(-1)));
+            tangency.radicands = Some([p, q, difference]);
         }
+        let combinations = 0..1 << tangency.roots.len();
+        tangency.affine = combinations.map(|before| tangency.affine_before(before)).collect();
         Some(tangency)
     }
 
@@ -120,6 +130,7 @@ impl Tangency {
         let scale = square.sqrt()?;
         self.roots.push(Root {
             factor: signed(factor * &scale),
+            enclosed_foot: Interval::enclosing(&foot),
             foot,
             distance: squared_distance.to_f64().max(0.0).sqrt().next_up(),
             scale: scale.to_f64(),
@@ -139,8 +150,8 @@ impl Tangency {
 
     /// `|√P - √Q| = |P - Q| / (√P + √Q)`
     fn by_roots(&self, cell: &Cell) -> Option<DepthDifference> {
-        let [p, q] = self.radicands.as_ref()?;
-        let difference = p.clone().plus(&q.scaled(&Number::int(-1))).over(cell).abs();
+        let [p, q, difference] = self.radicands.as_ref()?;
+        let difference = difference.over(cell).abs();
         let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
         (lengths.low > 0.0).then(|| DepthDifference {
             jump: difference.times(lengths.reciprocal()).high,
@@ -150,24 +161,36 @@ impl Tangency {
 
     fn by_feet(&self, cell: &Cell) -> Option<DepthDifference> {
         let t = cell.sides[self.axis];
-        let (mut slope, mut rest) = (self.slope.clone(), self.rest.clone());
         let (mut error, mut slope_across) = (0.0f64, self.slope_across);
-        for root in &self.roots {
-            let from_foot = t.plus(Interval::enclosing(&root.foot).negated());
+        let mut before_feet = 0;
+        for (k, root) in self.roots.iter().enumerate() {
+            let from_foot = t.plus(root.enclosed_foot.negated());
             if from_foot.low <= 0.0 && from_foot.high >= 0.0 {
                 return None;
             }
-            let factor = if from_foot.high < 0.0 { -&root.factor } else { root.factor.clone() };
-            rest = &rest - &(&factor * &root.foot);
-            slope = &slope + &factor;
+            before_feet |= usize::from(from_foot.high < 0.0) << k;
             // A root differs from the form without `distance` by at most `distance`. Twice that also covers the
             // rounding of `distance` and of the sum.
             error += 2.0 * root.distance;
             slope_across =
                 slope_across.max(2.0 * root.distance / (root.scale * from_foot.abs().low));
         }
-        let affine = Interval::enclosing(&slope).times(t).plus(Interval::enclosing(&rest));
+        let [slope, rest] = self.affine[before_feet];
+        let affine = slope.times(t).plus(rest);
         Some(DepthDifference { jump: affine.abs().high + error, slope_across })
+    }
+
+    /// Returns the enclosures of the slope and the constant of the sum without the roots' distances, where `t`
+    /// is before the feet of some roots: those of the bits that are set.
+    fn affine_before(&self, before_feet: usize) -> [Interval; 2] {
+        let (mut slope, mut rest) = (self.slope.clone(), self.rest.clone());
+        for (k, root) in self.roots.iter().enumerate() {
+            let is_before = before_feet >> k & 1 != 0;
+            let factor = if is_before { -&root.factor } else { root.factor.clone() };
+            rest = &rest - &(&factor * &root.foot);
+            slope = &slope + &factor;
+        }
+        [slope, rest].each_ref().map(Interval::enclosing)
     }
 }
 

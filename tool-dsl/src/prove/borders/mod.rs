@@ -57,11 +57,15 @@ pub(super) struct Separation {
     pub(super) difference: f64,
 }
 
-/// The signs that a path down the tree demands.
-type PathSigns = Vec<(CurveIndex, Signs)>;
+/// An owner and the number of a path down the tree to it. What follows from the signs on that path alone is
+/// the same for all claims with it, in any box.
+type Leaf = (Option<usize>, usize);
 
 /// The number of searches for the contact of two curves, and the contact if one was found.
 type ContactSearch = (u32, Option<Contact>);
+
+/// The sign that a conic has on a whole side of a line, and whether that is the side below it.
+type ConicSign = Option<(bool, bool)>;
 
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
@@ -88,23 +92,25 @@ pub(super) struct BorderProver<'m> {
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    agreements: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
+    /// The agreement of the depths of two owners on each curve, if they agree there; `None` where that is not known yet.
+    agreements: HashMap<Pair, Vec<Option<Option<Rc<Agreement>>>>>,
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
     squares: Vec<Option<Polynomial>>,
     /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-    conic_signs: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
+    /// A row by line, of entries by curve; `None` where that is not known yet.
+    conic_signs: Vec<Vec<Option<ConicSign>>>,
     /// The signs of a curve that linear curves leave possible.
-    by_linear: HashMap<(Option<usize>, PathSigns, CurveIndex), Signs>,
+    by_linear: HashMap<(Leaf, CurveIndex), Signs>,
     linear: Linear,
     /// The order of two depths, each at its own claim, according to linear curves.
-    lower: HashMap<(Pair, [PathSigns; 2]), LowerByLinear>,
+    lower: HashMap<[Leaf; 2], LowerByLinear>,
     /// True if the first or the second depth is at most a third one that continues the other.
-    lower_by_third: HashMap<((Pair, [PathSigns; 2]), usize), bool>,
+    lower_by_third: HashMap<([Leaf; 2], usize), bool>,
     /// True if a claim has no point of a region.
-    excluded: HashMap<(usize, PathSigns), bool>,
-    /// True if a depth is at most another where curves have these signs.
-    no_deeper: HashMap<(Vec<Signs>, usize, usize), bool>,
+    excluded: HashMap<(usize, usize), bool>,
+    /// True if a depth is at most another at a leaf's points, according to linear curves.
+    no_deeper: HashMap<(Leaf, [usize; 2]), bool>,
     /// An upper bound of the excess of one depth over another.
     excesses: HashMap<(usize, usize), Option<f64>>,
     contacts: HashMap<(CurveIndex, CurveIndex), ContactSearch>,
@@ -150,11 +156,11 @@ impl<'m> BorderProver<'m> {
             sums: sums.collect(),
             differences: BTreeMap::new(),
             depths,
+            conic_signs: vec![Vec::new(); curves.len()],
             curves,
             zero: RootForm::zero(),
             joints: BTreeMap::new(),
-            agreements: BTreeMap::new(),
-            conic_signs: BTreeMap::new(),
+            agreements: HashMap::new(),
             by_linear: HashMap::new(),
             linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
@@ -217,11 +223,11 @@ impl<'m> BorderProver<'m> {
 
     /// Returns whether linear curves prove that no point of a claim is in a region, except on borders.
     fn excluded(&mut self, claim: &Claim, region: usize) -> bool {
-        let key = (region, path_signs(claim));
+        let key = (region, claim.path);
         if let Some(known) = self.excluded.get(&key) {
             return *known;
         }
-        let signs_on_path = self.signs(&key.1);
+        let signs_on_path = self.signs(claim);
         let linear = &self.linear;
         // Tests one of the alternatives, with borders left out.
         let empty = |demands: &[&Formula]| {
@@ -355,7 +361,8 @@ impl<'m> BorderProver<'m> {
 
     /// Returns how two owners' depths agree on a curve, if they do.
     fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
-        if let Some(known) = self.agreements.get(&(pair, curve)) {
+        let known = self.agreements.entry(pair).or_insert_with(|| vec![None; self.curves.len()]);
+        if let Some(known) = &known[curve] {
             return known.clone();
         }
         let difference = self.depth_differences.entry(pair).or_insert_with(|| {
@@ -369,7 +376,7 @@ impl<'m> BorderProver<'m> {
             _ => None,
         };
         let agreement = agreement.map(Rc::new);
-        self.agreements.insert((pair, curve), agreement.clone());
+        known[curve] = Some(agreement.clone());
         agreement
     }
 
@@ -400,8 +407,8 @@ impl<'m> BorderProver<'m> {
     }
 }
 
-fn path_signs(claim: &Claim) -> PathSigns {
-    claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY_SIGN).collect()
+fn leaf(claim: &Claim) -> Leaf {
+    (claim.owner, claim.path)
 }
 
 /// Returns the signs in the closure of the set with these signs.

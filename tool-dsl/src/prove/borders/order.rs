@@ -6,7 +6,7 @@ use super::super::cover::{Claim, Cover, half_diagonal};
 use super::super::excess::excess;
 use super::super::root::RootForm;
 use super::Pair;
-use super::{BorderProver, PathSigns, closure, path_signs};
+use super::{BorderProver, closure, leaf};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::EvaluationPoint;
 use crate::formula::{CurveIndex, Signs, one_side};
@@ -48,23 +48,21 @@ impl BorderProver<'_> {
         separating_curves: &[CurveIndex],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
-        let key = (pair, claims.map(path_signs));
+        let key = claims.map(leaf);
         let linear = match self.lower.get(&key) {
             Some(known) => *known,
             None => {
-                let known = self.lower_by_linear(pair, &self.listed_signs(pair, &key.1));
-                self.lower.insert(key.clone(), known);
+                let signs = claims.map(|claim| self.listed_signs(claim));
+                let known = self.lower_by_linear(pair, &signs);
+                self.lower.insert(key, known);
                 known
             }
         };
         let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
-        let signs = self.listed_signs(pair, &key.1);
         let (own, Some(other)) = pair else {
             let own = Some(pair.0);
-            let below =
-                self.excess_on(claims[1], (&signs[1], separating_curves), [own, None], cover)?;
-            let above =
-                self.excess_on(claims[0], (&signs[0], separating_curves), [None, own], cover)?;
+            let below = self.excess_on(claims[1], separating_curves, [own, None], cover)?;
+            let above = self.excess_on(claims[0], separating_curves, [None, own], cover)?;
             return Some(below.max(above)).filter(|difference| *difference <= self.max_jump);
         };
         let owners = [[own, other], [other, own]];
@@ -74,8 +72,7 @@ impl BorderProver<'_> {
         let excess = [0, 1].map(|k| {
             let owners = owners[k].map(Some);
             let zero = lesser[k].then_some(0.0);
-            let excess =
-                zero.or_else(|| self.excess_on(claims[k], (&signs[k], borders), owners, cover));
+            let excess = zero.or_else(|| self.excess_on(claims[k], borders, owners, cover));
             excess.filter(|excess| *excess <= max_excess)
         });
         let (side, excess) = match excess {
@@ -84,10 +81,11 @@ impl BorderProver<'_> {
             [Some(excess), None] => (1, excess),
             [None, Some(excess)] => (0, excess),
         };
-        let lower = match self.lower_by_third.get(&(key.clone(), side)) {
+        let lower = match self.lower_by_third.get(&(key, side)) {
             Some(known) => *known,
             None => {
-                let lower = self.lesser_than_third(owners[side], &signs[side], separating_curves);
+                let signs = self.listed_signs(claims[side]);
+                let lower = self.lesser_than_third(owners[side], &signs, separating_curves);
                 self.lower_by_third.insert((key, side), lower);
                 lower
             }
@@ -102,7 +100,7 @@ impl BorderProver<'_> {
     fn excess_on(
         &mut self,
         claim: &Claim,
-        (signs, borders): (&[Signs], &[CurveIndex]),
+        borders: &[CurveIndex],
         [less, more]: [Owner; 2],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
@@ -115,7 +113,7 @@ impl BorderProver<'_> {
                 [([less, third], [third, more]), ([third, more], [less, third])]
             {
                 if self.ordered(by_curve, claim, cover) {
-                    let everywhere_by = self.excess(signs, everywhere);
+                    let everywhere_by = self.excess(claim, everywhere);
                     let found = [everywhere_by, self.jump_on_borders(borders, everywhere)];
                     min_excess = found.into_iter().flatten().chain(min_excess).reduce(f64::min);
                 }
@@ -181,19 +179,20 @@ impl BorderProver<'_> {
     }
 
     /// Returns an upper bound of the excess of one region's depth over another's: everywhere, or by linear
-    /// curves where curves have these signs.
-    fn excess(&mut self, signs: &[Signs], [less, more]: [Owner; 2]) -> Option<f64> {
+    /// curves at a claim's points.
+    fn excess(&mut self, claim: &Claim, [less, more]: [Owner; 2]) -> Option<f64> {
         let [less, more] = [less?, more?];
         let (a, b) = (self.depths[less].as_ref()?, self.depths[more].as_ref()?);
         let excess = *self.excesses.entry((less, more)).or_insert_with(|| excess(a, b));
         if excess == Some(0.0) {
             return excess;
         }
-        let key = (signs.to_vec(), less, more);
+        let key = (leaf(claim), [less, more]);
         let no_deeper = match self.no_deeper.get(&key) {
             Some(known) => *known,
             None => {
-                let no_deeper = self.linear.no_deeper(signs, Some(less), Some(more));
+                let no_deeper =
+                    self.linear.no_deeper(&self.listed_signs(claim), Some(less), Some(more));
                 self.no_deeper.insert(key, no_deeper);
                 no_deeper
             }
@@ -238,17 +237,14 @@ impl BorderProver<'_> {
         (0..self.ids.len()).map(Some).filter(is_near).collect()
     }
 
-    /// Returns the signs at two claims' points.
-    fn listed_signs(&self, pair: Pair, [a, b]: &[PathSigns; 2]) -> [Vec<Signs>; 2] {
-        let [mut at_a, mut at_b] = [a, b].map(|path_signs| self.signs(path_signs));
+    /// Returns the signs at a claim's points.
+    fn listed_signs(&self, claim: &Claim) -> Vec<Signs> {
+        let mut signs = self.signs(claim);
         // If owners are checked against the list of regions, its conditions hold too.
-        if self.check_listed_owners {
-            self.model.regions[pair.0].inside.narrow_signs(&mut at_a);
-            if let Some(other) = pair.1 {
-                self.model.regions[other].inside.narrow_signs(&mut at_b);
-            }
+        if let (true, Some(owner)) = (self.check_listed_owners, claim.owner) {
+            self.model.regions[owner].inside.narrow_signs(&mut signs);
         }
-        [at_a, at_b]
+        signs
     }
 
     /// Returns the order of two depths according to all linear curves on the paths to the claims.

@@ -2,7 +2,7 @@
 
 use super::super::cover::{Claim, Cover};
 use super::super::tangency::Contact;
-use super::{BorderProver, MAX_CONTACT_BOXES, PathSigns, path_signs};
+use super::{BorderProver, MAX_CONTACT_BOXES, leaf};
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 
@@ -75,9 +75,10 @@ impl BorderProver<'_> {
         signs
     }
 
-    pub(super) fn signs(&self, path_signs: &PathSigns) -> Vec<Signs> {
+    /// Returns the signs that a claim's path leaves possible.
+    pub(super) fn signs(&self, claim: &Claim) -> Vec<Signs> {
         let mut signs = vec![ANY_SIGN; self.curves.len()];
-        for (curve, known) in path_signs {
+        for (curve, known) in &claim.signs {
             signs[*curve] &= known;
         }
         signs
@@ -85,11 +86,11 @@ impl BorderProver<'_> {
 
     /// Returns the signs that a curve can have according to all linear curves on a claim's path together.
     fn signs_by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let key = (claim.owner, path_signs(claim), curve);
+        let key = (leaf(claim), curve);
         if let Some(known) = self.by_linear.get(&key) {
             return *known;
         }
-        let mut signs = self.signs(&key.1);
+        let mut signs = self.signs(claim);
         let mut possible = ANY_SIGN;
         for side in [NEGATIVE, POSITIVE] {
             signs[curve] = side;
@@ -115,14 +116,17 @@ impl BorderProver<'_> {
 
     /// Returns the sign that a conic has on a whole side of a line, and whether that is the side below it.
     fn conic_sign(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
-        if let Some(known) = self.conic_signs.get(&(line, curve)) {
-            return *known;
+        let curves = self.curves.len();
+        let row = &mut self.conic_signs[line];
+        row.resize(curves, None);
+        if let Some(known) = row[curve] {
+            return known;
         }
         let known = match (&self.curves[line], &self.curves[curve]) {
             (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
             _ => None,
         };
-        self.conic_signs.insert((line, curve), known);
+        self.conic_signs[line][curve] = Some(known);
         known
     }
 }

@@ -57,7 +57,10 @@ impl Survey<'_> {
             let depths_differ =
                 meeting.separation.joint == Joint::None && self.jump(meeting.pair).low > 0.0;
             let key = (meeting.pair, meeting.separation.curve);
+            // Points differ by no more than the enclosure allows. Half the tolerance leaves room for rounding.
+            let may_be_found = self.jump(meeting.pair).high > TOLERANCE / 2.0 * self.size;
             if depths_differ
+                && may_be_found
                 && (is_small || box_size.is_last())
                 && !self.jump_points.contains_key(&key)
             {
