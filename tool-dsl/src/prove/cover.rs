@@ -7,15 +7,14 @@ use crate::formula::possible;
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::Tree;
-use std::collections::HashMap;
 
 /// A leaf that a box may have points of, and the signs demanded on its path down the tree.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
     pub(super) owner: Option<usize>,
     pub(super) signs: Vec<(CurveIndex, Signs)>,
-    /// The number of the path's signs, without those that leave any sign possible. It is the same in every box
-    /// where these are.
+    /// The number of the path with its signs. Claims with the same number have the same leaf and signs, in any
+    /// box.
     pub(super) path: usize,
 }
 
@@ -24,15 +23,21 @@ pub(super) struct Cover<'m> {
     model: &'m Model,
     tree: &'m Tree<Option<usize>>,
     encloser: Encloser<'m>,
-    /// The signs of the paths found so far, with their numbers.
-    paths: HashMap<Vec<(CurveIndex, Signs)>, usize>,
+    /// For each path found so far, of which the first is empty, the paths that continue it at the split where
+    /// it leads, by the side and the signs there; 0 for those not found yet.
+    paths: Vec<Continuations>,
 }
+
+/// The numbers of the paths that continue another, by the side of a split (above is true) and the signs on it.
+type Continuations = [[usize; ANY_SIGN as usize + 1]; 2];
+
+const NO_CONTINUATIONS: Continuations = [[0; ANY_SIGN as usize + 1]; 2];
 
 impl<'m> Cover<'m> {
     pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
         let values = model.curves.iter().map(|curve| curve.value);
         let encloser = Encloser::new(&model.graph, values);
-        Cover { model, tree, encloser, paths: HashMap::new() }
+        Cover { model, tree, encloser, paths: vec![NO_CONTINUATIONS] }
     }
 
     /// Returns the signs that a curve can have in the current box.
@@ -51,7 +56,7 @@ impl<'m> Cover<'m> {
     pub(super) fn claims(&mut self, cell: Cell) -> Vec<Claim> {
         self.encloser.set(cell);
         let mut claims = Vec::new();
-        self.descend(self.tree, &mut Vec::new(), &mut claims);
+        self.descend(self.tree, &mut Vec::new(), 0, &mut claims);
         claims
     }
 
@@ -59,29 +64,39 @@ impl<'m> Cover<'m> {
         &mut self,
         tree: &Tree<Option<usize>>,
         path: &mut Vec<(CurveIndex, Signs)>,
+        path_number: usize,
         claims: &mut Vec<Claim>,
     ) {
         let Tree::Split { curve, strict, below, above } = tree else {
             if let Tree::Leaf(owner) = tree {
-                let demanded = path.iter().copied().filter(|(_, signs)| *signs != ANY_SIGN);
-                let next = self.paths.len();
-                let number = *self.paths.entry(demanded.collect()).or_insert(next);
-                claims.push(Claim { owner: *owner, signs: path.clone(), path: number });
+                claims.push(Claim { owner: *owner, signs: path.clone(), path: path_number });
             }
             return;
         };
         let known = path.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
         let possible_signs = known.fold(self.sign(*curve), |allowed, signs| allowed & signs);
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
-        for (side, signs) in
-            [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)]
-        {
+        let sides = [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)];
+        for (is_above, (side, signs)) in sides.into_iter().enumerate() {
             if signs != 0 {
                 path.push((*curve, signs));
-                self.descend(side, path, claims);
+                let number = self.continued(path_number, is_above, signs);
+                self.descend(side, path, number, claims);
                 path.pop();
             }
         }
+    }
+
+    /// Returns the number of a path with one more split.
+    fn continued(&mut self, path: usize, side: usize, signs: Signs) -> usize {
+        let next = self.paths.len();
+        let number = &mut self.paths[path][side][usize::from(signs)];
+        if *number != 0 {
+            return *number;
+        }
+        *number = next;
+        self.paths.push(NO_CONTINUATIONS);
+        next
     }
 }
 

@@ -12,14 +12,13 @@ use super::cover::{Claim, Cover};
 use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{EnclosedPolynomial, Polynomial};
 use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
-use std::collections::HashMap;
 
 /// The largest difference, relative to the tool's size, between a depth and the distance to its segment for
 /// the two to count as equal. The difference is added to the certificate's slack, so the proof does not
@@ -30,12 +29,23 @@ const DISTANCE_TOLERANCE_FRACTION: f64 = 1e-13;
 struct End {
     /// The signed distance from the normal at the end, not negative where feet are on the segment.
     inside: Polynomial,
+    /// The same with enclosed coefficients.
+    enclosed: EnclosedPolynomial,
     /// For an arc: the signed distance toward the end's side of the centre, and the ratio of diameter to
     /// chord.
-    side: Option<(Polynomial, f64)>,
+    side: Option<(EnclosedPolynomial, f64)>,
+}
+
+impl End {
+    fn new(inside: Polynomial, side: Option<(EnclosedPolynomial, f64)>) -> End {
+        End { enclosed: inside.enclosed(), inside, side }
+    }
 }
 
 type Ends = Vec<End>;
+
+/// A lower bound of an end's function below and above a curve; the outer `None` where it is not known yet.
+type Bounds = [Option<Option<EnclosedPolynomial>>; 2];
 
 /// The segments of a profile.
 pub(super) struct ProfileFeet {
@@ -45,8 +55,8 @@ pub(super) struct ProfileFeet {
     curves: Vec<Option<Polynomial>>,
     /// The largest difference of depths from these distances.
     pub(super) max_difference: f64,
-    /// A lower bound of each end's function on a side of a curve.
-    bounds: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
+    /// For each region's ends, the bounds of their functions beside each curve, once one of them is needed.
+    bounds: Vec<Vec<Vec<Bounds>>>,
 }
 
 impl ProfileFeet {
@@ -73,10 +83,11 @@ impl ProfileFeet {
             max_difference = max_difference.max(difference);
             (difference <= DISTANCE_TOLERANCE_FRACTION * size).then_some(ends)
         });
-        let ends = ends.collect::<Option<_>>()?;
+        let ends: Vec<Ends> = ends.collect::<Option<_>>()?;
         let curve = |curve: &Curve| forms.polynomial(curve.value);
         let curves = model.curves.iter().map(curve).collect();
-        Some(ProfileFeet { ends, curves, max_difference, bounds: HashMap::new() })
+        let bounds = ends.iter().map(|ends| vec![Vec::new(); ends.len()]).collect();
+        Some(ProfileFeet { ends, curves, max_difference, bounds })
     }
 
     /// Returns an upper bound of the distance of feet past the ends of their owner's segment, for a claim's
@@ -85,7 +96,7 @@ impl ProfileFeet {
         let Some(owner) = claim.owner else { return 0.0 };
         let mut max_overshoot = 0.0f64;
         for end in 0..self.ends[owner].len() {
-            let mut overshoot = -self.ends[owner][end].inside.over(&cell).low;
+            let mut overshoot = -self.ends[owner][end].enclosed.over(&cell).low;
             for (curve, _) in &claim.signs {
                 if overshoot <= 0.0 {
                     break;
@@ -118,12 +129,14 @@ impl ProfileFeet {
             if !curve.is_linear() {
                 // Where the end's function is negative, the conic has the opposite sign throughout.
                 let clear = curve.clear_of(end)? == (below, true);
-                return clear.then(Polynomial::zero);
+                return clear.then(|| Polynomial::zero().enclosed());
             }
             let sign = Number::int(if below { 1 } else { -1 });
-            Some(curve.with_unit_slope()?.scaled(&sign).plus(end))
+            Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())
         };
-        let bound = self.bounds.entry((owner, end, curve, below)).or_insert_with(bound);
+        let known = &mut self.bounds[owner][end];
+        known.resize(curves.len(), [None, None]);
+        let bound = known[curve][usize::from(below)].get_or_insert_with(bound);
         bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }
@@ -155,7 +168,7 @@ fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
         let forward = segment.direction()?;
         let backward = forward.each_ref().map(|part| -part);
-        let end = |inside: Polynomial| End { inside, side: None };
+        let end = |inside: Polynomial| End::new(inside, None);
         return Some(vec![
             end(linear_function(&forward, &segment.from)),
             end(linear_function(&backward, &segment.to)),
@@ -167,8 +180,9 @@ fn ends(segment: &Segment) -> Option<Ends> {
     let scale = diameter_by_chord([&segment.from, &segment.to], &circle.radius)?;
     let end_at = |end: &ExactPoint, sign: &Number| {
         let [d, z] = unit_between(&circle.centre, end)?;
-        let side = Some((linear_function(&[d.clone(), z.clone()], &circle.centre), scale));
-        Some(End { inside: linear_function(&[&-&z * sign, &d * sign], &circle.centre), side })
+        let side = linear_function(&[d.clone(), z.clone()], &circle.centre).enclosed();
+        let inside = linear_function(&[&-&z * sign, &d * sign], &circle.centre);
+        Some(End::new(inside, Some((side, scale))))
     };
     Some(vec![end_at(&segment.from, &sign)?, end_at(&segment.to, &-&sign)?])
 }

@@ -43,6 +43,19 @@ fn exact_slope(c: &Conic<Number>, [d, z]: &[Number; 2]) -> [Number; 2] {
     [d_slope, Number::sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
 }
 
+/// Returns the step from a point where conic `b`'s value and the cross product of both gradients have these
+/// values to one where they are nearly 0.
+fn newton_step([a, b]: [&Conic<f64>; 2], p: [f64; 2], [first, second]: [f64; 2]) -> [f64; 2] {
+    let ([ad, az], [bd, bz]) = (slope(a, p), slope(b, p));
+    let d_derivative = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
+    let z_derivative = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
+    let determinant = bd * z_derivative - bz * d_derivative;
+    [
+        (first * z_derivative - bz * second) / determinant,
+        (bd * second - first * d_derivative) / determinant,
+    ]
+}
+
 /// The contact of two conics near a point.
 #[derive(Clone)]
 pub(super) struct Contact {
@@ -60,34 +73,27 @@ impl Contact {
     ) -> Option<Contact> {
         let conics = [conic(a)?, conic(b)?];
         let [a, b] = conics.each_ref().map(|conic| conic.each_ref().map(Number::to_f64));
-        let mut at = near.map(Number::from_f64);
-        for step in 0..NEWTON_STEPS {
+        // The equations: one conic's value and the cross product of both gradients are 0. The first half of
+        // the steps uses doubles.
+        let mut p = near;
+        for _ in 0..NEWTON_STEPS / 2 {
+            let ([ad, az], [bd, bz]) = (slope(&a, p), slope(&b, p));
+            let value = b[0] + b[1] * p[0] + b[2] * p[1];
+            let quadratic = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
+            let step = newton_step([&a, &b], p, [value + quadratic, ad * bz - az * bd]);
+            p = [p[0] - step[0], p[1] - step[1]];
+        }
+        // False for NaN too.
+        let is_near = (p[0] - near[0]).hypot(p[1] - near[1]) < 1e-2 * size;
+        let mut at = p.map(|at| Number::from_f64(at).filter(|_| is_near));
+        for _ in NEWTON_STEPS / 2..NEWTON_STEPS {
             let [Some(d), Some(z)] = &at else { return None };
             let exact = [d.clone(), z.clone()];
-            let p = [d.to_f64(), z.to_f64()];
-            let ([ad, az], [bd, bz]) = (slope(&a, p), slope(&b, p));
-            // The equations: one conic's value and the cross product of both gradients are 0. The first half
-            // of the steps uses doubles.
-            let (first, second) = if step < NEWTON_STEPS / 2 {
-                let value = b[0] + b[1] * p[0] + b[2] * p[1];
-                let quadratic = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
-                (value + quadratic, ad * bz - az * bd)
-            } else {
-                let [[ad, az], [bd, bz]] = conics.each_ref().map(|c| exact_slope(c, &exact));
-                let cross = &(&ad * &bz) - &(&az * &bd);
-                (exact_value(&conics[1], &exact).0.to_f64(), cross.to_f64())
-            };
-            let d_derivative = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
-            let z_derivative = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
-            let determinant = bd * z_derivative - bz * d_derivative;
-            let newton_step = [
-                (first * z_derivative - bz * second) / determinant,
-                (bd * second - first * d_derivative) / determinant,
-            ];
-            if step == NEWTON_STEPS / 2 && (p[0] - near[0]).hypot(p[1] - near[1]) >= 1e-2 * size {
-                return None;
-            }
-            at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(newton_step[k])?));
+            let [[ad, az], [bd, bz]] = conics.each_ref().map(|c| exact_slope(c, &exact));
+            let cross = &(&ad * &bz) - &(&az * &bd);
+            let values = [exact_value(&conics[1], &exact).0.to_f64(), cross.to_f64()];
+            let step = newton_step([&a, &b], [d.to_f64(), z.to_f64()], values);
+            at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(step[k])?));
         }
         let [Some(d), Some(z)] = at else { return None };
         let point = [d, z];

@@ -92,8 +92,9 @@ pub(super) struct BorderProver<'m> {
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    /// The agreement of the depths of two owners on each curve, if they agree there; `None` where that is not known yet.
-    agreements: HashMap<Pair, Vec<Option<Option<Rc<Agreement>>>>>,
+    /// For a depth, and for the outside and then each depth, the agreement of the two on each curve, if they
+    /// agree there; the outer `None` where that is not known yet. Rows are empty until something is known.
+    agreements: Vec<Vec<Vec<Option<Option<Rc<Agreement>>>>>>,
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
     squares: Vec<Option<Polynomial>>,
@@ -132,7 +133,7 @@ impl<'m> BorderProver<'m> {
         (may_jump, finest): (bool, f64),
     ) -> BorderProver<'m> {
         let (size, ids) = (half_diagonal(&cell), model.depths());
-        let depths = ids.iter().map(|depth| forms.of(*depth)).collect();
+        let depths: Vec<Option<RootForm>> = ids.iter().map(|depth| forms.of(*depth)).collect();
         let values = || model.curves.iter().map(|curve| curve.value);
         let curves: Vec<_> = values().map(|value| forms.of(value)?.curve()).collect();
         let sums = values().zip(&curves).map(|(value, curve)| match curve {
@@ -155,12 +156,12 @@ impl<'m> BorderProver<'m> {
             ids,
             sums: sums.collect(),
             differences: BTreeMap::new(),
+            agreements: vec![Vec::new(); depths.len()],
             depths,
             conic_signs: vec![Vec::new(); curves.len()],
             curves,
             zero: RootForm::zero(),
             joints: BTreeMap::new(),
-            agreements: HashMap::new(),
             by_linear: HashMap::new(),
             linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
@@ -361,7 +362,10 @@ impl<'m> BorderProver<'m> {
 
     /// Returns how two owners' depths agree on a curve, if they do.
     fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
-        let known = self.agreements.entry(pair).or_insert_with(|| vec![None; self.curves.len()]);
+        let row = &mut self.agreements[pair.0];
+        row.resize(self.depths.len() + 1, Vec::new());
+        let known = &mut row[pair.1.map_or(0, |other| other + 1)];
+        known.resize(self.curves.len(), None);
         if let Some(known) = &known[curve] {
             return known.clone();
         }
