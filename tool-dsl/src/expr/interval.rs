@@ -262,6 +262,9 @@ impl<'g> Encloser<'g> {
 
     /// Returns the enclosure over the selected box of one of the nodes given to [`Encloser::new`].
     pub fn get(&mut self, root: Id) -> Interval {
+        if self.done[root.index()] == self.now {
+            return self.values[root.index()];
+        }
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
             let at = id.index();

@@ -118,6 +118,9 @@ impl<'g> LazyEvaluator<'g> {
 
     /// Returns the value at the selected point of one of the roots.
     pub(crate) fn get(&mut self, root: Id) -> f64 {
+        if self.computed_for[root.index()] == self.point_number {
+            return self.values[root.index()];
+        }
         for &id in &self.needed[root.index()] {
             let index = id.index();
             if self.computed_for[index] != self.point_number {

@@ -253,6 +253,9 @@ impl<'g> Slopes<'g> {
 
     /// Returns the enclosure over the current box of one of the roots.
     pub(super) fn get(&mut self, root: Id) -> Slope {
+        if self.computed_for[root.index()] == self.box_number {
+            return self.values[root.index()];
+        }
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
             let index = id.index();

@@ -7,7 +7,6 @@ mod signs;
 use super::cover::{Claim, Cover, half_diagonal};
 use super::root::{Agreement, Difference, Forms, RootForm};
 use super::sum::RootSum;
-use super::tangency::Contact;
 use super::tangent::{DepthDifference, Tangency};
 use crate::elimination::Linear;
 use crate::expr::interval::Cell;
@@ -61,8 +60,15 @@ pub(super) struct Separation {
 /// the same for all claims with it, in any box.
 type Leaf = (Option<usize>, usize);
 
-/// The number of searches for the contact of two curves, and the contact if one was found.
-type ContactSearch = (u32, Option<Contact>);
+/// The search for the contact of two curves.
+#[derive(Clone, Copy)]
+enum ContactSearch {
+    /// The number of boxes near which there was none.
+    Failed(u32),
+    /// The signs that the second curve can have where the first is negative, and where it is positive. They
+    /// follow from the two curves alone, and so hold in every box.
+    Found([Signs; 2]),
+}
 
 /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
 type ConicSign = Option<(bool, bool)>;
@@ -84,6 +90,8 @@ pub(super) struct BorderProver<'m> {
     /// True if owners are checked against the list of regions.
     check_listed_owners: bool,
     curves: Vec<Option<Curve>>,
+    /// The curves that are straight.
+    is_straight: Vec<bool>,
     /// The curves that are not polynomials but sums of roots.
     sums: Vec<Option<RootSum>>,
     differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
@@ -144,6 +152,8 @@ impl<'m> BorderProver<'m> {
             let (curve, _) = curve.as_ref()?;
             curve.times(curve)
         };
+        let is_straight =
+            |curve: &Option<Curve>| curve.as_ref().is_some_and(|(curve, _)| curve.is_linear());
         BorderProver {
             model,
             size,
@@ -158,6 +168,7 @@ impl<'m> BorderProver<'m> {
             differences: BTreeMap::new(),
             agreements: vec![Vec::new(); depths.len()],
             depths,
+            is_straight: curves.iter().map(is_straight).collect(),
             conic_signs: vec![Vec::new(); curves.len()],
             curves,
             zero: RootForm::zero(),
@@ -363,9 +374,13 @@ impl<'m> BorderProver<'m> {
     /// Returns how two owners' depths agree on a curve, if they do.
     fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
         let row = &mut self.agreements[pair.0];
-        row.resize(self.depths.len() + 1, Vec::new());
+        if row.is_empty() {
+            row.resize(self.depths.len() + 1, Vec::new());
+        }
         let known = &mut row[pair.1.map_or(0, |other| other + 1)];
-        known.resize(self.curves.len(), None);
+        if known.is_empty() {
+            known.resize(self.curves.len(), None);
+        }
         if let Some(known) = &known[curve] {
             return known.clone();
         }

@@ -2,7 +2,7 @@
 
 use super::super::cover::{Claim, Cover};
 use super::super::tangency::Contact;
-use super::{BorderProver, MAX_CONTACT_BOXES, leaf};
+use super::{BorderProver, ContactSearch, MAX_CONTACT_BOXES, leaf};
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 
@@ -43,33 +43,28 @@ impl BorderProver<'_> {
         let box_corner = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
         let mut signs = ANY_SIGN;
         for (other, known) in &claim.signs {
-            let from = match known & !ZERO {
-                NEGATIVE => -1,
+            let side = match known & !ZERO {
+                NEGATIVE => 0,
                 POSITIVE => 1,
                 _ => continue,
             };
+            if self.is_straight[*other] || self.is_straight[curve] {
+                continue;
+            }
             let (Some(conic), Some(own)) = (self.signed(*other), self.signed(curve)) else {
                 continue;
             };
-            if conic.is_linear() || own.is_linear() {
-                continue;
-            }
             let key = (*other, curve);
-            let (attempts, known) = self.contacts.get(&key).unwrap_or(&(0, None));
-            let contact = match known {
-                None if *attempts < MAX_CONTACT_BOXES => {
-                    Contact::near(conic, own, box_corner, self.size)
+            let search = match self.contacts.get(&key) {
+                Some(ContactSearch::Failed(attempts)) if *attempts < MAX_CONTACT_BOXES => {
+                    search_contact([conic, own], box_corner, self.size, *attempts)
                 }
-                _ => known.clone(),
+                Some(known) => *known,
+                None => search_contact([conic, own], box_corner, self.size, 0),
             };
-            let attempts = attempts + 1;
-            self.contacts.insert(key, (attempts, contact.clone()));
-            if let Some(contact) = &contact {
-                for (to, excluded_sign) in [(1, NEGATIVE), (-1, POSITIVE)] {
-                    if contact.implies(from, to) {
-                        signs &= !excluded_sign;
-                    }
-                }
+            self.contacts.insert(key, search);
+            if let ContactSearch::Found(possible) = search {
+                signs &= possible[side];
             }
         }
         signs
@@ -118,15 +113,37 @@ impl BorderProver<'_> {
     fn conic_sign(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
         let curves = self.curves.len();
         let row = &mut self.conic_signs[line];
-        row.resize(curves, None);
+        if row.is_empty() {
+            row.resize(curves, None);
+        }
         if let Some(known) = row[curve] {
             return known;
         }
         let known = match (&self.curves[line], &self.curves[curve]) {
-            (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
+            (Some((line, None)), Some((conic, None))) if !self.is_straight[curve] => {
+                conic.clear_of(line)
+            }
             _ => None,
         };
         self.conic_signs[line][curve] = Some(known);
         known
     }
+}
+
+/// Searches for the contact of two curves near a point, after some attempts that failed elsewhere.
+fn search_contact(
+    [conic, other]: [&Polynomial; 2],
+    near: [f64; 2],
+    size: f64,
+    attempts: u32,
+) -> ContactSearch {
+    let Some(contact) = Contact::near(conic, other, near, size) else {
+        return ContactSearch::Failed(attempts + 1);
+    };
+    let possible = |from: i64| {
+        let excluded = [(1, NEGATIVE), (-1, POSITIVE)];
+        let implied = excluded.into_iter().filter(|(to, _)| contact.implies(from, *to));
+        implied.fold(ANY_SIGN, |possible, (_, sign)| possible & !sign)
+    };
+    ContactSearch::Found([possible(-1), possible(1)])
 }
