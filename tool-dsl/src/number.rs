@@ -219,3 +219,51 @@ impl Neg for &Number {
         Number::rounded(-self.exact.clone())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of all sizes, with few and with all bits, among them doubles, and halfway points between two.
+    fn numbers() -> Vec<Number> {
+        let number = |text: &str| Number::parse_decimal(text).expect("a number");
+        let third = &Number::int(1) / &Number::int(3);
+        let mut numbers = vec![Number::int(0), Number::pi(), third, number("9007199254740993")];
+        for exponent in [-330, -310, -250, -90, -1, 0, 1, 90, 250, 307, 309] {
+            for digits in ["1", "-1.5", "3.14159265358979323846264338327950288419716939937510"] {
+                numbers.push(number(&format!("{digits}e{exponent}")));
+            }
+        }
+        for double in [0.1, -7.25, f64::MIN_POSITIVE, 5e-324, f64::MAX, 1.0 + f64::EPSILON] {
+            let double = Number::from_f64(double).expect("finite");
+            // Three quarters of the last place of 1 above a double.
+            let above = &double + &(&double * &number("1.6653345369377348e-16"));
+            numbers.extend([double, above]);
+        }
+        numbers
+    }
+
+    #[test]
+    fn the_nearest_double_is_that_of_the_library_of_numbers() {
+        for number in numbers() {
+            let nearest = number.exact.to_f64().value();
+            assert_eq!(number.to_f64().to_bits(), nearest.to_bits(), "{number:?}");
+        }
+    }
+
+    #[test]
+    fn doubles_are_recognised() {
+        let mut doubles = 0;
+        for number in numbers() {
+            let is_double = Number::from_f64(number.to_f64()).as_ref() == Some(&number);
+            assert!(!number.is_double() || is_double, "{number:?}");
+            let size = number.to_f64().abs();
+            if (1e-200..1e200).contains(&size) || size == 0.0 {
+                assert_eq!(number.is_double(), is_double, "{number:?}");
+            }
+            doubles += usize::from(number.is_double());
+        }
+        // 0, 0.1 as a double, 1, 1 + ε, -1.5, -7.25, 10 and -15.
+        assert_eq!(doubles, 8);
+    }
+}

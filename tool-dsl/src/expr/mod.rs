@@ -68,6 +68,7 @@
 //! Nodes are only added. An [`Id`] stays valid, and keeps its meaning, for the lifetime of its graph.
 
 pub mod derive;
+pub(crate) mod enclosed;
 mod graph;
 pub mod interval;
 mod node;

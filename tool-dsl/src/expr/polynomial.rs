@@ -2,6 +2,7 @@
 //! equal up to a factor.
 
 use super::{Coord, Graph, Id, Node};
+use crate::expr::enclosed::{EnclosedPolynomial, bases, enclosed_sum};
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
@@ -24,34 +25,6 @@ pub(crate) fn monomial_of(coord: Coord) -> Monomial {
 /// A sum of monomials with constant coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial(BTreeMap<Monomial, Number>);
-
-/// A polynomial whose coefficients are enclosed once, to enclose its values over many boxes.
-#[derive(Clone, Debug)]
-pub(crate) struct EnclosedPolynomial(Vec<(Monomial, Interval)>);
-
-impl EnclosedPolynomial {
-    /// Encloses the values over a box, as [`Polynomial::over`] does.
-    pub(crate) fn over(&self, cell: &Cell) -> Interval {
-        enclosed_sum(self.0.iter().map(|(monomial, value)| (monomial, *value)), bases(cell))
-    }
-}
-
-/// Returns the enclosures of d, x, y and z in a box.
-fn bases(cell: &Cell) -> [Interval; 4] {
-    [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]]
-}
-
-/// Encloses a sum of monomials with enclosed coefficients.
-fn enclosed_sum<'t>(
-    terms: impl Iterator<Item = (&'t Monomial, Interval)>,
-    bases: [Interval; 4],
-) -> Interval {
-    let term = |(monomial, value): (&Monomial, Interval)| {
-        let powers = monomial.iter().zip(bases).filter(|(exponent, _)| **exponent > 0);
-        powers.fold(value, |product, (exponent, base)| product.times(base.power(*exponent)))
-    };
-    terms.map(term).fold(ZERO, Interval::plus)
-}
 
 /// The highest degree that is recognised.
 const MAX_DEGREE: u8 = 8;
@@ -245,7 +218,7 @@ impl Polynomial {
     pub(crate) fn enclosed(&self) -> EnclosedPolynomial {
         let term =
             |(monomial, value): (&Monomial, &Number)| (*monomial, Interval::enclosing(value));
-        EnclosedPolynomial(self.0.iter().map(term).collect())
+        EnclosedPolynomial::new(self.0.iter().map(term).collect())
     }
 
     /// Compares a conic with a straight line that it does not cross but may touch. Returns the sign that the

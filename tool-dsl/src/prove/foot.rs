@@ -11,8 +11,9 @@
 use super::cover::{Claim, Cover};
 use super::root::{Forms, RootForm};
 use crate::expr::Coord;
+use crate::expr::enclosed::EnclosedPolynomial;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::{EnclosedPolynomial, Polynomial};
+use crate::expr::polynomial::Polynomial;
 use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 
