@@ -74,6 +74,9 @@ enum ContactSearch {
 /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
 type ConicSign = Option<(bool, bool)>;
 
+/// How the depths of a pair agree on each curve, if they do; `None` for a curve that was not asked for.
+type AgreementsByCurve = Vec<Option<Option<Rc<Agreement>>>>;
+
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
 pub(super) type Curve = (Polynomial, Option<Polynomial>);
@@ -103,7 +106,7 @@ pub(super) struct BorderProver<'m> {
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
     /// For a depth, and for the outside and then each depth, the agreement of the two on each curve, if they
     /// agree there; the outer `None` where that is not known yet. Rows are empty until something is known.
-    agreements: Vec<Vec<Vec<Option<Option<Rc<Agreement>>>>>>,
+    agreements: Vec<Vec<AgreementsByCurve>>,
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
     squares: Vec<Option<Polynomial>>,
