@@ -73,7 +73,14 @@ impl Postures {
         Ok(Some(Page {
             name: "postures",
             title: "Postures beside brute force",
-            covers: &["runtime/src/postures", "runtime/src/certify", "tools-library/tools"],
+            covers: &[
+                "runtime/src/postures",
+                // Declarations only, and the paths, which this page is not about.
+                ":!runtime/src/postures/mod.rs",
+                ":!runtime/src/postures/path",
+                "runtime/src/certify",
+                "tools-library/tools",
+            ],
             sections: vec![Section {
                 title: "",
                 body: introduction.to_owned() + &page(&name, &settings, &results)?,
