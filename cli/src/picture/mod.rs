@@ -50,7 +50,7 @@ impl Scale {
     }
 }
 
-/// What the colours of a picture mean.
+/// The meaning of a picture's colours.
 pub(crate) enum Legend<'a> {
     /// Values of a quantity.
     Scale(&'a Scale),

@@ -44,7 +44,7 @@ const EDGE: [f64; 3] = [34.0, 34.0, 34.0];
 const EDGE_OPACITY: f64 = 0.8;
 const GLASS_OPACITY: f64 = 0.35;
 
-/// What is seen at a sample.
+/// The surface that is seen at a sample.
 #[derive(Clone, Copy)]
 struct Sample {
     /// Distance toward the eye, in samples.

@@ -6,7 +6,7 @@ use crate::picture::render::{Facet, Paint};
 use crate::picture::{Heading, Legend, NOTHING, sheet};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
-use touchoff::postures::path::{LeftOut, LeftOutReason};
+use touchoff::postures::path::{LeftOutReason, ToolPath};
 use touchoff::{Escaped, Mesh};
 
 /// Colours of points that are not reached, and of those without a proved motion.
@@ -21,19 +21,19 @@ const RADIUS: f64 = 0.004;
 /// If the picture cannot be made.
 pub(super) fn picture(
     (mesh, part): (&Mesh, &Path),
-    (tool, left_out): (&str, &[LeftOut]),
+    (tool, path): (&str, &ToolPath),
 ) -> Result<Vec<u8>, Failure> {
     let plain = mesh.ids().map(|id| mesh.triangle(id));
     let plain = plain.map(|corners| Facet { corners, paint: Paint::Plain(NOTHING) });
     let [low, high] = mesh.bounds();
     let radius = RADIUS * (high - low).norm();
     let colour = |reason| COLOURS[usize::from(reason == LeftOutReason::NoMotion)];
-    let points = left_out.iter().flat_map(|left_out| {
+    let points = path.left_out.iter().flat_map(|left_out| {
         let paint = Paint::Value(colour(left_out.reason));
         octahedron(left_out.point, radius).map(|corners| Facet { corners, paint })
     });
     let facets: Vec<Facet> = plain.chain(points).collect();
-    let count = |reason| left_out.iter().filter(|left_out| left_out.reason == reason).count();
+    let count = |reason| path.count_left_out(reason);
     let keys = [
         (COLOURS[0], format!("not reached: {} points", count(LeftOutReason::NotReached))),
         (COLOURS[1], format!("without a proved motion: {} points", count(LeftOutReason::NoMotion))),

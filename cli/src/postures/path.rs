@@ -12,6 +12,7 @@ use crate::part;
 use crate::progress::Progress;
 use serde::Serialize;
 use std::io::Write;
+use std::mem;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::path::{LeftOutReason, PathRequest, Pattern};
@@ -139,10 +140,8 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         pattern: &pattern,
         max_tilt: arguments.max_tilt.unwrap_or(180.0).to_radians(),
     };
-    let path = request.plan()?;
+    let mut path = request.plan()?;
     let planned = path.locations.len();
-    let points_left_out =
-        [LeftOutReason::NotReached, LeftOutReason::NoMotion].map(|why| path.count_left_out(why));
     let part = arguments.part.file_stem().unwrap_or_default().to_string_lossy();
     let header = AptHeader {
         part: &part,
@@ -165,7 +164,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         }
         Ok((Program::parse(&text, &name)?, text))
     };
-    let (locations, text) = prover.settle(path.locations, written)?;
+    let (locations, text) = prover.settle(mem::take(&mut path.locations), written)?;
     let (text, locations) = match &post {
         Some(post) => {
             let (text, locations) = post.program(&prover, &locations, &name)?;
@@ -183,8 +182,8 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         contact_points: path.contact_points,
         inserted_locations: locations.len() - planned,
         points_left_out: path.left_out.len(),
-        points_not_reached: points_left_out[0],
-        points_without_motion: points_left_out[1],
+        points_not_reached: path.count_left_out(LeftOutReason::NotReached),
+        points_without_motion: path.count_left_out(LeftOutReason::NoMotion),
         retracts: path.retracts,
         turn_before_smoothing_degrees: before,
         turn_degrees: after,
@@ -196,7 +195,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     write_file(&arguments.output, text)?;
     if let Some(file) = &arguments.picture {
         let part = (&mesh, &*arguments.part);
-        write_file(file, left_out::picture(part, (&tool.info().name, &path.left_out))?)?;
+        write_file(file, left_out::picture(part, (&tool.info().name, &path))?)?;
     }
     let mut out = Output::lines();
     if json {

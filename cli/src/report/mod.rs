@@ -106,7 +106,7 @@ struct Picture {
     png: Vec<u8>,
 }
 
-/// What a report shows.
+/// The content of a report.
 struct Content<'a> {
     inputs: &'a Inputs,
     verification: &'a Verification<'a>,
@@ -122,7 +122,7 @@ struct Content<'a> {
     sheets: Vec<Picture>,
     /// The worst findings, by their index.
     close_ups: Vec<(usize, Picture)>,
-    /// Whether each finding has a camera.
+    /// Set for each finding that has a camera.
     has_place: Vec<bool>,
     /// One per tool.
     along: Vec<Along>,
@@ -217,7 +217,7 @@ impl<'a> Content<'a> {
     }
 }
 
-/// What pictures are made of.
+/// The common part of all pictures of a report.
 struct Pictures<'a> {
     inputs: &'a Inputs,
     shown: &'a [Shown],

@@ -51,7 +51,7 @@ pub(crate) struct Scope<'a> {
     unit: Unit,
 }
 
-/// What clears the worst motion of a finding at its pose.
+/// The changes that clear the worst motion of a finding at its pose.
 #[derive(Clone, Copy)]
 struct Remedy {
     /// Travel along the axis.
@@ -100,7 +100,7 @@ impl Body {
     }
 }
 
-/// What a job names, read.
+/// A job and the files that it names, read.
 pub(crate) struct Inputs {
     pub(crate) job: Job,
     /// Name of the program's file.

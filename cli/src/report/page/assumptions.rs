@@ -1,4 +1,4 @@
-//! What was assumed, and the files.
+//! The assumptions of the check, and its files.
 
 use super::super::Content;
 use super::super::along::POINTS;
