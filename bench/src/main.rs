@@ -39,7 +39,6 @@ enum Command {
     Programs(commands::Programs),
     Proofs(commands::Proofs),
     Stress(commands::Stress),
-    Sweeps(commands::Sweeps),
     Triangles(commands::Triangles),
     WorkPrecision(commands::WorkPrecision),
 }
@@ -56,7 +55,6 @@ impl Command {
             Command::Programs(command) => command.run(),
             Command::Proofs(command) => command.run(),
             Command::Stress(command) => command.run(),
-            Command::Sweeps(command) => command.run(),
             Command::Triangles(command) => command.run(),
             Command::WorkPrecision(command) => command.run(),
         }

@@ -11,7 +11,6 @@ mod postures;
 mod programs;
 mod proofs;
 mod stress;
-mod sweeps;
 mod triangles;
 mod work_precision;
 
@@ -23,7 +22,6 @@ pub(crate) use postures::Postures;
 pub(crate) use programs::Programs;
 pub(crate) use proofs::Proofs;
 pub(crate) use stress::Stress;
-pub(crate) use sweeps::Sweeps;
 pub(crate) use triangles::Triangles;
 pub(crate) use work_precision::WorkPrecision;
 

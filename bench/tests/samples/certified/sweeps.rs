@@ -213,7 +213,7 @@ fn long_rapid_motions_are_decided() {
     assert_eq!(sweep(&plate(), "HalfInchBallCat40", &diagonal, 0.0), MotionVerdict::Clear);
 }
 
-/// `cargo run --release -p touchoff-bench -- sweeps` checks about 10,000 motions that are proved clear.
+/// `cargo run --release -p touchoff-bench -- programs` checks about 10,000 motions that are proved clear.
 #[test]
 fn no_sample_of_a_clear_motion_is_inside() {
     for (part, mesh) in poses::parts().expect("parts") {

@@ -1,4 +1,4 @@
-//! The page `sweeps.md`: certified motions compared with samples.
+//! Certified motions compared with samples.
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -7,7 +7,7 @@ use touchoff::Mesh;
 use touchoff::certify::TriangleBvh;
 use touchoff_bench::certified::sweeps::{Row, table};
 use touchoff_bench::certified::{Pair, poses};
-use touchoff_bench::page::{Page, Section};
+use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 use touchoff_tests::oracle::Nearest;
 
@@ -25,9 +25,8 @@ const TOOLS: [&str; 10] = [
     "HalfInchBallCat40",
 ];
 
-/// Compares certified motions with samples of them.
 #[derive(Args)]
-pub(crate) struct Sweeps {
+pub(super) struct Motions {
     /// Number of motions to prove clear, over all parts and tools together.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     motions: usize,
@@ -39,8 +38,8 @@ pub(crate) struct Sweeps {
     tool: Option<String>,
 }
 
-impl Sweeps {
-    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+impl Motions {
+    pub(super) fn section(&self) -> Result<Section, Box<dyn Error>> {
         let parts = poses::parts()?;
         let count = self.motions / (parts.len() * TOOLS.len());
         let rows = self.rows(&parts, count);
@@ -53,17 +52,11 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
 
 "
         );
-        Ok(Some(Page {
-            name: "sweeps",
-            title: "Certified sweeps beside samples",
-            covers: &["runtime/src/certify", "runtime/src/motion.rs"],
-            sections: vec![Section {
-                title: "",
-                body: introduction + &table(&rows)?,
-                missed_limits: rows.into_iter().flat_map(|row| row.violations).collect(),
-            }],
-            figures: Vec::new(),
-        }))
+        Ok(Section {
+            title: "Proved motions beside samples",
+            body: introduction + &table(&rows)?,
+            missed_limits: rows.into_iter().flat_map(|row| row.violations).collect(),
+        })
     }
 
     /// Returns one row per part and tool.

@@ -1,4 +1,4 @@
-//! The page `programs.md`: time and memory of the check of long G-code programs.
+//! Time and memory of the check of long G-code programs.
 
 use clap::Args;
 use std::error::Error;
@@ -11,11 +11,10 @@ use touchoff::machine::Machine;
 use touchoff::mesh::shapes;
 use touchoff::verify::{MachineProgram, ToolSelection, Verifier};
 use touchoff::{Mesh, Unit};
-use touchoff_bench::page::{Page, Section};
+use touchoff_bench::page::Section;
 
-/// Times the check of long programs.
 #[derive(Args)]
-pub(crate) struct Programs {
+pub(super) struct LongPrograms {
     /// Numbers of blocks of the programs, separated by commas.
     #[arg(
         long,
@@ -82,8 +81,8 @@ impl Scene {
     }
 }
 
-impl Programs {
-    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+impl LongPrograms {
+    pub(super) fn section(&self) -> Result<Section, Box<dyn Error>> {
         let part = shapes::tube(8.0, 10.0, 30.0, 120, 110, Unit::Millimetre)?;
         let bvh = TriangleBvh::new(&part);
         let mut body = introduction(&part);
@@ -92,22 +91,7 @@ impl Programs {
                 body += &row(&bvh, scene, *blocks)?;
             }
         }
-        Ok(Some(Page {
-            name: "programs",
-            title: "How long the check of a program takes",
-            covers: &[
-                "runtime/src/bvh",
-                "runtime/src/certify",
-                "runtime/src/gcode",
-                "runtime/src/machine",
-                "runtime/src/motion.rs",
-                "runtime/src/pose.rs",
-                "runtime/src/tool",
-                "runtime/src/verify",
-            ],
-            sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
-            figures: Vec::new(),
-        }))
+        Ok(Section { title: "How long a check takes", body, missed_limits: Vec::new() })
     }
 }
 
