@@ -4,6 +4,7 @@ import { Quaternion } from 'three';
 import { Editor } from './editor.js';
 import { Hand } from './hand.js';
 import { TouchMap } from './map.js';
+import { ProgramView } from './program.js';
 import { Readout } from './readout.js';
 import { CONTACT_VALUES, Scene } from './scene.js';
 import { stateOf } from './state.js';
@@ -18,6 +19,13 @@ const readout = new Readout();
 const map = new TouchMap();
 const worker = new Worker('worker.js', { type: 'module' });
 const editor = new Editor(id('editor'), (text) => compile(toolName, text, toolFiles));
+
+const program = new ProgramView(scene, {
+  part: partSource,
+  tool: () => ({ name: toolName, text: editor.text, files: toolFiles }),
+  unit: () => part,
+  message: (text, isError) => readout.message(text, isError),
+});
 
 /** The file and the facts of part and tool, and the texts that the tool may mount. */
 let partName = '';
@@ -52,6 +60,12 @@ function place() {
   restart();
 }
 
+/** Returns what a thread needs to read the part. */
+async function partSource() {
+  if (lastPart) return lastPart;
+  return { bytes: await lastFile.arrayBuffer(), name: partName, unit: id('unit').value };
+}
+
 /** Begins a session where the tool stands, which is outside the part even if the hand is not. */
 function restart() {
   state = null;
@@ -72,6 +86,7 @@ const replies = {
     await begin();
   },
   part({ facts, positions, tool: triangles }) {
+    if (part?.millimetres !== facts.millimetres) id('tolerance').value = String(Number((0.01 / facts.millimetres).toPrecision(1)));
     part = facts;
     hand.millimetre = facts.millimetres;
     scene.setPart(positions);
@@ -88,6 +103,8 @@ const replies = {
     id('facts').textContent = `${partName}: ${part.findings.join('; ')}.\n${points.toLocaleString('en')} points${cover}.`;
     readout.message('');
     place();
+    program.refresh({ part: true });
+    openLater();
   },
   text({ text }) {
     editor.text = text;
@@ -116,6 +133,7 @@ const replies = {
       scene.setTool(triangles, tool.surfaces);
       if (isNew) place();
       else restart();
+      program.refresh({ tool: true });
     }
     title();
   },
@@ -126,6 +144,7 @@ const replies = {
       hand.stands = state.tool.tip;
       scene.show(state, contacts);
       readout.show(state, surfaces);
+      id('holder').textContent = program.pose ? 'At this position, from the points' : 'On the hand';
       if (state.count > 0 && hand.drag) {
         const better = map.record(contacts, CONTACT_VALUES, tool.surfaces, hand.pose, tool.name);
         if (better.length) {
@@ -165,12 +184,31 @@ function frame(now) {
   interval += 0.1 * (elapsed - interval);
   fps = 1000 / Math.max(interval, 1);
   hand.advance(elapsed / 1000, state ? Math.hypot(...state.force) : 0);
+  program.advance(elapsed / 1000);
+  followProgram();
   if (isSampled && tool && !waiting) {
     waiting = true;
-    ask('frame', { pose: hand.pose, interval: Math.min(Math.max(interval, 4), 100) });
+    if (program.pose) ask('show', { pose: program.pose });
+    else ask('frame', { pose: hand.pose, interval: Math.min(Math.max(interval, 4), 100) });
   }
   scene.draw();
   if (part) readout.showView(scene, state?.tool.tip ?? scene.orbit.target.toArray(), part.unit);
+}
+
+/** The pose of the program that the hand has taken over. @type {number[] | null} */
+let followed = null;
+
+/** Keeps the hand with a program that holds the tool, until somebody moves the hand. */
+function followProgram() {
+  if (!program.pose) return;
+  if (program.pose !== followed) {
+    followed = program.pose;
+    hand.place(followed.slice(0, 3), new Quaternion(...followed.slice(3)));
+  } else if (hand.drag || hand.pose.some((value, k) => Math.abs(value - followed[k]) > 1e-9)) {
+    program.leave();
+    state = null;
+    ask('start', { pose: followed });
+  }
 }
 
 /** Reads a part's file. */
@@ -219,6 +257,11 @@ async function begin() {
     id('tool').value = DEFAULT_TOOL;
     takeTool(DEFAULT_TOOL);
   }
+  if (session.program) {
+    const { name, machine } = session.program;
+    program.machine = machine;
+    waitingProgram = [name, await (await fetch('program')).arrayBuffer()];
+  }
   if (session.part) {
     const { name, unit } = session.part;
     id('part').add(new Option(name, ''), 0);
@@ -230,6 +273,13 @@ async function begin() {
     loadPart(SHAPES.pocket, { shape: 'pocket' });
   }
   requestAnimationFrame(frame);
+}
+
+/** A program that is opened as soon as the part is there. @type {[string, ArrayBuffer] | null} */
+let waitingProgram = null;
+function openLater() {
+  if (waitingProgram && tool) program.open(...waitingProgram);
+  waitingProgram = null;
 }
 
 function takeTool(file) {
@@ -249,6 +299,12 @@ on('unit', 'change', () => lastFile && !lastPart && openPart(lastFile));
 on('tool', 'change', () => id('tool').value && takeTool(id('tool').value));
 on('open-part', 'click', () => id('part-file').click());
 on('open-tool', 'click', () => id('tool-file').click());
+on('open-program', 'click', () => id('program-file').click());
+on('program-file', 'change', async () => {
+  const [file] = id('program-file').files;
+  if (file) program.open(file.name, await file.arrayBuffer()).catch((error) => readout.message(error.message, true));
+  id('program-file').value = '';
+});
 on('part-file', 'change', () => take([...id('part-file').files]));
 on('tool-file', 'change', () => take([...id('tool-file').files]));
 on('stiffness', 'change', () => {
@@ -295,7 +351,9 @@ on('export', 'click', () => {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 });
 
-/** Takes files that were opened or dropped: tools by their ending, else a part. */
+const MESH = /\.(stl|ply|obj)$/i;
+
+/** Takes files that were opened or dropped: tools and parts by their ending, else a program. */
 function take(files) {
   const tools = files.filter((file) => file.name.endsWith('.tool'));
   if (tools.length) {
@@ -303,7 +361,11 @@ function take(files) {
     id('tool').selectedIndex = 0;
     openTools(tools).catch((error) => readout.message(error.message, true));
   }
-  const [mesh] = files.filter((file) => !file.name.endsWith('.tool'));
+  const [other] = files.filter((file) => !file.name.endsWith('.tool') && !MESH.test(file.name));
+  if (other) {
+    other.arrayBuffer().then((bytes) => program.open(other.name, bytes)).catch((error) => readout.message(error.message, true));
+  }
+  const mesh = files.find((file) => MESH.test(file.name));
   if (mesh) {
     lastFile = mesh;
     id('part').add(new Option(mesh.name, ''), 0);

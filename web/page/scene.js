@@ -6,6 +6,8 @@ import { CUTTING, OTHER, colorOf } from './colors.js';
 
 const PART = new THREE.Color('#c9ced4');
 const FORCE = 0xc2410c;
+const FEED = new THREE.Color('#0b7a4b');
+const RAPID = new THREE.Color('#d08a00');
 const MAX_CONTACTS = 4096;
 /** Values of a contact in the engine's list. */
 export const CONTACT_VALUES = 10;
@@ -53,6 +55,17 @@ export class Scene {
     this.spring.frustumCulled = false;
     this.spring.renderOrder = 3;
     this.scene.add(this.arrow, this.spring);
+    /** The path of a program. @type {THREE.LineSegments | null} */
+    this.path = null;
+    this.toolRadius = 0;
+    // A view that cuts away what is in front ends with the next turn of it.
+    this.orbit.addEventListener('start', () => this.#setNear(0.01));
+  }
+
+  /** Sets the distance before which nothing is drawn, as a fraction of the distance of the target. */
+  #setNear(fraction) {
+    this.camera.near = fraction * this.camera.position.distanceTo(this.orbit.target);
+    this.camera.updateProjectionMatrix();
   }
 
   #points() {
@@ -137,8 +150,51 @@ export class Scene {
       group.children.forEach((child) => child.geometry.dispose());
       group.clear();
     }
+    this.toolRadius = toolRadius(triangles.positions, surfaces, triangles.surfaces);
     this.tool.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true, opacity: 0.82 })));
     this.ghost.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x16202c, transparent: true, opacity: 0.14, depthTest: false, depthWrite: false })));
+  }
+
+  /**
+   * Shows the path of a program, `null` for none.
+   * @param {Float32Array | null} positions tips, each with 1 in rapid traverse, else 0
+   */
+  setPath(positions) {
+    if (this.path) {
+      this.scene.remove(this.path);
+      this.path.geometry.dispose();
+      this.path = null;
+    }
+    if (!positions) return;
+    const segments = Math.max(positions.length / 4 - 1, 0);
+    const ends = new Float32Array(6 * segments);
+    const colors = new Float32Array(6 * segments);
+    for (let k = 0; k < segments; k++) {
+      const color = positions[4 * k + 7] ? RAPID : FEED;
+      for (let end = 0; end < 2; end++) {
+        ends.set(positions.subarray(4 * (k + end), 4 * (k + end) + 3), 6 * k + 3 * end);
+        color.toArray(colors, 6 * k + 3 * end);
+      }
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(ends, 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+    this.path = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75 }));
+    this.scene.add(this.path);
+  }
+
+  /**
+   * Looks at a point from the side of the view, near enough for the tool, and cuts away what stands before it.
+   * @param {number[]} point
+   */
+  lookAt(point) {
+    const { away } = this.directions();
+    const extent = Math.min(0.6 * this.size, Math.max(12 * this.toolRadius, 0.05 * this.size));
+    const distance = (0.5 * extent) / Math.tan((this.camera.fov * Math.PI) / 360);
+    this.orbit.target.set(...point);
+    this.camera.position.copy(this.orbit.target).addScaledVector(away, -distance);
+    this.orbit.update();
+    this.#setNear(1 - Math.min(0.9, (0.5 * extent) / distance));
   }
 
   /**
@@ -155,10 +211,9 @@ export class Scene {
     const distance = (0.62 * this.size) / Math.tan((this.camera.fov * Math.PI) / 360) / narrow;
     this.orbit.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
-    this.camera.near = distance / 100;
     this.camera.far = distance * 100;
-    this.camera.updateProjectionMatrix();
     this.orbit.update();
+    this.#setNear(0.01);
   }
 
   /**
@@ -196,10 +251,10 @@ export class Scene {
     const size = force.length();
     this.arrow.visible = size > 0.01;
     if (this.arrow.visible) {
-      // From the middle of the contact, a twentieth of the part's size per newton.
+      // From the middle of the contact, 28 pixels per newton.
       this.arrow.position.copy(count ? centre.divideScalar(count) : new THREE.Vector3(...state.tool.tip));
       this.arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), force.divideScalar(size));
-      this.arrow.scale.setScalar(this.size);
+      this.arrow.scale.setScalar(560 * this.pixel(this.arrow.position.toArray()));
       const length = 0.05 * Math.min(size, 8);
       this.shaft.scale.y = length;
       this.head.position.y = length;
@@ -262,4 +317,14 @@ export class Scene {
     this.camera.matrixWorld.extractBasis(right, up, back);
     return { right, up, away: back.negate() };
   }
+}
+
+/** Returns the radius of the surfaces that cut, or of all if none does. */
+function toolRadius(positions, surfaces, of) {
+  let radius = 0;
+  const cuts = surfaces.some(({ cutting }) => cutting);
+  for (let k = 0; k < positions.length; k += 3) {
+    if (!cuts || surfaces[of[Math.floor(k / 9)]].cutting) radius = Math.max(radius, Math.hypot(positions[k], positions[k + 1]));
+  }
+  return radius;
 }

@@ -2,6 +2,7 @@
 
 import init, { Engine } from './engine.js';
 import { Timing } from './timing.js';
+import { engineModule } from './wasm.js';
 
 const PERIOD = 1; // ms
 /** Cycles that are caught up at most; older ones are skipped. */
@@ -59,6 +60,12 @@ const toolTriangles = () => ({ positions: engine.toolPositions(), normals: engin
 /** The text to compile next. @type {{name: string, text: string, files: Record<string, string>, version: number} | null} */
 let waitingTool = null;
 
+/** Sends a state to be shown. */
+function send(state, contacts) {
+  const surfaces = engine.surfaceContacts();
+  postMessage({ kind: 'frame', state, contacts, surfaces, timing: timing.summary(running), skipped }, [state.buffer, contacts.buffer, surfaces.buffer]);
+}
+
 /** @type {Record<string, (message: any) => void>} */
 const requests = {
   part({ shape, bytes, name, unit, points }) {
@@ -99,6 +106,14 @@ const requests = {
     lastPose = pose.join();
     wake();
   },
+  /** A frame of the page while a program holds the tool: no cycles, only the contact at its pose. */
+  show({ pose }) {
+    running = false;
+    lastPose = '';
+    const values = new Float64Array(pose);
+    const state = engine.isRunning() ? engine.stateAt(values) : new Float64Array();
+    send(state, engine.shownContacts(values));
+  },
   /** A frame of the page: the pose asked for, to be reached within the time between frames. */
   frame({ pose, interval }) {
     const key = pose.join();
@@ -107,22 +122,9 @@ const requests = {
       engine.moveTo(new Float64Array(pose), interval / PERIOD);
       wake();
     }
-    const state = engine.state();
-    const contacts = engine.contacts();
-    const surfaces = engine.surfaceContacts();
-    postMessage({ kind: 'frame', state, contacts, surfaces, timing: timing.summary(running), skipped }, [state.buffer, contacts.buffer, surfaces.buffer]);
+    send(engine.state(), engine.contacts());
   },
 };
-
-/** Fetches the engine, which is compressed unless the server has expanded it. */
-async function engineBytes() {
-  const response = await fetch(new URL('engine.wasm.gz', self.location.href));
-  if (!response.ok) throw new Error(`the server has no engine.wasm.gz (status ${response.status})`);
-  const bytes = await response.arrayBuffer();
-  const [first, second] = new Uint8Array(bytes);
-  if (first !== 0x1f || second !== 0x8b) return bytes;
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
-}
 
 /** Answers a request, or says why it cannot be met. */
 function answer(data) {
@@ -131,12 +133,12 @@ function answer(data) {
   } catch (error) {
     postMessage({ kind: 'error', request: data.kind, message: String(error instanceof Error ? error.message : error) });
     // A page that waits for a frame gets the next one.
-    if (data.kind === 'frame') postMessage({ kind: 'frame', state: new Float64Array(), contacts: new Float32Array(), surfaces: new Float64Array(), timing: timing.summary(false), skipped });
+    if (data.kind === 'frame' || data.kind === 'show') send(new Float64Array(), new Float32Array());
   }
 }
 
 onmessage = ({ data }) => answer(data);
 
-await init({ module_or_path: await WebAssembly.compile(await engineBytes()) });
+await init({ module_or_path: await engineModule() });
 engine = new Engine(1000 / PERIOD, 4000);
 postMessage({ kind: 'ready', library: JSON.parse(Engine.library()) });

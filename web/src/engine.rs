@@ -200,14 +200,29 @@ impl Engine {
     /// Returns contacts at the tool's pose, 10 values each: point, depth, niceness, surface, normal and triangle of the part. Of many, it
     /// lists some, evenly chosen.
     pub fn contacts(&mut self) -> Vec<f32> {
-        match (&mut self.touch, &self.state) {
-            (Some(touch), Some(state)) => {
-                let (listed, surfaces) = touch.contacts(&state.tool, MAX_DRAWN_CONTACTS);
-                self.surfaces = surfaces;
-                listed
-            }
-            _ => Vec::new(),
+        match self.state {
+            Some(state) => self.contacts_of(&state.tool),
+            None => Vec::new(),
         }
+    }
+
+    /// Returns the state of a tool that is held at a pose, with the values of [`state`](Engine::state). The force is that of the
+    /// contact stiffness, without a coupling.
+    ///
+    /// # Errors
+    /// Fails for an invalid pose, and without a session.
+    #[wasm_bindgen(js_name = stateAt)]
+    pub fn state_at(&mut self, pose: &[f64]) -> Result<Vec<f64>, JsError> {
+        Ok(self.held(pose)?)
+    }
+
+    /// Returns contacts at a pose, with the values of [`contacts`](Engine::contacts).
+    ///
+    /// # Errors
+    /// Fails for an invalid pose.
+    #[wasm_bindgen(js_name = shownContacts)]
+    pub fn shown_contacts(&mut self, pose: &[f64]) -> Result<Vec<f32>, JsError> {
+        Ok(self.contacts_of(&hand::pose(pose)?))
     }
 
     /// Returns points, depth and least niceness by surface of the tool, as of the last [`contacts`](Engine::contacts).
@@ -302,6 +317,35 @@ impl Engine {
         self.touch = Some(Touch::begin(touched, &settings, &self.hand)?);
         self.state = None;
         Ok(())
+    }
+
+    fn contacts_of(&mut self, pose: &Pose) -> Vec<f32> {
+        let Some(touch) = &mut self.touch else { return Vec::new() };
+        let (listed, surfaces) = touch.contacts(pose, MAX_DRAWN_CONTACTS);
+        self.surfaces = surfaces;
+        listed
+    }
+
+    fn held(&mut self, pose: &[f64]) -> Result<Vec<f64>, EngineError> {
+        let pose = hand::pose(pose)?;
+        let unit = self.part.as_ref().ok_or(EngineError::NotLoaded)?.unit().millimetres();
+        let stiffness = self.stiffness * unit.powi(3);
+        let wrench = self.running()?.probe(|probe| probe.wrench(&pose));
+        let mut values = vec![0.0];
+        for _ in 0..2 {
+            values.extend(pose.tip().iter().chain(pose.rotation().iter()));
+        }
+        // The torque is in N·mm.
+        values.extend(wrench.force.iter().map(|force| stiffness * force));
+        values.extend(wrench.torque.iter().map(|torque| stiffness * unit * torque));
+        values.extend([
+            wrench.depth(),
+            wrench.niceness.unwrap_or(f64::INFINITY),
+            wrench.colliding as f64,
+            0.0,
+            0.0,
+        ]);
+        Ok(values)
     }
 
     fn running(&mut self) -> Result<&mut Touch, EngineError> {

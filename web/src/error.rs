@@ -1,7 +1,11 @@
 //! Errors that reach the page.
 
+use crate::program::MAX_MOTIONS;
 use touchoff::haptic::SettingError;
+use touchoff::machine::{JointError, MachineError};
 use touchoff::mesh::{GeometryError, MeshError};
+use touchoff::program::ProgramError;
+use touchoff::verify::{MachineProgramError, VerifyError};
 use touchoff::{CloudError, ParseUnitError, PoseError};
 
 /// A request that could not be met. The message is meant for people.
@@ -25,6 +29,34 @@ pub(crate) enum EngineError {
     /// A setting of the session is out of its range.
     #[error(transparent)]
     Setting(#[from] SettingError),
+    /// A program cannot be read, or does not fit the part or the tool.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+    /// G-code cannot be executed on the machine.
+    #[error(transparent)]
+    MachineProgram(#[from] MachineProgramError),
+    /// A machine is unknown, or its file cannot be read.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// A machine cannot make a motion.
+    #[error(transparent)]
+    Joint(#[from] JointError),
+    /// A program cannot be checked.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// A program has more motions than the page holds.
+    #[error(
+        "{name} has {motions} motions, and the page holds {MAX_MOTIONS}: check it with `touchoff verify`"
+    )]
+    LongProgram {
+        /// The program's file.
+        name: String,
+        /// The number of motions.
+        motions: usize,
+    },
+    /// The text of a tool that is checked has errors.
+    #[error("{0} has errors: mend them in the editor, then the program is checked")]
+    ToolErrors(String),
     /// A file has points only.
     #[error("{0} has points without triangles, which cannot be drawn: open a mesh")]
     NoTriangles(String),
@@ -35,7 +67,7 @@ pub(crate) enum EngineError {
     #[error("no library tool is in the file `{0}`")]
     UnknownTool(String),
     /// There is no part, tool or session yet.
-    #[error("there is nothing to touch yet: load a part and a tool, then start")]
+    #[error("something is missing: load a part and a tool, and a program to check one")]
     NotLoaded,
     /// A pose has the wrong number of values.
     #[error("a pose has 7 values, the tip and a quaternion (x, y, z, w), not {0}")]

@@ -1,6 +1,7 @@
-//! The part of Touchoff that runs in a web page: a cycle of the haptic loop, the compiler of tools, and the shapes to draw.
+//! The part of Touchoff that runs in a web page: a cycle of the haptic loop, the compiler of tools, the shapes to draw, and the
+//! check of programs.
 //!
-//! [`Engine`] is the interface to JavaScript. Lengths are in the part's unit, forces in N, torques in N·mm. Structured
+//! [`Engine`] and [`Checker`] are the interface to JavaScript, each for a thread of its own. Lengths are in the part's unit, forces in N, torques in N·mm. Structured
 //! results are JSON; coordinates are typed arrays.
 //!
 //! ```text
@@ -8,18 +9,24 @@
 //!              ├─▶ touch: a session and a probe ─▶ state, contacts
 //! text ─▶ tool ┘     ▲ target
 //!                    hand
+//!
+//! G-code, APT ─▶ program ─▶ checker ─▶ findings; depth and clearance at each position
 //! ```
 
 #![deny(missing_docs, missing_debug_implementations)]
 
+mod checker;
 mod engine;
 mod error;
+mod findings;
 mod hand;
 mod implicit;
 mod library;
 mod outline;
 mod part;
+mod program;
 mod tool;
 mod touch;
 
+pub use checker::Checker;
 pub use engine::Engine;

@@ -199,6 +199,12 @@ pub(crate) struct Live {
     /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file [default: `D2Ball`].
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: Option<OsString>,
+    /// Program to follow: positions of the tip, or G-code.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) program: Option<PathBuf>,
+    /// Machine of a G-code program: its name or its file [default: `3-axis`].
+    #[arg(long, value_name = "NAME|FILE.toml", requires = "program")]
+    pub(crate) machine: Option<OsString>,
     /// Port to listen at, on 127.0.0.1; 0 is any that is free.
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     pub(crate) port: u16,

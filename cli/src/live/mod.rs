@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::loaded_tool::{built_in, load_file, read_source};
 use crate::output::Output;
 use crate::part;
+use crate::program::read_machine;
 use page::{Content, Page};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -18,12 +19,16 @@ use std::path::Path;
 use tool_dsl::compile;
 use tools_library::{SOURCES, TOOLS};
 use touchoff::Unit;
+use touchoff::gcode::ControlSetup;
+use touchoff::program::ProgramFile;
+use touchoff::verify::MachineProgram;
 
 /// The part and the tool that the page begins with.
 #[derive(Serialize)]
 struct Begin {
     part: Option<BeginPart>,
     tool: Option<BeginTool>,
+    program: Option<BeginProgram>,
 }
 
 #[derive(Serialize)]
@@ -40,6 +45,19 @@ struct BeginTool {
     files: BTreeMap<String, String>,
 }
 
+#[derive(Serialize)]
+struct BeginProgram {
+    name: String,
+    machine: Option<BeginMachine>,
+}
+
+/// A machine that comes with the library by its name, or the text of another one's file.
+#[derive(Serialize)]
+struct BeginMachine {
+    name: String,
+    text: Option<String>,
+}
+
 /// The page's address, for programs.
 #[derive(Serialize)]
 struct AddressRow<'a> {
@@ -53,12 +71,17 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
         _ => None,
     };
     let tool = arguments.tool.as_deref().map(begin_tool).transpose()?;
-    let (part, bytes) = part.unzip();
-    let begin = serde_json::to_vec(&Begin { part, tool })?;
+    let machine = arguments.machine.as_deref().map(Path::new);
+    let program =
+        arguments.program.as_deref().map(|file| read_program(file, machine)).transpose()?;
+    let ((part, part_bytes), (program, program_bytes)) = (part.unzip(), program.unzip());
+    let begin = serde_json::to_vec(&Begin { part, tool, program })?;
     let mut page = Page::embedded();
     page.add("/session.json", Content::json(begin));
-    if let Some(bytes) = bytes {
-        page.add("/part", Content::bytes(bytes));
+    for (path, bytes) in [("/part", part_bytes), ("/program", program_bytes)] {
+        if let Some(bytes) = bytes {
+            page.add(path, Content::bytes(bytes));
+        }
     }
     let port = arguments.port;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
@@ -88,8 +111,33 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
 fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
     part::mesh(file, unit, "`touchoff live`")?;
     let bytes = std::fs::read(file)?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok((BeginPart { name, unit: unit.symbol() }, bytes))
+    Ok((BeginPart { name: file_name(file), unit: unit.symbol() }, bytes))
+}
+
+/// Reads a program's file, after a check that its motions are known.
+fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Vec<u8>), Failure> {
+    let machine = match (ProgramFile::read(file)?, machine) {
+        (ProgramFile::Locations(_), None) => None,
+        (ProgramFile::Locations(_), Some(_)) => {
+            return Err(Failure::Usage(
+                "a machine is for G-code: this program states positions of the tip",
+            ));
+        }
+        (ProgramFile::Gcode(text), machine) => {
+            let machine = machine.unwrap_or(Path::new("3-axis"));
+            let name = file.display().to_string();
+            MachineProgram::new(&name, text, read_machine(machine)?, ControlSetup::default())?;
+            let is_file = machine.extension().is_some_and(|extension| extension == "toml");
+            let text = is_file.then(|| std::fs::read_to_string(machine)).transpose()?;
+            Some(BeginMachine { name: file_name(machine), text })
+        }
+    };
+    Ok((BeginProgram { name: file_name(file), machine }, std::fs::read(file)?))
+}
+
+/// Returns the last part of a path.
+fn file_name(file: &Path) -> String {
+    file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Returns a tool as the page takes it.
@@ -115,6 +163,6 @@ fn begin_tool(name: &OsStr) -> Result<BeginTool, Failure> {
             files.insert(relative.display().to_string(), source.text.clone());
         }
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = file_name(path);
     Ok(BeginTool { name, text: Some(compiled.sources.main().text.clone()), files })
 }

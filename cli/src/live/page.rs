@@ -40,6 +40,7 @@ impl Page {
             ("/", file!("index.html", "text/html; charset=utf-8")),
             ("/page.css", file!("page.css", "text/css; charset=utf-8")),
             ("/page.js", file!("page.js", "text/javascript; charset=utf-8")),
+            ("/checker.js", file!("checker.js", "text/javascript; charset=utf-8")),
             ("/worker.js", file!("worker.js", "text/javascript; charset=utf-8")),
             ("/engine.js", file!("engine.js", "text/javascript; charset=utf-8")),
             ("/engine.wasm.gz", file!("engine.wasm.gz", "application/octet-stream")),

@@ -68,12 +68,19 @@ fn the_page_comes_with_the_part_and_the_tool() {
         "tool Cutter { units mm; profile { start (0, 0); arc to (2, 2) center (0, 2) as ball cutting; \
          line to (2, 15), (0, 15) as shank; } niceness cutting: 1; }",
     );
-    let live = Live::new(&bench, &["--part", "block.stl", "--unit", "inch", "--tool", "my.tool"]);
+    let program = "G21 G90 G43 H1\nG0 X0. Y0. Z20.\nG1 Z15. F100.\nM30\n";
+    bench.write("part.nc", program);
+    let live = Live::new(
+        &bench,
+        &["--part", "block.stl", "--unit", "inch", "--tool", "my.tool", "--program", "part.nc"],
+    );
     let (status, head, page) = live.get("/");
     assert_eq!(status, 200);
     assert!(head.contains("Cross-Origin-Opener-Policy: same-origin"), "{head}");
     assert!(String::from_utf8_lossy(&page).contains("<title>Touchoff live</title>"));
-    for file in ["/page.js", "/worker.js", "/engine.js", "/engine.wasm.gz", "/page.css"] {
+    for file in
+        ["/page.js", "/checker.js", "/worker.js", "/engine.js", "/engine.wasm.gz", "/page.css"]
+    {
         let (status, _, bytes) = live.get(file);
         assert!(status == 200 && bytes.len() > 1000, "{file}: {status}, {} bytes", bytes.len());
     }
@@ -85,6 +92,9 @@ fn the_page_comes_with_the_part_and_the_tool() {
     assert_eq!(files.keys().collect::<Vec<_>>(), ["cutter.tool", "holder.tool"]);
     let block = std::fs::read(bench.folder.path().join("block.stl")).expect("the part");
     assert_eq!(live.get("/part").2, block);
+    let begun = serde_json::json!({"name": "part.nc", "machine": {"name": "3-axis", "text": null}});
+    assert_eq!(begin["program"], begun);
+    assert_eq!(live.get("/program").2, program.as_bytes());
     // A head has no body.
     let head = format!("HEAD / HTTP/1.1\r\nHost: localhost:{}\r\n\r\n", live.port);
     let (status, _, body) = live.ask(&head);
@@ -128,6 +138,11 @@ fn wrong_parts_and_tools_are_refused() {
     refused(&["--tool", &broken], 1, "broken.tool");
     refused(&["--tool", "D2Bal"], 1, "did you mean `D2Ball`?");
     refused(&["--part", &part, "--unit", "mm"], 1, "empty.stl");
+    let program = bench.write("bad.nc", "G21 G90\nG1 X#1 F100.\n");
+    refused(&["--program", &program], 1, "bad.nc");
+    refused(&["--program", &program, "--machine", "4-axis"], 1, "4-axis");
+    let table = bench.write("table.csv", "0,0,9,0,0,1\n");
+    refused(&["--program", &table, "--machine", "3-axis"], 2, "a machine is for G-code");
     refused(&["--part", &part], 2, "--unit");
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = taken.local_addr().expect("an address").port().to_string();

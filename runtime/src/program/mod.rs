@@ -62,19 +62,27 @@ pub enum ProgramFile {
 impl ProgramFile {
     /// Reads a file of positions or of G-code.
     ///
+    /// # Errors
+    /// If the file cannot be read, or as for [`ProgramFile::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
+        let file = path.as_ref().display().to_string();
+        match input::read(path) {
+            Ok(bytes) => ProgramFile::parse(bytes, &file),
+            Err(source) => Err(ProgramError::Read { file, source }),
+        }
+    }
+
+    /// Reads positions or G-code from the content of a file. `name` is the file's name in errors.
+    ///
     /// The first line that is neither blank nor a comment decides: G-code begins with `%`, a comment in parentheses, a
     /// letter with a number, or the head of a Heidenhain program.
     ///
     /// # Errors
-    /// If the file cannot be read or is not text, or as for [`Program::parse_tools`].
-    pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
-        let file = path.as_ref().display().to_string();
-        match input::read(path) {
-            Ok(bytes) => match decode(&bytes) {
-                Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
-                _ => Program::parse_tools(bytes, &file).map(ProgramFile::Locations),
-            },
-            Err(source) => Err(ProgramError::Read { file, source }),
+    /// If the content is not text, or as for [`Program::parse_tools`].
+    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ProgramFile, ProgramError> {
+        match decode(content.as_ref()) {
+            Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
+            _ => Program::parse_tools(content, name).map(ProgramFile::Locations),
         }
     }
 }

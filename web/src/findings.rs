@@ -1,0 +1,87 @@
+//! Findings of a check, as the page lists them.
+
+use serde::Serialize;
+use touchoff::SurfaceId;
+use touchoff::tool::ToolInfo;
+use touchoff::verify::{Finding, FindingGroup, FindingKind, VerifyReport};
+
+/// The result of a check.
+#[derive(Debug, Serialize)]
+pub(crate) struct CheckedProgram {
+    motions: usize,
+    /// `true` if it is proved that nothing is deeper than allowed.
+    clear: bool,
+    /// `false` if the part has no inside, so that a tool wholly inside it is not found.
+    inside_known: bool,
+    /// Upper bound on the least distance between tool and part; 0 if they touch.
+    distance: f64,
+    /// `true` if the tool stays farther from the part than its diameter.
+    far: bool,
+    /// The findings, the worst first.
+    findings: Vec<FindingRow>,
+}
+
+/// A finding on consecutive motions.
+#[derive(Debug, Serialize)]
+struct FindingRow {
+    kind: &'static str,
+    surface: Option<String>,
+    /// Position of the worst in the program: the index of the cutter location before it, and the fraction of the motion.
+    at: f64,
+    /// Indices of the cutter locations at which the first and the last motion end.
+    span: [usize; 2],
+    /// Line of the worst, of the first and of the last motion.
+    lines: [usize; 3],
+    rapid: bool,
+    /// Proved bounds of depth or distance at the worst.
+    measured: Option<[f64; 2]>,
+    /// The allowed depth, or the margin.
+    limit: Option<f64>,
+    /// The point of the part.
+    point: Option<[f64; 3]>,
+}
+
+impl CheckedProgram {
+    pub(crate) fn of(report: &VerifyReport, info: &ToolInfo) -> CheckedProgram {
+        let mut groups = FindingGroup::join(&report.findings);
+        groups.sort_by(|one, other| other.worst.kind.severity(&one.worst.kind));
+        CheckedProgram {
+            motions: report.motions,
+            clear: report.is_clear(),
+            inside_known: report.inside_known,
+            distance: report.approach.distance,
+            far: report.approach.is_far(),
+            findings: groups.iter().map(|group| FindingRow::of(group, info)).collect(),
+        }
+    }
+}
+
+impl FindingRow {
+    fn of(group: &FindingGroup, info: &ToolInfo) -> FindingRow {
+        let Finding { location, line, rapid, time, kind, .. } = group.worst;
+        let name = |surface: SurfaceId| info.surface(surface).name.to_string();
+        let (label, measured, limit, witness) = match kind {
+            FindingKind::Deep { allowed, depth, through, witness, .. } => {
+                let label = if through { "right through" } else { "deep" };
+                (label, Some([depth.low, depth.high]), Some(allowed), Some(witness))
+            }
+            FindingKind::Near { margin, distance, witness, .. } => {
+                ("near", Some([distance.low, distance.high]), Some(margin), Some(witness))
+            }
+            FindingKind::Inside { .. } => ("inside", None, None, None),
+            FindingKind::Undecided { .. } => ("undecided", None, None, None),
+            FindingKind::Ambiguous(_) => ("ambiguous", None, None, None),
+        };
+        FindingRow {
+            kind: label,
+            surface: kind.surface().map(name),
+            at: (location as f64 - 1.0 + time).max(0.0),
+            span: [group.first.location, group.last.location],
+            lines: [line, group.first.line, group.last.line],
+            rapid,
+            measured,
+            limit,
+            point: witness.map(|witness| witness.point.coords.into()),
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Programs: read from a file, and the motions of one tool.
+
+use crate::error::EngineError;
+use serde::Serialize;
+use touchoff::gcode::ControlSetup;
+use touchoff::machine::Machine;
+use touchoff::program::ProgramFile;
+use touchoff::tool::ToolInfo;
+use touchoff::verify::{MachineProgram, Move, ToolSelection};
+use touchoff::{Program, Unit};
+
+/// Greatest number of motions that the page holds in memory.
+pub(crate) const MAX_MOTIONS: usize = 200_000;
+
+/// A program that was read.
+#[derive(Debug)]
+pub(crate) enum OpenProgram {
+    /// Positions, a program per tool change.
+    Locations(Vec<Program>),
+    /// G-code on a machine.
+    Machine(Box<MachineProgram>),
+}
+
+/// The facts about a program that the page shows.
+#[derive(Debug, Serialize)]
+pub(crate) struct ProgramFacts {
+    /// Name of the machine, for G-code.
+    machine: Option<String>,
+    /// The tools that the program uses, in order.
+    tools: Vec<ToolFacts>,
+    /// Sentences about what is not checked, and what was passed over.
+    notes: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct ToolFacts {
+    number: Option<u32>,
+    motions: usize,
+}
+
+/// Reads a program. `machine` is the name of a machine that comes with the library, or the text of a machine's file; it counts
+/// for G-code only.
+///
+/// # Errors
+/// Fails if a line is refused, if the machine is unknown, or for too many motions.
+pub(crate) fn read(bytes: &[u8], name: &str, machine: &str) -> Result<OpenProgram, EngineError> {
+    let program = match ProgramFile::parse(bytes, name)? {
+        ProgramFile::Locations(programs) => OpenProgram::Locations(programs),
+        ProgramFile::Gcode(text) => {
+            // A name has one line.
+            let machine = match machine.contains('\n') {
+                true => Machine::parse(machine, "the machine's file")?,
+                false => Machine::named(machine)?,
+            };
+            let program = MachineProgram::new(name, text, machine, ControlSetup::default())?;
+            OpenProgram::Machine(Box::new(program))
+        }
+    };
+    let motions = program.tools().iter().map(|tool| tool.motions).sum();
+    if motions > MAX_MOTIONS {
+        return Err(EngineError::LongProgram { name: name.to_owned(), motions });
+    }
+    Ok(program)
+}
+
+impl OpenProgram {
+    fn tools(&self) -> Vec<ToolFacts> {
+        match self {
+            OpenProgram::Locations(programs) => {
+                let mut tools: Vec<ToolFacts> = Vec::new();
+                for program in programs {
+                    let motions = program.locations.len();
+                    match tools.iter_mut().find(|tool| tool.number == program.tool) {
+                        Some(tool) => tool.motions += motions,
+                        None => tools.push(ToolFacts { number: program.tool, motions }),
+                    }
+                }
+                tools
+            }
+            OpenProgram::Machine(program) => {
+                let tools = program.summary().tools.iter();
+                tools.map(|tool| ToolFacts { number: tool.number, motions: tool.motions }).collect()
+            }
+        }
+    }
+
+    /// Returns the facts that the page shows.
+    pub(crate) fn facts(&self) -> ProgramFacts {
+        let mut notes = Vec::new();
+        let machine = match self {
+            OpenProgram::Locations(programs) => {
+                let ignored: usize = programs.iter().map(|program| program.ignored.len()).sum();
+                if ignored > 0 {
+                    notes.push(format!(
+                        "{ignored} words that cannot move the tool were passed over"
+                    ));
+                }
+                None
+            }
+            OpenProgram::Machine(program) => {
+                let summary = program.summary();
+                if let Some(unknown) = summary.unknown {
+                    notes.push(format!(
+                        "line {}: only the machine knows where {} motions start or end; they are not checked",
+                        unknown.line, unknown.count
+                    ));
+                }
+                notes.extend(summary.notes.iter().map(ToString::to_string));
+                Some(program.machine().name().to_owned())
+            }
+        };
+        ProgramFacts { machine, tools: self.tools(), notes }
+    }
+
+    /// Returns the motions of the tool with a number in the program, in the frame and unit of the part.
+    ///
+    /// # Errors
+    /// Fails if unit, poses or cutter of the program do not fit.
+    pub(crate) fn moves(
+        &self,
+        number: Option<u32>,
+        (info, unit): (&ToolInfo, Unit),
+    ) -> Result<Vec<Move>, EngineError> {
+        match self {
+            OpenProgram::Locations(programs) => {
+                let mut moves = Vec::new();
+                for program in programs.iter().filter(|program| program.tool == number) {
+                    program.check_unit(unit)?;
+                    program.check_poses(info)?;
+                    program.check_cutter(info, unit)?;
+                    moves.extend(Move::all(program, info.symmetry));
+                }
+                Ok(moves)
+            }
+            OpenProgram::Machine(program) => {
+                Ok(program.moves(ToolSelection::Number(number), None, unit)?.collect())
+            }
+        }
+    }
+}
