@@ -192,6 +192,8 @@ function frame(now) {
     else ask('frame', { pose: hand.pose, interval: Math.min(Math.max(interval, 4), 100) });
   }
   scene.draw();
+  // For scripts, too.
+  id('canvas').dataset.camera = scene.camera.position.toArray().map((value) => value.toFixed(3)).join();
   if (part) readout.showView(scene, state?.tool.tip ?? scene.orbit.target.toArray(), part.unit);
 }
 

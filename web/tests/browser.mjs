@@ -125,6 +125,49 @@ try {
     await shot('mounted');
   });
 
+  await check('a program shows its findings on a time line, and a click on one moves the camera there', async () => {
+    await page.click('#edit');
+    await page.selectOption('#tool', 'd2_ball.tool');
+    await until(() => /D2Ball/.test(document.getElementById('title').textContent));
+    // Over the top of the plate, 0.2 mm deep on the way.
+    const rows = Array.from({ length: 41 }, (_, k) => `${-18 + 0.1 * k},${-10 + 0.5 * k},${k > 15 && k < 25 ? -0.2 : 0},0,0,1`);
+    const program = ['-18,-10,12,0,0,1', ...rows, '-14,10,12,0,0,1'].join('\n');
+    await page.setInputFiles('#program-file', { name: 'over.csv', mimeType: 'text/csv', buffer: Buffer.from(program) });
+    await until(() => document.getElementById('canvas').dataset.along === 'done');
+    console.log(`    ${await text('#verdict')}`);
+    assert.match(await text('#verdict'), /^1 finding \(42 motions/);
+    assert.match(await text('#findings-list'), /ball: deep 0\.200 mm/);
+    await page.waitForTimeout(300);
+    const camera = await data('camera');
+    await shot('program');
+    await page.click('#findings-list button');
+    await until((before) => document.getElementById('canvas').dataset.camera !== before, camera);
+    await until(() => /at most 0\.200 mm deep/.test(document.getElementById('position-text').textContent));
+    await until(() => Number(document.getElementById('count').textContent) > 0);
+    await shot('finding');
+    // The tool stands at the middle of the canvas, where the camera looks.
+    const [x, y] = (await data('tip')).split(',').map(Number);
+    const box = await page.locator('#canvas').boundingBox();
+    assert.ok(Math.hypot(x - box.width / 2, y - box.height / 2) < 0.15 * box.height, `${x}, ${y}`);
+  });
+
+  await check('a scrub moves the tool, and a drag takes it from the program', async () => {
+    await page.locator('#position').fill('0');
+    await until(() => /^line 1 · feed · 1[12]\.\d+ mm or more from the part/.test(document.getElementById('position-text').textContent));
+    await page.waitForTimeout(300);
+    assert.equal((await text('#tip')).trim().split(/\s+/)[2], '12.00');
+    await page.click('[data-view=front]');
+    await page.waitForTimeout(300);
+    assert.equal(await text('#holder'), 'At this position, from the points');
+    await press(30, 0, 5);
+    await page.waitForTimeout(300);
+    assert.equal(await text('#holder'), 'On the hand');
+    assert.ok(Number((await text('#tip')).trim().split(/\s+/)[0]) > -17.9, await text('#tip'));
+    await page.mouse.up();
+    await page.click('#close-program');
+    assert.ok(await page.isHidden('#program'));
+  });
+
   await check('a part of a file is read in its unit, and a broken one is refused with the reason', async () => {
     const corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map((facet) => `facet normal 0 0 0\nouter loop\n${facet
