@@ -6,7 +6,7 @@ const id = (name) => /** @type {any} */ (document.getElementById(name));
 /** Duration of a whole program that plays, s, and least rate in positions per second. */
 const PLAYED = { seconds: 40, rate: 4 };
 
-/** @typedef {{kind: string, surface: string | null, at: number, span: number[], lines: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null}} Finding */
+/** @typedef {{kind: string, surface: string | null, at: number, span: number[], lines: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number}} Finding */
 
 export class ProgramView {
   /**
@@ -171,7 +171,7 @@ export class ProgramView {
   show(finding) {
     this.#play(false);
     this.seek(finding.at);
-    if (finding.point) this.scene.lookAt(finding.point);
+    if (finding.point) this.scene.lookAt(finding.point, finding.triangle);
   }
 
   #play(on) {

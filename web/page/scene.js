@@ -184,17 +184,23 @@ export class Scene {
   }
 
   /**
-   * Looks at a point from the side of the view, near enough for the tool, and cuts away what stands before it.
+   * Looks at a point of the part from outside, a little from above and from aside, near enough for the tool. What stands
+   * before it is cut away.
    * @param {number[]} point
+   * @param {number} triangle of the part
    */
-  lookAt(point) {
-    const { away } = this.directions();
+  lookAt(point, triangle) {
+    const normals = /** @type {any} */ (this.part).geometry.getAttribute('normal');
+    const normal = new THREE.Vector3().fromBufferAttribute(normals, 3 * triangle);
+    const aside = new THREE.Vector3(-normal.y, normal.x, 0).multiplyScalar(0.7);
+    const toward = normal.add(aside).add(new THREE.Vector3(0.1, -0.2, 0.5));
+    if (toward.lengthSq() < 1e-3) toward.set(0.75, -1, 0.62);
     const extent = Math.min(0.6 * this.size, Math.max(12 * this.toolRadius, 0.05 * this.size));
     const distance = (0.5 * extent) / Math.tan((this.camera.fov * Math.PI) / 360);
     this.orbit.target.set(...point);
-    this.camera.position.copy(this.orbit.target).addScaledVector(away, -distance);
+    this.camera.position.copy(this.orbit.target).addScaledVector(toward.normalize(), distance);
     this.orbit.update();
-    this.#setNear(1 - Math.min(0.9, (0.5 * extent) / distance));
+    this.#setNear(1 - Math.min(0.9, (0.6 * extent) / distance));
   }
 
   /**

@@ -37,8 +37,9 @@ struct FindingRow {
     measured: Option<[f64; 2]>,
     /// The allowed depth, or the margin.
     limit: Option<f64>,
-    /// The point of the part.
+    /// The point of the part, and its triangle.
     point: Option<[f64; 3]>,
+    triangle: Option<u32>,
 }
 
 impl CheckedProgram {
@@ -82,6 +83,7 @@ impl FindingRow {
             measured,
             limit,
             point: witness.map(|witness| witness.point.coords.into()),
+            triangle: witness.map(|witness| witness.triangle.0),
         }
     }
 }

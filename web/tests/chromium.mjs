@@ -11,27 +11,39 @@ import { serve } from './serve.mjs';
 const ISOLATION = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' };
 const ARGUMENTS = [
   '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+  '--disable-component-update', '--disable-sync', '--enable-blink-features=ForceEagerMeasureMemory', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
 ];
 
 /**
- * Serves the page and opens a browser with a profile of its own, in which nothing is loaded yet. The lists `outside` and
- * `problems` collect requests to other addresses and errors of the page.
+ * Opens a browser with a profile of its own and an empty page. The lists `outside` and `problems` collect requests to
+ * addresses that do not begin with `own`, and errors of the page.
  */
-export async function openPage(viewport = { width: 1400, height: 860 }) {
+export async function openBrowser(own, viewport, more = []) {
   const profile = mkdtempSync(join(tmpdir(), 'touchoff-'));
-  const server = await serve(fileURLToPath(new URL('../dist/', import.meta.url)), ISOLATION);
   const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-  const browser = await chromium.launchPersistentContext(profile, { executablePath, headless: true, viewport, args: ARGUMENTS });
+  const browser = await chromium.launchPersistentContext(profile, { executablePath, headless: true, viewport, args: [...ARGUMENTS, ...more] });
   const page = await browser.newPage();
   const outside = [];
   const problems = [];
   page.on('request', (request) => {
     const url = request.url();
-    if (!/^(data|blob):/.test(url) && !url.startsWith(server.address)) outside.push(url);
+    if (!/^(data|blob):/.test(url) && !url.startsWith(own)) outside.push(url);
   });
   page.on('console', (message) => { if (message.type() === 'error') problems.push(message.text()); });
   page.on('pageerror', (error) => problems.push(String(error)));
+
+  async function close() {
+    await browser.close();
+    rmSync(profile, { recursive: true, force: true });
+  }
+  return { page, outside, problems, close };
+}
+
+/** Serves the page, and opens a browser in which nothing is loaded yet. */
+export async function openPage(viewport = { width: 1400, height: 860 }) {
+  const server = await serve(fileURLToPath(new URL('../dist/', import.meta.url)), ISOLATION);
+  const browser = await openBrowser(server.address, viewport);
+  const { page } = browser;
 
   /** Drags the tool by pixels, in steps, and keeps the button down. */
   async function press(dx, dy, steps = 30) {
@@ -47,8 +59,6 @@ export async function openPage(viewport = { width: 1400, height: 860 }) {
   async function close() {
     await browser.close();
     server.close();
-    rmSync(profile, { recursive: true, force: true });
   }
-
-  return { page, address: server.address, outside, problems, press, close };
+  return { ...browser, address: server.address, press, close };
 }
