@@ -1,4 +1,4 @@
-// Makes the pictures of the page in this folder: live.png, program.png, edit.png, live.gif, and with a report, report.png.
+// Makes the pictures of the page in this folder: program.png, edit.png, live.gif, and with a report, report.png.
 //   node docs/pictures/make.mjs [REPORT.html]      after `npm ci` in web/; CHROMIUM names another browser than /usr/bin/chromium
 // The rest are made by `touchoff map` (docs/postures.md).
 
@@ -45,7 +45,6 @@ await rest(2);
 await drag([0.42, 0.54], [0.56, 0.62], 14);
 await drag([0.56, 0.62], [0.62, 0.72], 8);
 await rest(3);
-await shot('live.png');
 await drag([0.62, 0.72], [0.5, 0.6], 10);
 await page.mouse.up();
 await rest(4);
@@ -89,6 +88,8 @@ writeFileSync(file('live.gif'), recording.gif());
 console.log(`live.gif: ${recording.count} pictures`);
 if (process.argv[2]) {
   await page.goto(pathToFileURL(resolve(process.argv[2])).href);
+  await page.setViewportSize({ width: 1080, height: 900 });
+  await page.locator('button.show').first().click();
   await page.waitForTimeout(1500);
   await shot('report.png');
 }

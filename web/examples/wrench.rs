@@ -49,7 +49,8 @@ fn print<T: BatchEvaluator>(
     let best = Level::new();
     for (name, level) in [("AVX2", best.as_avx2().map(Level::Avx2)), ("best", Some(best))] {
         let Some(level) = level else { continue };
-        let times = [median(part, &interpreted, level, poses), median(part, compiled, level, poses)];
+        let times =
+            [median(part, &interpreted, level, poses), median(part, compiled, level, poses)];
         println!("{file} {name} {} {}", times[0], times[1]);
     }
     Ok(())
