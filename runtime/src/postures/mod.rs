@@ -6,6 +6,7 @@ mod directions;
 mod holder;
 mod map;
 pub mod path;
+mod piece;
 mod placement;
 mod record;
 #[cfg(feature = "realtime")]
@@ -19,6 +20,7 @@ pub use map::{
     Coverage, Difference, MapError, MapIdentity, MapRows, PartFingerprint, PostureMap,
     ToolFingerprint,
 };
+pub use piece::Piece;
 pub use record::{Accessibility, MapRow, PostureRecord};
 #[cfg(feature = "realtime")]
 pub use recorder::{Recorder, RecorderError, RecorderStats};

@@ -1,8 +1,11 @@
 //! Data on record for a triangle.
 
+use super::Piece;
+use super::map::merge;
 use crate::pose::{Pose, PoseError};
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroU16;
 
 /// A posture on record: the pose of a tool at a triangle, its niceness, and its proved bounds. Lengths are in
 /// the part's unit, points in its frame.
@@ -52,4 +55,47 @@ pub struct MapRow {
     pub best: Vec<PostureRecord>,
     /// One entry per tool that a sweep tried at this triangle; empty if no sweep has processed it.
     pub access: Vec<Accessibility>,
+}
+
+impl Accessibility {
+    /// Returns whether the tool reaches the triangle, or the piece of one.
+    pub fn is_reached(&self) -> bool {
+        self.directions.iter().any(|word| *word != 0)
+    }
+
+    fn join(&mut self, other: &Accessibility) {
+        let words = self.directions.iter_mut().zip(&other.directions);
+        words.for_each(|(word, other)| *word |= other);
+        self.stickout = match (self.stickout, other.stickout) {
+            (Some(one), Some(other)) => Some(one.min(other)),
+            (one, other) => one.or(other),
+        };
+    }
+}
+
+impl MapRow {
+    /// Joins the rows of the pieces of a triangle to one: the best `keep` postures of all, and per tool the directions
+    /// from which it reaches any of the pieces, with the least stick-out.
+    pub fn joined(pieces: &[(Piece, MapRow)], keep: NonZeroU16) -> MapRow {
+        let mut joined = MapRow::default();
+        for (_, row) in pieces {
+            merge(&mut joined.best, &row.best, keep);
+            for access in &row.access {
+                match joined.access.iter_mut().find(|known| known.tool == access.tool) {
+                    Some(known) => known.join(access),
+                    None => joined.access.push(access.clone()),
+                }
+            }
+        }
+        joined
+    }
+}
+
+/// Returns the fraction of a triangle's area that a tool reaches, by its pieces; `None` if no sweep tried it.
+pub(super) fn area_fraction(pieces: &[(Piece, MapRow)], tool: u16) -> Option<f64> {
+    let reach = |(piece, row): &(Piece, MapRow)| {
+        let access = row.access.iter().find(|access| access.tool == tool)?;
+        Some(if access.is_reached() { piece.fraction() } else { 0.0 })
+    };
+    pieces.iter().map(reach).sum()
 }

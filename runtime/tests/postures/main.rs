@@ -4,12 +4,14 @@ mod clearance;
 mod crash;
 mod path;
 mod recorder;
+mod refine;
 mod sweep;
 mod validator;
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sweep::sweep_all;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, SurfaceId, Tool, TriangleId, Unit};
 

@@ -59,7 +59,7 @@ fn run(
 }
 
 /// Returns all rows of a part.
-fn sweep_all(
+pub(crate) fn sweep_all(
     mesh: &Mesh,
     tools: &[&dyn Tool],
     directions: &Directions,

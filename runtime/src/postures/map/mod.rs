@@ -1,7 +1,7 @@
 //! Posture maps in files: the data on record for each triangle of a part, stored as it is found.
 //!
 //! The file is a `redb` store of two tables: facts about the map (its version, its [`MapIdentity`]) and rows by
-//! triangle ([`coding`] has the bytes). A batch is one transaction, stored whole or not at all. It is on disk
+//! triangle ([`coding`] has the bytes). A refined map has a third one, rows by piece. A batch is one transaction, stored whole or not at all. It is on disk
 //! when [`PostureMap::record`] or [`PostureMap::merge`] returns.
 
 mod codec;
@@ -10,6 +10,7 @@ mod export;
 mod identity;
 mod merge;
 mod open;
+mod pieces;
 mod snapshot;
 #[cfg(test)]
 mod tests;
@@ -74,8 +75,12 @@ pub struct PostureMap {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Coverage {
-    /// Number of triangles with a posture on record.
+    /// Number of triangles with a posture on record; a divided one has it at any of its pieces.
     pub covered: u32,
+    /// Number of triangles that are divided into pieces.
+    pub divided: u32,
+    /// Number of their pieces.
+    pub pieces: u32,
     /// Number of triangles that a sweep has processed.
     pub swept: u32,
     /// Number of triangles of the part.
@@ -186,14 +191,18 @@ impl PostureMap {
     /// If the file cannot be read, or a row is damaged.
     pub fn coverage(&self) -> Result<Coverage, MapError> {
         let triangles = self.identity.part.triangles;
-        self.rows()?.try_fold(Coverage { triangles, ..Coverage::default() }, |known, entry| {
-            let (_, row) = entry?;
-            Ok(Coverage {
-                covered: known.covered + u32::from(!row.best.is_empty()),
-                swept: known.swept + u32::from(!row.access.is_empty()),
-                ..known
-            })
-        })
+        let mut coverage = Coverage { triangles, ..Coverage::default() };
+        self.for_each_triangle(|_, pieces| {
+            let any = |is_there: fn(&MapRow) -> bool| pieces.iter().any(|(_, row)| is_there(row));
+            coverage.covered += u32::from(any(|row| !row.best.is_empty()));
+            coverage.swept += u32::from(any(|row| !row.access.is_empty()));
+            if pieces.len() > 1 {
+                coverage.divided += 1;
+                coverage.pieces += pieces.len() as u32;
+            }
+            Ok::<(), MapError>(())
+        })?;
+        Ok(coverage)
     }
 
     /// Joins new data to rows, in one transaction.

@@ -6,13 +6,18 @@
 //! nice enough, and above all obstructions known from a neighbour. A point that was in the way of the
 //! neighbouring triangle, in the same direction, is usually in the way of this one. Testing that point costs
 //! one evaluation.
+//!
+//! One point says little about a large triangle. A [`Refiner`] divides triangles where it matters, and
+//! [`PostureSweep::run_pieces`] judges the pieces as if they were triangles.
 
+mod refine;
 mod stats;
 mod worker;
 
+pub use refine::{Refinement, Refiner, TriangleReach};
 pub use stats::SweepStats;
 
-use super::{Directions, MapRow, Rules, RulesError, ValidatorError};
+use super::{Directions, MapRow, Piece, Rules, RulesError, ValidatorError};
 use crate::certify::TriangleBvh;
 use crate::debug::debug;
 use crate::id::TriangleId;
@@ -24,7 +29,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use worker::Worker;
 
-/// Number of neighbouring triangles in a batch of rows.
+/// Number of neighbouring triangles, or pieces of them, in a batch of rows.
 pub const BATCH_TRIANGLES: usize = 256;
 
 /// A part, and tools to try at all of its triangles.
@@ -52,6 +57,19 @@ pub enum SweepError {
     /// A tool's postures cannot be validated.
     #[error(transparent)]
     Validator(#[from] ValidatorError),
+    /// The size of pieces is not a finite length above 0.
+    #[error("pieces of triangles cannot have edges of {0}: give a finite length above 0")]
+    PieceSize(f64),
+    /// The triangles would be divided into too many pieces.
+    #[error(
+        "pieces with edges down to {finest} are more than {limit}: refine down to a larger length"
+    )]
+    TooManyPieces {
+        /// The length of edges down to which pieces are divided.
+        finest: f64,
+        /// The largest number of pieces.
+        limit: usize,
+    },
 }
 
 /// Rows of neighbouring triangles, with counters.
@@ -60,6 +78,16 @@ pub enum SweepError {
 pub struct Batch {
     /// The rows, each with the id of its triangle.
     pub rows: Vec<(TriangleId, MapRow)>,
+    /// Counters of the rules that decided the postures of the batch.
+    pub stats: SweepStats,
+}
+
+/// Rows of neighbouring pieces of triangles, with counters.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct PieceBatch {
+    /// The rows, each with its piece.
+    pub rows: Vec<(Piece, MapRow)>,
     /// Counters of the rules that decided the postures of the batch.
     pub stats: SweepStats,
 }
@@ -106,20 +134,50 @@ impl<'a> PostureSweep<'a> {
     pub fn run<B>(
         &self,
         batches: &[usize],
-        mut each: impl FnMut(Batch) -> ControlFlow<B>,
+        each: impl FnMut(Batch) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let judge = |worker: &mut Worker<'_>, batch: usize| {
+            let triangles = self.triangles(batch);
+            let (rows, stats) = worker.rows(triangles.iter().map(|id| Piece::whole(*id)));
+            Batch { rows: triangles.iter().copied().zip(rows).collect(), stats }
+        };
+        self.parallel(batches, judge, each)
+    }
+
+    /// Judges pieces of triangles at their centroids, on all cores, in batches of [`BATCH_TRIANGLES`]. `batches`
+    /// has the indices of those to process; for the rest see [`PostureSweep::run`].
+    pub fn run_pieces<B>(
+        &self,
+        pieces: &[Piece],
+        batches: &[usize],
+        each: impl FnMut(PieceBatch) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let judge = |worker: &mut Worker<'_>, batch: usize| {
+            let pieces = pieces.chunks(BATCH_TRIANGLES).nth(batch).unwrap_or_default();
+            let (rows, stats) = worker.rows(pieces.iter().copied());
+            PieceBatch { rows: pieces.iter().copied().zip(rows).collect(), stats }
+        };
+        self.parallel(batches, judge, each)
+    }
+
+    fn parallel<T: Send, B>(
+        &self,
+        batches: &[usize],
+        judge: impl Fn(&mut Worker<'_>, usize) -> T + Sync,
+        mut each: impl FnMut(T) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         std::thread::scope(|scope| {
             let (done, batch) = mpsc::sync_channel(2 * workers);
             for _ in 0..workers.min(batches.len()) {
-                let (done, next, stop) = (done.clone(), &next, &stop);
+                let (done, next, stop, judge) = (done.clone(), &next, &stop, &judge);
                 scope.spawn(move || {
                     let Ok(mut worker) = Worker::new(self) else { return };
                     while !stop.load(Ordering::Relaxed)
                         && let Some(index) = batches.get(next.fetch_add(1, Ordering::Relaxed))
                     {
-                        if done.send(worker.batch(self.triangles(*index))).is_err() {
+                        if done.send(judge(&mut worker, *index)).is_err() {
                             return;
                         }
                     }

@@ -6,7 +6,7 @@ use std::ops::AddAssign;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SweepStats {
-    /// Pairs of a triangle and a tool that were processed.
+    /// Pairs of a tool and a triangle, or a piece of one, that were processed.
     pub triangles: u64,
     /// Postures in which no cutting surface faces the triangle: the tool would be on its other side, or would
     /// touch it with a surface that does not cut.

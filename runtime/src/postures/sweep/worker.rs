@@ -1,14 +1,13 @@
 //! One thread of a sweep.
 
 use super::stats::PostureDecision;
-use super::{Batch, PostureSweep, SweepError, SweepStats};
+use super::{PostureSweep, SweepError, SweepStats};
 use crate::certify::{ContactVerdict, Containment, Location};
-use crate::id::TriangleId;
 use crate::pose::Pose;
 use crate::postures::holder::Holder;
 use crate::postures::map::merge;
 use crate::postures::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
-use crate::postures::{Accessibility, MapRow, PostureRecord, Validator};
+use crate::postures::{Accessibility, MapRow, Piece, PostureRecord, Validator};
 use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
 
@@ -44,29 +43,35 @@ impl<'a> Worker<'a> {
         Ok(Worker { sweep, tools })
     }
 
-    /// Computes the rows of some triangles.
-    pub(super) fn batch(&mut self, triangles: &[TriangleId]) -> Batch {
+    /// Computes the rows of some pieces of triangles, each at its centroid.
+    pub(super) fn rows(
+        &mut self,
+        pieces: impl ExactSizeIterator<Item = Piece>,
+    ) -> (Vec<MapRow>, SweepStats) {
+        let mesh = self.sweep.mesh;
+        let mut rows = vec![MapRow::default(); pieces.len()];
+        // A triangle without an area has no normal.
+        let points: Vec<Option<SurfacePoint>> = pieces
+            .map(|piece| {
+                let [a, b, c] = piece.corners(mesh);
+                let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+                mesh.normal(piece.triangle()).map(|normal| SurfacePoint { point, normal })
+            })
+            .collect();
         let mut stats = SweepStats::default();
-        let mut rows: Vec<(TriangleId, MapRow)> =
-            triangles.iter().map(|id| (*id, MapRow::default())).collect();
         for candidate in &mut self.tools {
             candidate.clear_caches();
-            for (id, row) in &mut rows {
+            for (surface_point, row) in points.iter().zip(&mut rows) {
                 stats.triangles += 1;
-                let mesh = self.sweep.mesh;
-                let [a, b, c] = mesh.triangle(*id);
-                let point = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-                // A triangle without an area has no normal.
-                let surface_point = mesh.normal(*id).map(|normal| SurfacePoint { point, normal });
                 let access =
-                    candidate.triangle(self.sweep, surface_point, (&mut row.best, &mut stats));
+                    candidate.access(self.sweep, *surface_point, (&mut row.best, &mut stats));
                 row.access.push(access);
             }
         }
-        for (_, row) in &mut rows {
+        for row in &mut rows {
             merge(&mut row.best, &[], self.sweep.keep);
         }
-        Batch { rows, stats }
+        (rows, stats)
     }
 }
 
@@ -95,8 +100,8 @@ impl<'a> CandidateTool<'a> {
         self.obstructions.iter_mut().for_each(Vec::clear);
     }
 
-    /// Returns the directions from which the tool reaches a triangle, and appends the best postures to `best`.
-    fn triangle(
+    /// Returns the directions from which the tool reaches a point, and appends the best postures to `best`.
+    fn access(
         &mut self,
         sweep: &PostureSweep<'a>,
         surface_point: Option<SurfacePoint>,

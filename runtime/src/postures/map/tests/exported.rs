@@ -3,7 +3,7 @@
 use super::*;
 use crate::id::TriangleId;
 use crate::mesh::Geometry;
-use crate::postures::colormap;
+use crate::postures::{Piece, colormap};
 use serde_json::Value;
 
 fn known() -> (Place, PostureMap) {
@@ -57,6 +57,8 @@ fn csv_reads_back() {
                     Some(stickout) => same(stickout, line[12]),
                     None => assert_eq!(line[12], ""),
                 }
+                let is_reached = access.directions.iter().any(|word| *word != 0);
+                assert_eq!(line[13], if is_reached { "1.0" } else { "0.0" });
             }
         }
     }
@@ -100,10 +102,11 @@ fn ply_reads_back() {
         panic!("no mesh")
     };
     assert_eq!(PartFingerprint::of(&read), PartFingerprint::of(&mesh));
-    // A face has a count, three corners, three bytes of colour and a double.
-    let faces = &bytes[bytes.len() - 12 * 24..];
-    for (triangle, face) in (0..).zip(faces.chunks(24)) {
-        let niceness = f64::from_le_bytes(face[16..].try_into().expect("8 bytes"));
+    // A face has a count, three corners, three bytes of colour, a double and its triangle.
+    let faces = &bytes[bytes.len() - 12 * 28..];
+    for (triangle, face) in (0u32..).zip(faces.chunks(28)) {
+        let niceness = f64::from_le_bytes(face[16..24].try_into().expect("8 bytes"));
+        assert_eq!(face[24..], triangle.to_le_bytes());
         let row = map.row(TriangleId(triangle)).expect("read").unwrap_or_default();
         match row.best.first() {
             Some(best) => {
@@ -116,6 +119,66 @@ fn ply_reads_back() {
     let other = shapes::sphere(3.0, 1, Unit::Millimetre).expect("a sphere");
     let error = map.write_ply(&mut Vec::new(), &other, colormap).expect_err("another part");
     assert!(matches!(error, MapError::Differs { .. }), "{error:?}");
+}
+
+/// Triangle 4 in three pieces, of which the tools reach some.
+#[test]
+fn pieces_are_exported() {
+    let (place, map) = known();
+    let whole = Piece::whole(TriangleId(4));
+    let [one, other] = whole.halves().expect("halves");
+    let [third, fourth] = other.halves().expect("halves");
+    let row = |ball: u64, flat: u64, stickout, niceness| {
+        let access = |tool, set| Accessibility {
+            tool,
+            directions: vec![set, 0],
+            stickout: if tool == 0 && set != 0 { stickout } else { None },
+        };
+        let mut best = any_record(&mut Pcg64Mcg::seed_from_u64(1));
+        best.niceness = niceness;
+        let best = if ball | flat == 0 { Vec::new() } else { vec![best] };
+        MapRow { best, access: vec![access(0, ball), access(1, flat)] }
+    };
+    let rows = [
+        (one, row(0b1100, 0, Some(7.0), 0.5)),
+        (third, row(0b1010, 0b1, Some(6.0), 0.75)),
+        (fourth, row(0, 0, None, 0.0)),
+    ];
+    map.record_pieces(&rows).expect("recorded");
+    let export = |write: &dyn Fn(&mut Vec<u8>) -> Result<(), MapError>| {
+        let mut bytes = Vec::new();
+        write(&mut bytes).expect("written");
+        bytes
+    };
+    let csv = String::from_utf8(export(&|out| map.write_csv(out))).expect("text");
+    let ends = |line: &str| line.split(',').skip(11).collect::<Vec<_>>().join(",");
+    let of = |name: &str| {
+        let mut lines = csv.lines().filter(|line| line.starts_with(&format!("4,{name},")));
+        lines.next().map(ends).expect("a line")
+    };
+    assert_eq!([of("Ball"), of("Flat")], ["3,6.0,0.75", "1,,0.25"]);
+    let json: Value = serde_json::from_slice(&export(&|out| map.write_json(out))).expect("JSON");
+    let row = &json["rows"][4];
+    assert_eq!((&row["pieces"], &row["best"][0]["niceness"]), (&3.into(), &0.75.into()));
+    assert_eq!(row["access"][0]["area_reached"], 0.75);
+
+    let (mesh, path) = (block(), place.0.path().join("a.ply"));
+    let bytes = export(&|out| map.write_ply(out, &mesh, colormap));
+    fs::write(&path, &bytes).expect("written");
+    let Geometry::Mesh(read) = Geometry::read(&path, Unit::Millimetre).expect("a PLY") else {
+        panic!("no mesh")
+    };
+    assert_eq!((read.triangles().len(), read.vertices().len()), (14, 10));
+    let area: f64 = (4..7).map(|id| read.area(TriangleId(id))).sum();
+    assert!((area - mesh.area(TriangleId(4))).abs() < 1e-9, "{area}");
+    let faces: Vec<&[u8]> = bytes[bytes.len() - 14 * 28..].chunks(28).collect();
+    let triangles: Vec<u8> = faces.iter().map(|face| face[24]).collect();
+    assert_eq!(triangles, [0, 1, 2, 3, 4, 4, 4, 5, 6, 7, 8, 9, 10, 11]);
+    let niceness = faces[4..7]
+        .iter()
+        .map(|face| f64::from_le_bytes(face[16..24].try_into().expect("8 bytes")));
+    let niceness: Vec<f64> = niceness.collect();
+    assert!(niceness[..2] == [0.5, 0.75] && niceness[2].is_nan(), "{niceness:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 mod exported;
 mod full;
+mod pieces;
 mod read;
 mod refused;
 
@@ -131,7 +132,10 @@ fn what_is_recorded_is_there_when_it_is_opened_again() {
     assert_eq!(map.row(TriangleId(3)).expect("read"), Some(first[3].1.clone()));
     assert_eq!(map.row(TriangleId(9)).expect("read"), None);
     let covered = first.iter().filter(|(_, row)| !row.best.is_empty()).count() as u32;
-    assert_eq!(map.coverage().expect("read"), Coverage { covered, swept: 9, triangles: 12 });
+    assert_eq!(
+        map.coverage().expect("read"),
+        Coverage { covered, swept: 9, triangles: 12, ..Coverage::default() }
+    );
     let swept = map.swept().expect("read");
     assert!(swept.into_iter().eq((0..9).map(TriangleId)));
 }
