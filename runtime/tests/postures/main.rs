@@ -5,6 +5,7 @@ mod crash;
 mod path;
 mod recorder;
 mod refine;
+mod stickout;
 mod sweep;
 mod validator;
 
