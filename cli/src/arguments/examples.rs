@@ -46,8 +46,8 @@ pub(super) const SWEEP: &str = "\
 Examples:
   Find the postures of two tools to 0.05 mm from 50 directions per hemisphere, and keep them in a map:
     touchoff sweep --part part.stl --unit mm --tool D2Ball,BallEr16 --directions 50 --tolerance 0.05 -o part.postures
-  Only summarise which triangles a tool of your own reaches:
-    touchoff sweep --part part.stl --unit mm --tool my.tool --directions 50";
+  Only summarise how much of the part a tool of your own reaches, with long triangles divided into pieces:
+    touchoff sweep --part part.stl --unit mm --tool my.tool --directions 50 --refine 2";
 
 pub(super) const MAP: &str = "\
 Examples:

@@ -37,6 +37,11 @@ pub(crate) struct Sweep {
     /// Number of postures to keep per triangle, from 1 to 65535.
     #[arg(long, value_name = "NUMBER", default_value_t = NonZeroU16::MIN, value_parser = posture_count)]
     pub(crate) keep: NonZeroU16,
+    /// Divide triangles into pieces, and judge each piece: those with edges longer than eight times LENGTH, and down
+    /// to edges of LENGTH where neighbours differ in whether or how nicely a tool reaches them. LENGTH is in the
+    /// part's unit [default: a quarter of the least cutting radius of the tools].
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, value_parser = positive_length)]
+    pub(crate) refine: Option<Option<f64>>,
     /// Check only the part's surface where its mesh leaks or is inside out, so that its inside is unknown. Without
     /// this option, such a part ends with status 2.
     #[arg(long)]
@@ -58,6 +63,10 @@ pub(crate) struct Map {
     /// Quantity that pictures show.
     #[arg(long, value_enum, value_name = "QUANTITY", default_value_t = Quantity::Niceness)]
     pub(crate) color_by: Quantity,
+    /// Tool whose accessibility or least stick-out pictures show, by its name in the map [default: all tools, so that the
+    /// least stick-out is that of any].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tool: Option<String>,
     /// Part, for `.ply` and `.png`: a mesh in STL, PLY or OBJ, in the map's unit.
     #[arg(long, value_name = "FILE")]
     pub(crate) part: Option<PathBuf>,
@@ -68,9 +77,9 @@ pub(crate) struct Map {
 pub(crate) enum Quantity {
     /// Niceness of the best posture.
     Niceness,
-    /// Solid angle from which any tool reaches a triangle, in steradians.
+    /// Solid angle from which the tools reach a triangle, in steradians.
     Accessibility,
-    /// Least stick-out of a tool from its holder.
+    /// Least stick-out of a tool from its own holder, at most that of the tool as it is.
     StickOut,
 }
 

@@ -107,10 +107,15 @@ impl Overlay {
                 self.line([end, y - 5.0], [end, y + 5.0], (colour, stroke));
             }
         }
-        let text = format!("{length} {unit}");
+        let text = bar_label(length, unit);
         let size = 0.85 * LETTER;
         self.text([x - width(&text, size), y - 12.0], size, &text);
     }
+}
+
+/// Returns the text of a bar. A round length prints with its own digits.
+fn bar_label(length: f64, unit: Unit) -> String {
+    format!("{length} {unit}")
 }
 
 /// Returns the greatest of 1, 2 and 5 times a power of ten that is at most a length above 0.
@@ -124,7 +129,8 @@ fn round_length(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::round_length;
+    use super::{bar_label, round_length};
+    use touchoff::Unit;
 
     #[test]
     fn scales_are_round() {
@@ -133,5 +139,15 @@ mod tests {
         {
             assert_eq!(round_length(length), round);
         }
+    }
+
+    #[test]
+    fn bars_have_round_labels_in_every_unit() {
+        let label = |length, unit| bar_label(round_length(length), unit);
+        assert_eq!(label(0.0374, Unit::Inch), "0.02 inch");
+        assert_eq!(label(0.0062, Unit::Inch), "0.005 inch");
+        assert_eq!(label(0.0119, Unit::Metre), "0.01 m");
+        assert_eq!(label(0.000_213, Unit::Metre), "0.0002 m");
+        assert_eq!(label(23.0, Unit::Millimetre), "20 mm");
     }
 }

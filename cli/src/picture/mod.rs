@@ -3,17 +3,20 @@
 pub(crate) mod camera;
 mod lettering;
 pub(crate) mod render;
+mod scale;
 
 use crate::failure::Failure;
 use camera::{Camera, VIEWS};
 use lettering::{LETTER, Overlay};
 use nalgebra::Point3;
-use render::{Facet, Image, Paint, render};
+use render::{Facet, Image, render};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
 use tool_dsl::draw::lettering::width;
 use touchoff::Unit;
 use touchoff::postures::colormap;
+
+pub(crate) use scale::Scale;
 
 /// Colour of triangles without a value.
 pub(crate) const NOTHING: [u8; 3] = [205, 205, 205];
@@ -21,34 +24,6 @@ pub(crate) const NOTHING: [u8; 3] = [205, 205, 205];
 /// Height of the title and of the legend, in pixels.
 const TITLE: usize = 78;
 const LEGEND: usize = 110;
-
-/// A quantity that colours stand for.
-#[derive(Clone, Debug)]
-pub(crate) struct Scale {
-    /// The quantity with its unit.
-    pub(crate) quantity: String,
-    /// The values of the darkest and of the brightest colour.
-    pub(crate) range: [f64; 2],
-    /// Both as text.
-    pub(crate) ends: [String; 2],
-    /// Meaning of triangles without a value.
-    pub(crate) nothing: &'static str,
-    /// Set if there is any value.
-    pub(crate) has_values: bool,
-}
-
-impl Scale {
-    /// Returns the position of a value on the scale, from 0 to 1.
-    pub(crate) fn share(&self, value: f64) -> f64 {
-        let [low, high] = self.range;
-        if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 1.0 }
-    }
-
-    /// Returns the look of a triangle.
-    pub(crate) fn paint(&self, value: Option<f64>) -> Paint {
-        value.map_or(Paint::Plain(NOTHING), |value| Paint::Value(colormap(self.share(value))))
-    }
-}
 
 /// The meaning of a picture's colours.
 pub(crate) enum Legend<'a> {
@@ -189,15 +164,17 @@ fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
 fn scale_legend(overlay: &mut Overlay, scale: &Scale, [columns, top]: [usize; 2]) {
     let (columns, base) = (columns as f64, top as f64);
     let (left, right) = (columns * 0.2, columns * 0.8);
-    let Scale { quantity, ends, .. } = scale;
+    let Scale { quantity, .. } = scale;
     let middle = 0.5 * (columns - width(quantity, LETTER));
     overlay.text([middle, base + 26.0], LETTER, quantity);
     overlay.rectangle([24.0, base + 40.0], [26.0; 2], NOTHING);
     overlay.text([24.0, base + 92.0], LETTER, scale.nothing);
     ramp(overlay, [left, base + 40.0], [right - left, 26.0]);
     if scale.has_values {
-        overlay.text([left, base + 92.0], LETTER, &ends[0]);
-        overlay.text([right - width(&ends[1], LETTER), base + 92.0], LETTER, &ends[1]);
+        for (share, label) in scale.labels() {
+            let at = left + share * (right - left);
+            overlay.text([at - 0.5 * width(label, LETTER), base + 92.0], LETTER, label);
+        }
     }
 }
 

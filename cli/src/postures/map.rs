@@ -1,7 +1,7 @@
 //! `touchoff map`: a summary of a posture map, and its other formats.
 
 use super::picture;
-use crate::arguments::postures::Map;
+use crate::arguments::postures::{Map, Quantity};
 use crate::failure::Failure;
 use crate::output::{Output, extension, refuse_inputs, unwritable};
 use crate::part;
@@ -21,6 +21,8 @@ struct Summary<'a> {
     min_niceness: f64,
     triangles_reached: u32,
     triangles_swept: u32,
+    triangles_divided: u32,
+    pieces: u32,
 }
 
 /// Prints a summary of a map, and writes it in other formats.
@@ -28,6 +30,20 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
     let inputs = std::iter::once(&*arguments.map).chain(arguments.part.as_deref());
     refuse_inputs(arguments.output.iter().map(|file| &**file), inputs)?;
     let map = PostureMap::read(&arguments.map)?;
+    let tool = arguments.tool.as_ref().map(|name| {
+        let mut tools = map.identity().tools.iter();
+        tools.position(|tool| tool.name == *name).map(|index| index as u16).ok_or_else(|| {
+            let map = arguments.map.display().to_string();
+            Failure::OtherTool { map, tool: name.clone() }
+        })
+    });
+    let tool = tool.transpose()?;
+    if tool.is_some() && arguments.color_by == Quantity::Niceness {
+        return Err(Failure::Usage(
+            "a map has the nicest posture of all tools, not of each: with `--tool`, give `--color-by accessibility` or \
+             `--color-by stick-out`",
+        ));
+    }
     let part = match &arguments.part {
         Some(part) => Some((read_part(&map, &arguments.map, part)?, part)),
         None => None,
@@ -51,7 +67,7 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
                 map.write_ply(&mut out, mesh, |niceness| colormap(niceness / greatest))?;
             }
             (MapFormat::Png, Some((mesh, part))) => {
-                let picture = picture::of(&map, (mesh, part), arguments.color_by)?;
+                let picture = picture::of(&map, (mesh, part), (arguments.color_by, tool))?;
                 out.write_all(&picture).map_err(unwritable)?;
             }
             (MapFormat::Ply | MapFormat::Png, None) => (),
@@ -65,9 +81,11 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
 /// Returns the greatest niceness of all postures; 1 if none is above 0.
 fn max_niceness(map: &PostureMap) -> Result<f64, Failure> {
     let mut greatest: f64 = 0.0;
-    for entry in map.rows()? {
-        greatest = entry?.1.best.first().map_or(greatest, |best| greatest.max(best.niceness));
-    }
+    map.for_each_triangle(|_, pieces| {
+        let best = pieces.iter().filter_map(|(_, row)| row.best.first());
+        greatest = best.map(|best| best.niceness).fold(greatest, f64::max);
+        Ok::<(), Failure>(())
+    })?;
     Ok(if greatest > 0.0 { greatest } else { 1.0 })
 }
 
@@ -108,6 +126,8 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
         min_niceness: identity.rules.niceness,
         triangles_reached: coverage.covered,
         triangles_swept: coverage.swept,
+        triangles_divided: coverage.divided,
+        pieces: coverage.pieces,
     };
     let mut out = Output::lines();
     if json {
@@ -123,6 +143,13 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
             "{} of {} triangles have a posture; {} were swept",
             summary.triangles_reached, summary.triangles, summary.triangles_swept
         )?;
+        if summary.triangles_divided > 0 {
+            writeln!(
+                out,
+                "{} are divided into {} pieces",
+                summary.triangles_divided, summary.pieces
+            )?;
+        }
     }
     out.flush()?;
     Ok(())

@@ -8,6 +8,7 @@ pub(crate) mod path;
 pub(crate) mod picture;
 mod post;
 mod prove;
+mod refine;
 pub(crate) mod sweep;
 
 use touchoff::{Mesh, TriangleId, Unit};
@@ -17,7 +18,7 @@ fn percent(amount: f64, whole: f64) -> String {
     format!("{:.1} %", if whole > 0.0 { 100.0 * amount / whole } else { 0.0 })
 }
 
-/// The number of triangles in a set, and their total area.
+/// A number of triangles, and an area.
 #[derive(Clone, Copy, Default)]
 struct TriangleTotals {
     triangles: usize,
@@ -26,13 +27,11 @@ struct TriangleTotals {
 }
 
 impl TriangleTotals {
-    /// Counts the triangles for which `predicate` holds, and adds up their areas.
-    fn count(mesh: &Mesh, predicate: impl Fn(TriangleId) -> bool) -> TriangleTotals {
-        // Meshes have fewer than 2^32 triangles.
-        let ids = (0..mesh.triangles().len() as u32).map(TriangleId).filter(|id| predicate(*id));
-        ids.fold(TriangleTotals::default(), |totals, id| TriangleTotals {
-            triangles: totals.triangles + 1,
-            area: totals.area + mesh.area(id),
+    /// Counts the triangles of which a fraction above 0 belongs to a set, and adds up the area of the set.
+    fn count(mesh: &Mesh, fraction: impl Fn(TriangleId) -> f64) -> TriangleTotals {
+        mesh.ids().fold(TriangleTotals::default(), |totals, id| TriangleTotals {
+            triangles: totals.triangles + usize::from(fraction(id) > 0.0),
+            area: totals.area + fraction(id) * mesh.area(id),
         })
     }
 

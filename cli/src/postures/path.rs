@@ -16,7 +16,7 @@ use std::mem;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
 use touchoff::postures::path::{LeftOutReason, PathRequest, Pattern};
-use touchoff::postures::{Directions, PostureMap, Rules};
+use touchoff::postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff::program::{AptHeader, Cutter, Decimals, apt_unit};
 use touchoff::{Motion, Program};
 
@@ -111,12 +111,14 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     })?;
     let mesh = read_part(&map, &arguments.map, &arguments.part)?;
     let mut access = vec![Vec::new(); mesh.triangles().len()];
-    for entry in map.rows()? {
-        let (triangle, row) = entry?;
+    map.for_each_triangle(|triangle, pieces| {
+        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
+        let row = MapRow::joined(&pieces, identity.keep);
         if let Some(reach) = row.access.into_iter().find(|access| access.tool == index) {
             access[triangle.index()] = reach.directions;
         }
-    }
+        Ok::<(), Failure>(())
+    })?;
     let tolerance = arguments.tolerance.unwrap_or(identity.rules.tolerance);
     let rules = Rules { tolerance, ..identity.rules.clone() };
     let pattern = Pattern {

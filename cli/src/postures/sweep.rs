@@ -1,6 +1,6 @@
-//! `touchoff sweep`: a part and tools, every triangle in every direction.
+//! `touchoff sweep`: a part and tools, every triangle in every direction, and pieces of triangles with `--refine`.
 
-use super::{TriangleTotals, default_tolerance, percent};
+use super::{TriangleTotals, default_tolerance, percent, refine};
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
 use crate::lengths::format_length;
@@ -15,8 +15,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::sweep::{Batch, PostureSweep, SweepStats};
-use touchoff::postures::{Directions, MapIdentity, MapRow, PostureMap, Rules};
+use touchoff::postures::sweep::{Batch, PostureSweep, Refinement, Refiner, SweepStats};
+use touchoff::postures::{Directions, MapIdentity, MapRow, Piece, PostureMap, Rules};
 use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 /// Summary of a sweep.
@@ -31,13 +31,27 @@ struct Summary {
     inside_known: bool,
     /// Number of triangles with an acceptable posture.
     triangles_reached: usize,
-    /// Their fraction of the part's area.
+    /// Their fraction of the part's area; of divided triangles, that of the pieces.
     area_fraction_reached: f64,
+    /// The division into pieces, with `--refine`.
+    refinement: Option<RefinementSummary>,
     batches: usize,
     /// Number of batches that an earlier sweep had done.
     earlier_batches: usize,
     time_s: f64,
     postures: PostureCounts,
+}
+
+/// Summary of the pieces of triangles.
+#[derive(Serialize)]
+pub(super) struct RefinementSummary {
+    /// Longest edge of pieces that differ from their neighbours.
+    pub(super) finest: f64,
+    pub(super) triangles_divided: usize,
+    /// Number of their pieces.
+    pub(super) pieces: usize,
+    /// Number of triangles of which only some pieces are reached.
+    pub(super) triangles_partly_reached: usize,
 }
 
 /// Number of postures of this run by outcome.
@@ -53,21 +67,21 @@ struct PostureCounts {
 }
 
 #[derive(Serialize)]
-struct ToolSummary {
+pub(super) struct ToolSummary {
     name: String,
     /// Number of triangles that the tool reaches.
-    triangles_reached: usize,
+    pub(super) triangles_reached: usize,
     /// Number of triangles at which it has the best posture.
-    triangles_best: usize,
+    pub(super) triangles_best: usize,
     /// Least stick-out: the smallest and the largest over the triangles.
     stick_out: Option<[f64; 2]>,
 }
 
 /// Counts, collected row by row.
-struct Count {
-    /// Per triangle, true if it has a posture.
-    reached: Vec<bool>,
-    tools: Vec<ToolSummary>,
+pub(super) struct Count {
+    /// Per triangle, the fraction of its area that is reached.
+    pub(super) reached: Vec<f64>,
+    pub(super) tools: Vec<ToolSummary>,
 }
 
 impl Count {
@@ -79,19 +93,27 @@ impl Count {
             stick_out: None,
         };
         Count {
-            reached: vec![false; mesh.triangles().len()],
+            reached: vec![0.0; mesh.triangles().len()],
             tools: tools.iter().map(none).collect(),
         }
     }
 
     fn add(&mut self, triangle: TriangleId, row: &MapRow) {
         if let Some(best) = row.best.first() {
-            self.reached[triangle.index()] = true;
+            self.reached[triangle.index()] = 1.0;
             self.tools[usize::from(best.tool)].triangles_best += 1;
         }
         for access in &row.access {
             let tool = &mut self.tools[usize::from(access.tool)];
-            tool.triangles_reached += usize::from(access.directions.iter().any(|word| *word != 0));
+            tool.triangles_reached += usize::from(access.is_reached());
+        }
+        self.add_stickout(row);
+    }
+
+    /// Includes the stick-outs of a row.
+    pub(super) fn add_stickout(&mut self, row: &MapRow) {
+        for access in &row.access {
+            let tool = &mut self.tools[usize::from(access.tool)];
             if let Some(stickout) = access.stickout {
                 let [least, most] = tool.stick_out.unwrap_or([stickout; 2]);
                 tool.stick_out = Some([least.min(stickout), most.max(stickout)]);
@@ -129,10 +151,22 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         None => None,
     };
     let mut count = Count::new(&mesh, &tools);
+    let refinement = arguments.refine.map(|finest| match finest {
+        Some(finest) => Refinement::down_to(finest),
+        None => Refinement::of_tools(&tools, unit),
+    });
+    let refiner = refinement.map(|how| Refiner::new(&mesh, tools.len(), how)).transpose()?;
+    let mut refiner = refiner.zip(refinement);
     let open = open_batches(&sweep, map.as_ref())?;
     let progress = Progress::steps(open.len(), "batches", json);
     let start = Instant::now();
     let mut stats = SweepStats::default();
+    let mut add = |triangle: TriangleId, row: &MapRow| {
+        count.add(triangle, row);
+        if let Some((refiner, _)) = &mut refiner {
+            refiner.add(Piece::whole(triangle), row);
+        }
+    };
     let stopped = sweep.run(&open, |batch: Batch| {
         stats += batch.stats;
         progress.advance(1);
@@ -142,7 +176,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
                     return ControlFlow::Break(error);
                 }
             }
-            None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
+            None => batch.rows.iter().for_each(|(id, row)| add(*id, row)),
         }
         ControlFlow::Continue(())
     });
@@ -150,14 +184,22 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     if let ControlFlow::Break(error) = stopped {
         return Err(error.into());
     }
-    let time_s = start.elapsed().as_secs_f64();
     if let Some(map) = &map {
         for entry in map.rows()? {
             let (triangle, row) = entry?;
-            count.add(triangle, &row);
+            add(triangle, &row);
         }
     }
-    let all = TriangleTotals::count(&mesh, |_| true);
+    let refinement = match refiner {
+        Some((mut refiner, Refinement { finest, .. })) => {
+            let pieces = refine::Pieces { sweep: &sweep, map: map.as_ref(), json };
+            stats += pieces.judge(&mut refiner, &mut count)?;
+            Some(count.refine(&refiner, finest))
+        }
+        None => None,
+    };
+    let time_s = start.elapsed().as_secs_f64();
+    let all = TriangleTotals::count(&mesh, |_| 1.0);
     let reached = TriangleTotals::count(&mesh, |triangle| count.reached[triangle.index()]);
     let summary = Summary {
         triangles: mesh.triangles().len(),
@@ -166,6 +208,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         inside_known: bvh.has_inside(),
         triangles_reached: reached.triangles,
         area_fraction_reached: reached.area / all.area,
+        refinement,
         tools: count.tools,
         earlier_batches: sweep.batches() - open.len(),
         batches: sweep.batches(),
@@ -234,6 +277,21 @@ impl Summary {
             ", from the surface alone, as the inside is unknown"
         };
         writeln!(out, "reached: {reached}{known}")?;
+        if let Some(refinement) = &self.refinement {
+            let RefinementSummary {
+                finest,
+                triangles_divided,
+                pieces,
+                triangles_partly_reached,
+                ..
+            } = refinement;
+            writeln!(
+                out,
+                "divided: {triangles_divided} triangles into {pieces} pieces, down to {}; {triangles_partly_reached} \
+                 are reached in part",
+                format_length(*finest, unit)
+            )?;
+        }
         for tool in &self.tools {
             let stickout = tool.stick_out.map_or(String::new(), |[least, most]| {
                 let [least, most] = [least, most].map(|value| format_length(value, unit));

@@ -2,14 +2,14 @@
 
 use super::body::{Shown, normal};
 use crate::failure::Failure;
-use crate::lengths::format_number;
 use crate::picture::Scale;
+use crate::postures::picture::MapValues;
 use crate::verify::{CutStock, Inputs, Verification};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use touchoff::stock::PartComparison;
 use touchoff::verify::FindingKind;
-use touchoff::{Cloud, Escaped, Part, Probe, TriangleId, Unit};
+use touchoff::{Cloud, Escaped, Mesh, Part, Probe, TriangleId, Unit};
 
 /// A quantity on a body as it is shown.
 pub(super) struct Layer {
@@ -99,21 +99,22 @@ fn scale_of_lengths(
     values: &[Option<f64>],
     unit: Unit,
 ) -> Scale {
-    let known = || values.iter().copied().flatten();
-    let range = [0.0, known().fold(0.0, f64::max)];
-    let ends = range.map(|end| format!("{} {unit}", format_number(end, unit)));
-    Scale { quantity, range, ends, nothing, has_values: known().count() > 0 }
+    let known = values.iter().copied().flatten();
+    Scale::new((quantity, unit.symbol()), known, (nothing, true))
 }
 
-/// Returns values of the triangles of the file, for the pieces of each.
-pub(super) fn of_sources(
+/// Returns the values of a map at the centres of the pieces of a body's triangles.
+pub(super) fn of_map(
     index: usize,
-    shown: &Shown,
-    quantity: (Vec<Option<f64>>, Scale),
+    (shown, mesh): (&Shown, &Mesh),
+    (values, scale): (MapValues, Scale),
 ) -> Layer {
-    let (values, scale) = quantity;
-    let values = shown.sources.iter().map(|source| values[*source as usize]).collect();
-    Layer { body: index, scale, values }
+    let pieces = shown.corners().zip(&shown.sources);
+    let values = pieces.map(|([a, b, c], source)| {
+        let centre = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        values.at(mesh, TriangleId(*source), centre)
+    });
+    Layer { body: index, values: values.collect(), scale }
 }
 
 /// Number of triangles above which what remains of the stock is not shown.

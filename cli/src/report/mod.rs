@@ -160,8 +160,14 @@ impl<'a> Content<'a> {
             }
         }
         if let Some((map, _)) = map {
-            for by in [Quantity::Niceness, Quantity::Accessibility, Quantity::StickOut] {
-                let layer = colouring::of_sources(0, &shown[0], quantity(map, by)?);
+            let tools = 0..map.identity().tools.len() as u16;
+            let each = tools.map(|tool| (Quantity::StickOut, Some(tool)));
+            for (by, tool) in [(Quantity::Niceness, None), (Quantity::Accessibility, None)]
+                .into_iter()
+                .chain(each)
+            {
+                let values = quantity(map, by, tool)?;
+                let layer = colouring::of_map(0, (&shown[0], &bodies[0].mesh), values);
                 if layer.scale.has_values {
                     layers.push(layer);
                 }

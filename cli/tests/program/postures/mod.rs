@@ -1,0 +1,54 @@
+//! Sweeps, maps and paths.
+
+mod path;
+mod refine;
+mod sweep;
+
+use crate::bench::{Bench, stderr, stdout, touchoff};
+use serde_json::Value;
+use std::process::Output;
+use touchoff::Unit;
+use touchoff::mesh::shapes;
+
+/// A tube, and the file for its map.
+struct Tube {
+    bench: Bench,
+    part: String,
+    map: String,
+}
+
+impl Tube {
+    fn new() -> Tube {
+        let bench = Bench::new();
+        let tube = shapes::tube(6.0, 9.0, 12.0, 24, 3, Unit::Millimetre).expect("a tube");
+        let mut stl = Vec::new();
+        tube.write_stl(&mut stl).expect("memory");
+        let place = |name: &str| bench.folder.path().join(name).display().to_string();
+        let (part, map) = (place("tube.stl"), place("tube.postures"));
+        std::fs::write(&part, stl).expect("a writable folder");
+        Tube { bench, part, map }
+    }
+
+    fn place(&self, name: &str) -> String {
+        self.bench.folder.path().join(name).display().to_string()
+    }
+
+    fn sweep(&self, tools: &str, more: &[&str]) -> Output {
+        let all =
+            ["sweep", "--part", &self.part, "--unit", "mm", "--tool", tools, "--directions", "40"];
+        touchoff(&[&all[..], &["--tolerance", "0.05", "--output", &self.map], more].concat())
+    }
+}
+
+fn object(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", stderr(output));
+    serde_json::from_str(&stdout(output)).expect("JSON")
+}
+
+fn refused(output: &Output, words: &[&str]) {
+    let said = stderr(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for word in words {
+        assert!(said.contains(word), "`{word}` is not said: {said}");
+    }
+}
