@@ -53,6 +53,16 @@ pub(crate) enum Failure {
         /// The codes most like it.
         near: String,
     },
+    /// A table of touched postures is refused.
+    #[error("{file}, line {line}: {reason}")]
+    Touched {
+        /// The table.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// The reason, and the remedy.
+        reason: String,
+    },
     /// A signal ended a session.
     #[error("the session was interrupted; what was recorded until then is complete")]
     Interrupted,

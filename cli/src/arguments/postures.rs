@@ -46,6 +46,10 @@ pub(crate) struct Sweep {
     /// this option, such a part ends with status 2.
     #[arg(long)]
     pub(crate) surface_only: bool,
+    /// Table of postures that were exported from the page of `touchoff live`. They are proved and added to the map, in
+    /// place of a sweep.
+    #[arg(long, value_name = "FILE.csv", requires = "output", conflicts_with = "refine")]
+    pub(crate) touched: Option<PathBuf>,
     /// Posture map to fill; triangles that it already has are skipped.
     #[arg(short, long, value_name = "MAP")]
     pub(crate) output: Option<PathBuf>,

@@ -10,6 +10,7 @@ mod post;
 mod prove;
 mod refine;
 pub(crate) mod sweep;
+mod touched;
 
 use touchoff::{Mesh, TriangleId, Unit};
 

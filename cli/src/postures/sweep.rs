@@ -1,6 +1,6 @@
 //! `touchoff sweep`: a part and tools, every triangle in every direction, and pieces of triangles with `--refine`.
 
-use super::{TriangleTotals, default_tolerance, percent, refine};
+use super::{TriangleTotals, default_tolerance, percent, refine, touched};
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
 use crate::lengths::format_length;
@@ -125,6 +125,7 @@ impl Count {
 /// Sweeps a part with tools, and prints a summary.
 pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let inputs = arguments.tools.iter().map(Path::new).chain([&*arguments.mesh.part]);
+    let inputs = inputs.chain(arguments.touched.as_deref());
     refuse_inputs(arguments.output.as_deref(), inputs)?;
     let load = |name: &OsString| LoadedTool::load(name, &arguments.params);
     let loaded: Vec<LoadedTool> = arguments.tools.iter().map(load).collect::<Result<_, _>>()?;
@@ -150,6 +151,9 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         }
         None => None,
     };
+    if let Some((file, map)) = arguments.touched.as_ref().zip(map.as_ref()) {
+        return touched::record(file, (map, &mesh, &bvh), &tools, json);
+    }
     let mut count = Count::new(&mesh, &tools);
     let refinement = arguments.refine.map(|finest| match finest {
         Some(finest) => Refinement::down_to(finest),

@@ -3,6 +3,7 @@
 mod path;
 mod refine;
 mod sweep;
+mod touched;
 
 use crate::bench::{Bench, stderr, stdout, touchoff};
 use serde_json::Value;

@@ -1,0 +1,136 @@
+//! `touchoff sweep --touched`: the postures that were touched in the page of `touchoff live`, proved and added to a map.
+
+use crate::failure::Failure;
+use crate::output::Output;
+use serde::Serialize;
+use std::io::Write;
+use std::path::Path;
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::sweep::SweepError;
+use touchoff::postures::{PostureMap, PostureRecord, Validator};
+use touchoff::{Mesh, Part, Pose, Probe, Sampling, Tool, TriangleId};
+
+/// The columns of the page's table.
+const COLUMNS: &str = "triangle,niceness,tool,x,y,z,qx,qy,qz,qw";
+/// Number of points of the part at which niceness is found.
+const POINTS: usize = 100_000;
+
+/// A posture of the table.
+struct Touched {
+    triangle: TriangleId,
+    /// Index of the tool in the map's list.
+    tool: u16,
+    pose: Pose,
+}
+
+/// Summary of what was added.
+#[derive(Default, Serialize)]
+struct Summary {
+    postures: usize,
+    /// Number of postures that are proved acceptable.
+    accepted: usize,
+    /// Number of postures that touch their triangle at no point.
+    without_contact: usize,
+    /// Number of triangles that an accepted posture touches.
+    triangles: usize,
+}
+
+/// Proves the postures of a table, and adds the acceptable ones to a map. Niceness is computed anew.
+///
+/// # Errors
+/// If the table cannot be read or does not fit the part and the tools, or if the map cannot be written.
+pub(super) fn record(
+    file: &Path,
+    (map, mesh, bvh): (&PostureMap, &Mesh, &TriangleBvh),
+    tools: &[&dyn Tool],
+    json: bool,
+) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|source| Failure::Unreadable { file: file.display().to_string(), source })?;
+    let touched = read(&text, mesh, tools).map_err(|(line, reason)| Failure::Touched {
+        file: file.display().to_string(),
+        line,
+        reason,
+    })?;
+    let part = Part::from_mesh(mesh, Sampling::new(POINTS))?;
+    let mut summary = Summary { postures: touched.len(), ..Summary::default() };
+    let mut records: Vec<(TriangleId, PostureRecord)> = Vec::new();
+    for (index, tool) in (0..).zip(tools) {
+        let index: u16 = index;
+        let mut probe = Probe::new(&part, *tool);
+        let validator = Validator::new(bvh, *tool, &map.identity().rules);
+        let mut validator = validator.map_err(SweepError::from)?;
+        for posture in touched.iter().filter(|posture| posture.tool == index) {
+            let contacts = probe.contacts(&posture.pose);
+            let niceness = contacts.iter().map(|contact| contact.niceness);
+            let niceness = niceness.fold(f64::INFINITY, f64::min);
+            if !contacts.iter().any(|contact| contact.triangle == posture.triangle) {
+                summary.without_contact += 1;
+                continue;
+            }
+            if let Some(record) = validator.record(index, &posture.pose, niceness) {
+                summary.accepted += 1;
+                records.push((posture.triangle, record));
+            }
+        }
+    }
+    map.merge(&records)?;
+    let mut triangles: Vec<TriangleId> = records.iter().map(|(triangle, _)| *triangle).collect();
+    triangles.sort_unstable();
+    triangles.dedup();
+    summary.triangles = triangles.len();
+    let mut out = Output::lines();
+    if json {
+        serde_json::to_writer(&mut out, &summary)?;
+        writeln!(out)?;
+    } else {
+        let Summary { postures, accepted, without_contact, triangles } = summary;
+        writeln!(
+            out,
+            "{postures} postures: {accepted} proved acceptable, at {triangles} triangles; {without_contact} touch their \
+             triangle at none of {POINTS} points; {} too deep, not nice enough, or undecided",
+            postures - accepted - without_contact
+        )?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// Reads the table; an error is a line and the reason.
+fn read(text: &str, mesh: &Mesh, tools: &[&dyn Tool]) -> Result<Vec<Touched>, (usize, String)> {
+    let mut lines = (1..).zip(text.lines());
+    if lines.next().is_none_or(|(_, head)| head.trim_end() != COLUMNS) {
+        return Err((
+            1,
+            format!("the columns are not `{COLUMNS}`: export the table from the page"),
+        ));
+    }
+    let row = |(line, row): (usize, &str)| {
+        let wrong = |reason: String| (line, reason);
+        let cells: Vec<&str> = row.trim_end().split(',').collect();
+        let [triangle, _, tool, pose @ ..] = &cells[..] else {
+            return Err(wrong("the row is too short".to_owned()));
+        };
+        let triangle =
+            triangle.parse::<usize>().ok().filter(|id| mesh.triangles().get(*id).is_some());
+        let triangle = triangle.ok_or_else(|| {
+            wrong(format!(
+                "the part has no triangle `{}`: name the part that was touched",
+                cells[0]
+            ))
+        })?;
+        let position = tools.iter().position(|known| known.info().name == **tool);
+        let position = position.ok_or_else(|| {
+            wrong(format!("the tool `{}` is none of `--tool`: name it, too", cells[2]))
+        })?;
+        let numbers: Result<Vec<f64>, _> = pose.iter().map(|cell| cell.parse::<f64>()).collect();
+        let numbers = numbers.ok().and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
+        let [x, y, z, rotation @ ..] =
+            numbers.ok_or_else(|| wrong("the pose is not seven numbers".to_owned()))?;
+        let pose = Pose::from_quaternion([x, y, z].into(), rotation);
+        let pose = pose.map_err(|error| wrong(error.to_string()))?;
+        let triangle = TriangleId(triangle as u32);
+        Ok(Touched { triangle, tool: position as u16, pose })
+    };
+    lines.filter(|(_, row)| !row.trim().is_empty()).map(row).collect()
+}
