@@ -139,8 +139,8 @@ fn wrong_parts_and_tools_are_refused() {
     refused(&["--tool", "D2Bal"], 1, "did you mean `D2Ball`?");
     refused(&["--part", &part, "--unit", "mm"], 1, "empty.stl");
     let program = bench.write("bad.nc", "G21 G90\nG1 X#1 F100.\n");
-    refused(&["--program", &program], 1, "bad.nc");
-    refused(&["--program", &program, "--machine", "4-axis"], 1, "4-axis");
+    refused(&["--program", &program], 2, "bad.nc:2");
+    refused(&["--program", &program, "--machine", "4-axis"], 2, "4-axis");
     let table = bench.write("table.csv", "0,0,9,0,0,1\n");
     refused(&["--program", &table, "--machine", "3-axis"], 2, "a machine is for G-code");
     refused(&["--part", &part], 2, "--unit");
