@@ -109,6 +109,7 @@ export class ProgramView {
   #replies = {
     program: ({ facts, number, positions }) => {
       this.last = positions.length / 4 - 1;
+      this.facts = facts;
       this.scene.setPath(positions);
       this.timeline.reset(this.last, this.page.unit());
       id('position').max = String(this.last);
@@ -131,7 +132,7 @@ export class ProgramView {
     result: ({ result, tolerance, milliseconds }) => {
       this.timeline.setResult(result.findings, tolerance);
       const seconds = (milliseconds / 1000).toFixed(1);
-      const [text, kind] = verdict(result);
+      const [text, kind] = verdict(result, this.facts);
       id('verdict').textContent = `${text} (${result.motions} motions, proved in ${seconds} s)`;
       id('verdict').className = kind;
       id('findings').hidden = false;
@@ -221,10 +222,17 @@ export class ProgramView {
   }
 }
 
-/** @returns {[string, string]} the verdict on a program, and its class */
-function verdict({ findings, clear, inside_known: known, far }) {
+/**
+ * Returns the verdict on a program and its class. Like that of `touchoff verify`, it is not good where the result proves
+ * nothing.
+ * @returns {[string, string]}
+ */
+function verdict({ findings, clear, inside_known: known, far, unit_factor: factor }, { unknown_feed: unknownFeed, faults }) {
   if (findings.length) return [`${findings.length} finding${findings.length === 1 ? '' : 's'}`, 'bad'];
+  if (faults.length) return [faults.join('; '), 'bad'];
   if (!known) return ['no findings at the surface; the part is not closed, so a tool inside it is not found', 'open'];
+  if (unknownFeed) return [`no findings in what was checked; the feed motion at line ${unknownFeed} starts or ends where only the machine knows`, 'open'];
+  if (factor) return [`no findings, but all feed lies outside the part, and would fit if it were ${factor} times as large: check the units`, 'open'];
   if (far) return ['no findings, but the tool never comes near the part: check unit and position', 'open'];
   return clear ? ['no findings', 'good'] : ['no findings, but nothing could have been found', 'open'];
 }

@@ -17,6 +17,8 @@ pub(crate) struct CheckedProgram {
     distance: f64,
     /// `true` if the tool stays farther from the part than its diameter.
     far: bool,
+    /// The factor by which all positions in feed, outside the part's box, would fit into it.
+    unit_factor: Option<f64>,
     /// The findings, the worst first.
     findings: Vec<FindingRow>,
 }
@@ -52,6 +54,7 @@ impl CheckedProgram {
             inside_known: report.inside_known,
             distance: report.approach.distance,
             far: report.approach.is_far(),
+            unit_factor: report.approach.unit_factor,
             findings: groups.iter().map(|group| FindingRow::of(group, info)).collect(),
         }
     }

@@ -28,6 +28,10 @@ pub(crate) struct ProgramFacts {
     machine: Option<String>,
     /// The tools that the program uses, in order.
     tools: Vec<ToolFacts>,
+    /// Line of the first feed motion that cannot be checked, since only the machine knows where it starts or ends.
+    unknown_feed: Option<usize>,
+    /// Sentences about what is wrong whatever the part is.
+    faults: Vec<String>,
     /// Sentences about what is not checked, and what was passed over.
     notes: Vec<String>,
 }
@@ -86,7 +90,7 @@ impl OpenProgram {
 
     /// Returns the facts that the page shows.
     pub(crate) fn facts(&self) -> ProgramFacts {
-        let mut notes = Vec::new();
+        let (mut faults, mut notes, mut unknown_feed) = (Vec::new(), Vec::new(), None);
         let machine = match self {
             OpenProgram::Locations(programs) => {
                 let ignored: usize = programs.iter().map(|program| program.ignored.len()).sum();
@@ -100,16 +104,26 @@ impl OpenProgram {
             OpenProgram::Machine(program) => {
                 let summary = program.summary();
                 if let Some(unknown) = summary.unknown {
+                    unknown_feed = unknown.feed_line;
                     notes.push(format!(
                         "line {}: only the machine knows where {} motions start or end; they are not checked",
                         unknown.line, unknown.count
                     ));
                 }
+                faults.extend(summary.other_lengths.iter().map(|(line, register, tool)| {
+                    format!("line {line}: T{tool} feeds with the length offset H{register}, which has another length")
+                }));
+                notes.extend(summary.singular.iter().map(|(line, pass)| {
+                    format!(
+                        "line {line}: {} turns by {:.0}° while the tool axis hardly moves: a singular pass",
+                        pass.letter, pass.turn
+                    )
+                }));
                 notes.extend(summary.notes.iter().map(ToString::to_string));
                 Some(program.machine().name().to_owned())
             }
         };
-        ProgramFacts { machine, tools: self.tools(), notes }
+        ProgramFacts { machine, tools: self.tools(), unknown_feed, faults, notes }
     }
 
     /// Returns the motions of the tool with a number in the program, in the frame and unit of the part.

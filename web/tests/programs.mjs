@@ -55,6 +55,16 @@ for (const [name, program, number] of [['along.csv', table, undefined], ['along.
   assert.ok(JSON.parse(checker.check(0.25)).clear);
 }
 
+// What proves nothing is told: a feed from a place that only the machine knows, and a program in another unit.
+const unknown = JSON.parse(checker.readProgram(bytes('G21 G90\nT1 M6\nG43 H1\nG1 X0. Y0. Z5. F100.\nX1.\nM30\n'), 'unknown.nc', '3-axis'));
+assert.equal(unknown.unknown_feed, 4);
+assert.match(unknown.notes.join('\n'), /line \d+: only the machine knows where \d motions start or end/);
+const inch = Array.from({ length: 9 }, (_, k) => `${25.4 * (4 * k - 16)},${25.4 * 12},-127,0,0,1`).join('\n');
+checker.readProgram(bytes(inch), 'inch.csv', '3-axis');
+checker.takeMotions(undefined);
+const far = JSON.parse(checker.check(0.01));
+assert.ok(far.far && far.clear && Math.abs(far.unit_factor * 25.4 - 1) < 1e-9, JSON.stringify(far));
+
 // What is refused, with its reason.
 const refused = (body, reason) => assert.throws(body, (error) => reason.test(error.message) || assert.fail(error.message));
 refused(() => checker.readProgram(bytes('G21 G90\nG1 X#1 F100.\n'), 'bad.nc', '3-axis'), /bad\.nc.*2/s);
