@@ -19,7 +19,7 @@ try {
   const memory = async () => (await page.evaluate(() => performance.measureUserAgentSpecificMemory())).bytes / 1e6;
   const end = performance.now() + 1000 * seconds;
   const found = [];
-  for (let k = 0; performance.now() < end; k++) {
+  for (let k = 0; performance.now() < end || found.length < 3; k++) {
     if (k % 2) {
       await page.click('#play');
       await page.waitForTimeout(1500);
@@ -40,7 +40,6 @@ try {
   const early = Math.max(...found.slice(0, Math.max(1, Math.ceil(found.length / 4))));
   const late = found.at(-1);
   console.log(`ok: ${seconds} s, memory ${found.map((value) => value.toFixed(1)).filter((_, k) => k % Math.ceil(found.length / 12) === 0).join(' ')} MB`);
-  assert.ok(found.length >= 3, `${found.length} measurements`);
   assert.ok(late < early + GROWTH, `from ${early.toFixed(1)} to ${late.toFixed(1)} MB`);
   assert.deepEqual(problems, []);
 } finally {
