@@ -98,6 +98,8 @@ const replies = {
   },
   /** The part has points now, and can be touched. */
   points({ points, radius }) {
+    // Points of a part that another one is about to replace.
+    if (!part) return;
     isSampled = true;
     const cover = radius ? `, none of the surface farther than ${radius.toFixed(3)} ${part.unit} from one` : '';
     id('facts').textContent = `${partName}: ${part.findings.join('; ')}.\n${points.toLocaleString('en')} points${cover}.`;
