@@ -123,6 +123,11 @@ pub(crate) fn extension(file: &Path) -> Option<String> {
     file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
+/// Returns the last part of a path.
+pub(crate) fn file_name(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
 /// Returns the failure to write a file.
 pub(crate) fn unwritable(file: &Path, source: io::Error) -> Failure {
     Failure::Unwritable { file: file.display().to_string(), source }

@@ -97,12 +97,17 @@ pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
 }
 
+/// Returns whether a machine is given by its file, and not by its name.
+pub(crate) fn is_machine_file(name: &Path) -> bool {
+    name.extension().is_some_and(|extension| extension == "toml")
+}
+
 /// Reads a machine by its name, or from a file.
 ///
 /// # Errors
 /// If there is no such machine, or its file is refused.
 pub(crate) fn read_machine(name: &Path) -> Result<Machine, Failure> {
-    if name.extension().is_none_or(|extension| extension != "toml") {
+    if !is_machine_file(name) {
         return Ok(Machine::named(&name.to_string_lossy())?);
     }
     let file = name.display().to_string();

@@ -9,7 +9,7 @@ import { openPage } from '../../web/tests/chromium.mjs';
 import { Recording } from './recording.mjs';
 
 const file = (name) => fileURLToPath(new URL(name, import.meta.url));
-const { page, address, press, close } = await openPage({ width: 1080, height: 640 });
+const { page, address, press, mistype, close } = await openPage({ width: 1080, height: 640 });
 const recording = new Recording(page);
 const canvas = () => page.locator('#canvas').boundingBox();
 const text = (selector) => page.textContent(selector);
@@ -74,13 +74,7 @@ await page.click('#close-program');
 
 // An error in the tool's text, under the cursor.
 await page.click('[data-view=corner]');
-await page.click('#edit');
-await page.click('.cm-content');
-await page.keyboard.press('Control+Home');
-for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
-await page.keyboard.press('End');
-await page.keyboard.type(' let s = rr;');
-await page.waitForSelector('.cm-problem.error');
+await mistype();
 await page.waitForTimeout(500);
 await shot('edit.png');
 

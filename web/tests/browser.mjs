@@ -4,11 +4,11 @@
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { openPage } from './chromium.mjs';
+import { MISTAKE, openPage } from './chromium.mjs';
 
 const pictures = process.argv[2];
 if (pictures) mkdirSync(pictures, { recursive: true });
-const { page, address, outside, problems, close, press } = await openPage();
+const { page, address, outside, problems, close, press, mistype } = await openPage();
 
 const text = (selector) => page.textContent(selector);
 const number = async (selector) => Number.parseFloat(await text(selector));
@@ -98,19 +98,13 @@ try {
   });
 
   await check('an error in the text shows under the cursor with its remedy, and goes with it', async () => {
-    await page.click('#edit');
-    await page.click('.cm-content');
-    await page.keyboard.press('Control+Home');
-    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
-    await page.keyboard.press('End');
-    await page.keyboard.type(' let s = rr;');
-    await page.waitForSelector('.cm-problem.error', { timeout: 20_000 });
+    await mistype();
     const problem = await text('.cm-problem');
     console.log(`    ${problem}`);
     assert.match(problem, /rr/);
     assert.match(problem, /T\d{4}/);
     await shot('error');
-    for (let k = 0; k < ' let s = rr;'.length; k++) await page.keyboard.press('Backspace');
+    for (let k = 0; k < MISTAKE.length; k++) await page.keyboard.press('Backspace');
     await until(() => /compiled in/.test(document.getElementById('problem').textContent));
     console.log(`    ${await text('#problem')}`);
     assert.equal(await page.locator('.cm-problem').count(), 0);

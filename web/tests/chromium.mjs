@@ -39,6 +39,9 @@ export async function openBrowser(own, viewport, more = []) {
   return { page, outside, problems, close };
 }
 
+/** A text with an unknown name. */
+export const MISTAKE = ' let s = rr;';
+
 /** Serves the page, and opens a browser in which nothing is loaded yet. */
 export async function openPage(viewport = { width: 1400, height: 860 }) {
   const server = await serve(fileURLToPath(new URL('../dist/', import.meta.url)), ISOLATION);
@@ -56,9 +59,20 @@ export async function openPage(viewport = { width: 1400, height: 860 }) {
     await page.mouse.move(from[0] + dx, from[1] + dy, { steps });
   }
 
+  /** Opens the editor, and adds a text with an error to the third line of the tool. */
+  async function mistype() {
+    await page.click('#edit');
+    await page.click('.cm-content');
+    await page.keyboard.press('Control+Home');
+    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('End');
+    await page.keyboard.type(MISTAKE);
+    await page.waitForSelector('.cm-problem.error', { timeout: 20_000 });
+  }
+
   async function close() {
     await browser.close();
     server.close();
   }
-  return { ...browser, address: server.address, press, close };
+  return { ...browser, address: server.address, press, mistype, close };
 }

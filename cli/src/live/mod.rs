@@ -6,9 +6,10 @@ mod server;
 use crate::arguments::{Live, ParamArguments};
 use crate::failure::Failure;
 use crate::loaded_tool::{built_in, load_file, read_source};
-use crate::output::Output;
+use crate::output::{Output, file_name};
 use crate::part;
-use crate::program::read_machine;
+use crate::program::is_machine_file;
+use crate::verify::{CheckedProgram, DEFAULT_MACHINE};
 use page::{Content, Page};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -20,8 +21,6 @@ use tool_dsl::compile;
 use tools_library::{SOURCES, TOOLS};
 use touchoff::Unit;
 use touchoff::gcode::ControlSetup;
-use touchoff::program::ProgramFile;
-use touchoff::verify::MachineProgram;
 
 /// The part and the tool that the page begins with.
 #[derive(Serialize)]
@@ -114,30 +113,17 @@ fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
     Ok((BeginPart { name: file_name(file), unit: unit.symbol() }, bytes))
 }
 
-/// Reads a program's file, after a check that its motions are known.
+/// Reads a program's file, after a check that it can be followed.
 fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Vec<u8>), Failure> {
-    let machine = match (ProgramFile::read(file)?, machine) {
-        (ProgramFile::Locations(_), None) => None,
-        (ProgramFile::Locations(_), Some(_)) => {
-            return Err(Failure::Usage(
-                "a machine is for G-code: this program states positions of the tip",
-            ));
-        }
-        (ProgramFile::Gcode(text), machine) => {
-            let machine = machine.unwrap_or(Path::new("3-axis"));
-            let name = file.display().to_string();
-            MachineProgram::new(&name, text, read_machine(machine)?, ControlSetup::default())?;
-            let is_file = machine.extension().is_some_and(|extension| extension == "toml");
-            let text = is_file.then(|| std::fs::read_to_string(machine)).transpose()?;
-            Some(BeginMachine { name: file_name(machine), text })
+    let machine = match CheckedProgram::open(file, machine, ControlSetup::default())? {
+        CheckedProgram::Locations(_) => None,
+        CheckedProgram::Machine(_) => {
+            let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
+            let text = is_machine_file(machine).then(|| std::fs::read_to_string(machine));
+            Some(BeginMachine { name: file_name(machine), text: text.transpose()? })
         }
     };
     Ok((BeginProgram { name: file_name(file), machine }, std::fs::read(file)?))
-}
-
-/// Returns the last part of a path.
-fn file_name(file: &Path) -> String {
-    file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Returns a tool as the page takes it.

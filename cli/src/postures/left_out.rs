@@ -1,7 +1,8 @@
 //! A picture of the points that a path leaves out.
 
-use super::picture::{SIDE, file_name};
+use super::picture::SIDE;
 use crate::failure::Failure;
+use crate::output::file_name;
 use crate::picture::render::{Facet, Paint};
 use crate::picture::{Heading, Legend, NOTHING, sheet};
 use nalgebra::{Point3, Vector3};

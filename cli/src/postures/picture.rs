@@ -2,6 +2,7 @@
 
 use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
+use crate::output::file_name;
 use crate::picture::{Heading, Legend, Scale, facets, sheet};
 use nalgebra::Point3;
 use std::collections::HashMap;
@@ -27,11 +28,6 @@ pub(super) fn of(
     let title = format!("{}: {}", Escaped(&file_name(part)), scale.quantity);
     let heading = Heading { title, subtitle: describe(map) };
     sheet(&facets, (&heading, &Legend::Scale(&scale)), mesh.unit(), SIDE)
-}
-
-/// Returns the last part of a path.
-pub(super) fn file_name(file: &Path) -> String {
-    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// Describes the tools and the rules of a map.

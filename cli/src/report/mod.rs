@@ -20,7 +20,7 @@ mod tool_shape;
 use crate::arguments::Report;
 use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
-use crate::output::{extension, refuse_inputs, write_file};
+use crate::output::{extension, file_name, refuse_inputs, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::postures::picture::quantity;
@@ -292,9 +292,4 @@ impl Pictures<'_> {
         let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.job.unit);
         Escaped(&text).to_string()
     }
-}
-
-/// Returns the last part of a path.
-fn file_name(file: &Path) -> String {
-    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }

@@ -21,7 +21,7 @@ pub(crate) use entry::{Entry, EntrySource, Severity};
 use job::Fixture;
 pub(crate) use job::Job;
 use machine::MachineFinding;
-pub(crate) use source::CheckedProgram;
+pub(crate) use source::{CheckedProgram, DEFAULT_MACHINE};
 use std::io::Write;
 use std::process::ExitCode;
 pub(crate) use stock::CutStock;

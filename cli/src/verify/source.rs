@@ -9,10 +9,13 @@ use crate::program::{self, read_machine};
 use std::iter;
 use std::path::Path;
 use touchoff::gcode::ControlSetup;
-use touchoff::machine::{Machine, Side};
+use touchoff::machine::Side;
 use touchoff::program::ProgramFile;
 use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
 use touchoff::{Program, Unit};
+
+/// The machine of G-code for which none is named.
+pub(crate) const DEFAULT_MACHINE: &str = "3-axis";
 
 /// A program that was read.
 pub(crate) enum CheckedProgram {
@@ -23,37 +26,50 @@ pub(crate) enum CheckedProgram {
 }
 
 impl CheckedProgram {
-    /// Reads the program of a job. G-code without a machine runs on three axes.
+    /// Reads the program of a job.
     ///
     /// # Errors
-    /// If the program or the machine cannot be read, or a motion is not possible on the machine.
+    /// As for [`CheckedProgram::open`], or if a single program of positions has a motion that is not known.
     pub(super) fn read(job: &Job) -> Result<CheckedProgram, Failure> {
-        let name = job.program.display().to_string();
-        let text = match ProgramFile::read(&job.program)? {
-            ProgramFile::Gcode(text) => text,
-            ProgramFile::Locations(programs) => {
-                if let [program] = &programs[..] {
-                    program.check_motions()?;
-                }
-                return match &job.machine {
-                    None => Ok(CheckedProgram::Locations(programs)),
-                    Some(_) => Err(Failure::Usage(
-                        "a machine is for G-code: this program states positions of the tip",
-                    )),
-                };
-            }
-        };
-        let machine = match &job.machine {
-            None => Machine::named("3-axis")?,
-            Some(machine) => read_machine(machine.as_ref())?,
-        };
         let setup = ControlSetup {
             work_offsets: job.work_offsets,
             lengths: tools::lengths(&job.tools),
             block_delete: job.block_delete,
             ..ControlSetup::default()
         };
-        let program = MachineProgram::new(&name, text, machine, setup)?;
+        let machine = job.machine.as_deref().map(Path::new);
+        let program = CheckedProgram::open(&job.program, machine, setup)?;
+        if let CheckedProgram::Locations(programs) = &program
+            && let [program] = &programs[..]
+        {
+            program.check_motions()?;
+        }
+        Ok(program)
+    }
+
+    /// Reads a program. G-code without a machine runs on three axes.
+    ///
+    /// # Errors
+    /// If the program or the machine cannot be read, a motion is not possible on the machine, or a machine is given for
+    /// positions.
+    pub(crate) fn open(
+        file: &Path,
+        machine: Option<&Path>,
+        setup: ControlSetup,
+    ) -> Result<CheckedProgram, Failure> {
+        let text = match (ProgramFile::read(file)?, machine) {
+            (ProgramFile::Gcode(text), _) => text,
+            (ProgramFile::Locations(programs), None) => {
+                return Ok(CheckedProgram::Locations(programs));
+            }
+            (ProgramFile::Locations(_), Some(_)) => {
+                return Err(Failure::Usage(
+                    "a machine is for G-code: this program states positions of the tip",
+                ));
+            }
+        };
+        let machine = read_machine(machine.unwrap_or(Path::new(DEFAULT_MACHINE)))?;
+        let program = MachineProgram::new(&file.display().to_string(), text, machine, setup)?;
         Ok(CheckedProgram::Machine(Box::new(program)))
     }
 

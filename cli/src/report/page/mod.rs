@@ -7,8 +7,9 @@ mod summary;
 mod tools;
 
 use super::scene::{base64, json};
-use super::{Content, Picture, file_name};
+use super::{Content, Picture};
 use crate::failure::Failure;
+use crate::output::file_name;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 use touchoff::Escaped;
