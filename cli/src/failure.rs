@@ -25,6 +25,7 @@ impl Failure {
             | Failure::SeveralTools { .. }
             | Failure::WorkOffset { .. }
             | Failure::Machine(_)
+            | Failure::Control(_)
             | Failure::MachineProgram(_)
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
@@ -148,6 +149,8 @@ pub(crate) enum Failure {
     /// A machine's file is refused, or no machine has that name.
     #[error(transparent)]
     Machine(#[from] touchoff::machine::MachineError),
+    #[error(transparent)]
+    Control(#[from] touchoff::gcode::ControlError),
     /// The stock cannot be made or cut.
     #[error(transparent)]
     Stock(#[from] touchoff::stock::StockError),

@@ -6,6 +6,7 @@ mod output;
 mod arguments;
 mod bench;
 mod check;
+mod controls;
 mod demo;
 mod draw;
 mod expand;
@@ -55,6 +56,8 @@ fn main() -> ExitCode {
         Command::Import(arguments) => import::import(&arguments, json),
         Command::Export(arguments) => export::export(&arguments, json),
         Command::Tools(arguments) => tools::tools(&arguments, json).map(success),
+        Command::Controls { name } => controls::controls(name.as_deref(), json).map(success),
+        Command::Machines { name } => controls::machines(name.as_deref(), json).map(success),
         Command::Check(arguments) => check::check(&arguments, json),
         Command::Explain(arguments) => {
             explain::explain(arguments.code.as_deref(), json).map(success)

@@ -5,6 +5,7 @@ use crate::lengths::{format_length, format_point};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
+use touchoff::gcode::ControlRules;
 use touchoff::machine::Machine;
 use touchoff::tool::ToolInfo;
 use touchoff::verify::{Approach, VerifyReport};
@@ -97,8 +98,23 @@ pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
 }
 
-/// Returns whether a machine is given by its file, and not by its name.
-pub(crate) fn is_machine_file(name: &Path) -> bool {
+/// Reads a control by its name, or from a file.
+///
+/// # Errors
+/// If there is no such control, or its file is refused.
+pub(crate) fn read_control(name: &Path) -> Result<ControlRules, Failure> {
+    if !is_toml(name) {
+        return Ok(ControlRules::named(&name.to_string_lossy())?);
+    }
+    let file = name.display().to_string();
+    match std::fs::read_to_string(name) {
+        Ok(text) => Ok(ControlRules::parse(&text, &file)?),
+        Err(source) => Err(Failure::Unreadable { file, source }),
+    }
+}
+
+/// Returns whether a machine or a control is given by its file, and not by its name.
+pub(crate) fn is_toml(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension == "toml")
 }
 
@@ -107,7 +123,7 @@ pub(crate) fn is_machine_file(name: &Path) -> bool {
 /// # Errors
 /// If there is no such machine, or its file is refused.
 pub(crate) fn read_machine(name: &Path) -> Result<Machine, Failure> {
-    if !is_machine_file(name) {
+    if !is_toml(name) {
         return Ok(Machine::named(&name.to_string_lossy())?);
     }
     let file = name.display().to_string();

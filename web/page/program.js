@@ -227,11 +227,11 @@ export class ProgramView {
  * nothing.
  * @returns {[string, string]}
  */
-function verdict({ findings, clear, inside_known: known, far, unit_factor: factor }, { unknown_feed: unknownFeed, faults }) {
+function verdict({ findings, clear, inside_known: known, far, unit_factor: factor }, { open, faults }) {
   if (findings.length) return [`${findings.length} finding${findings.length === 1 ? '' : 's'}`, 'bad'];
   if (faults.length) return [faults.join('; '), 'bad'];
   if (!known) return ['no findings at the surface; the part is not closed, so a tool inside it is not found', 'open'];
-  if (unknownFeed) return [`no findings in what was checked; the feed motion at line ${unknownFeed} starts or ends where only the machine knows`, 'open'];
+  if (open.length) return [`no findings in what was checked; ${open.join('; ')}`, 'open'];
   if (factor) return [`no findings, but all feed lies outside the part, and would fit if it were ${factor} times as large: check the units`, 'open'];
   if (far) return ['no findings, but the tool never comes near the part: check unit and position', 'open'];
   return clear ? ['no findings', 'good'] : ['no findings, but nothing could have been found', 'open'];

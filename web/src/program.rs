@@ -2,7 +2,7 @@
 
 use crate::error::EngineError;
 use serde::Serialize;
-use touchoff::gcode::ControlSetup;
+use touchoff::gcode::{ControlSetup, Spindle};
 use touchoff::machine::Machine;
 use touchoff::program::ProgramFile;
 use touchoff::tool::ToolInfo;
@@ -17,8 +17,8 @@ pub(crate) const MAX_MOTIONS: usize = 200_000;
 pub(crate) enum OpenProgram {
     /// Positions, a program per tool change.
     Locations(Vec<Program>),
-    /// G-code on a machine.
-    Machine(Box<MachineProgram>),
+    /// G-code on a machine, in the readings of all controls that are known.
+    Machine(Vec<MachineProgram>),
 }
 
 /// The facts about a program that the page shows.
@@ -28,11 +28,11 @@ pub(crate) struct ProgramFacts {
     machine: Option<String>,
     /// The tools that the program uses, in order.
     tools: Vec<ToolFacts>,
-    /// Line of the first feed motion that cannot be checked, since only the machine knows where it starts or ends.
-    unknown_feed: Option<usize>,
+    /// Sentences about what allows no verdict, each with its line.
+    open: Vec<String>,
     /// Sentences about what is wrong whatever the part is.
     faults: Vec<String>,
-    /// Sentences about what is not checked, and what was passed over.
+    /// Sentences about what is not checked.
     notes: Vec<String>,
 }
 
@@ -56,8 +56,8 @@ pub(crate) fn read(bytes: &[u8], name: &str, machine: &str) -> Result<OpenProgra
                 true => Machine::parse(machine, "the machine's file")?,
                 false => Machine::named(machine)?,
             };
-            let program = MachineProgram::new(name, text, machine, ControlSetup::default())?;
-            OpenProgram::Machine(Box::new(program))
+            let setup = ControlSetup::default();
+            OpenProgram::Machine(MachineProgram::readings(name, text, machine, &setup)?)
         }
     };
     let motions = program.tools().iter().map(|tool| tool.motions).sum();
@@ -81,8 +81,8 @@ impl OpenProgram {
                 }
                 tools
             }
-            OpenProgram::Machine(program) => {
-                let tools = program.summary().tools.iter();
+            OpenProgram::Machine(readings) => {
+                let tools = readings[0].summary().tools.iter();
                 tools.map(|tool| ToolFacts { number: tool.number, motions: tool.motions }).collect()
             }
         }
@@ -90,7 +90,7 @@ impl OpenProgram {
 
     /// Returns the facts that the page shows.
     pub(crate) fn facts(&self) -> ProgramFacts {
-        let (mut faults, mut notes, mut unknown_feed) = (Vec::new(), Vec::new(), None);
+        let (mut faults, mut notes, mut open) = (Vec::new(), Vec::new(), Vec::new());
         let machine = match self {
             OpenProgram::Locations(programs) => {
                 let ignored: usize = programs.iter().map(|program| program.ignored.len()).sum();
@@ -101,29 +101,41 @@ impl OpenProgram {
                 }
                 None
             }
-            OpenProgram::Machine(program) => {
-                let summary = program.summary();
-                if let Some(unknown) = summary.unknown {
-                    unknown_feed = unknown.feed_line;
-                    notes.push(format!(
-                        "line {}: only the machine knows where {} motions start or end; they are not checked",
-                        unknown.line, unknown.count
-                    ));
-                }
+            OpenProgram::Machine(readings) => {
+                let summary = readings[0].summary();
                 faults.extend(summary.other_lengths.iter().map(|(line, register, tool)| {
                     format!("line {line}: T{tool} feeds with the length offset H{register}, which has another length")
                 }));
+                let starts = summary.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated);
+                for (line, _, spindle) in &summary.spindle {
+                    faults.extend(match spindle {
+                        Spindle::NotStated if starts => Some(format!("line {line}: feeds with the spindle off")),
+                        Spindle::Stopped => Some(format!("line {line}: feeds with the spindle off")),
+                        Spindle::WithoutSpeed => Some(format!("line {line}: feeds without a speed S of the spindle")),
+                        _ => None,
+                    });
+                }
                 notes.extend(summary.singular.iter().map(|(line, pass)| {
                     format!(
                         "line {line}: {} turns by {:.0}° while the tool axis hardly moves: a singular pass",
                         pass.letter, pass.turn
                     )
                 }));
-                notes.extend(summary.notes.iter().map(ToString::to_string));
-                Some(program.machine().name().to_owned())
+                if readings.len() > 1 {
+                    open.push(format!(
+                        "controls read this program in {} ways; the page shows that of {}",
+                        readings.len(),
+                        readings[0].assumed()
+                    ));
+                }
+                for gap in MachineProgram::gaps(readings) {
+                    let list = if gap.is_open { &mut open } else { &mut notes };
+                    list.push(format!("line {}: {}", gap.line, gap.reason));
+                }
+                Some(readings[0].machine().name().to_owned())
             }
         };
-        ProgramFacts { machine, tools: self.tools(), unknown_feed, faults, notes }
+        ProgramFacts { machine, tools: self.tools(), open, faults, notes }
     }
 
     /// Returns the motions of the tool with a number in the program, in the frame and unit of the part.
@@ -146,8 +158,8 @@ impl OpenProgram {
                 }
                 Ok(moves)
             }
-            OpenProgram::Machine(program) => {
-                Ok(program.moves(ToolSelection::Number(number), None, unit)?.collect())
+            OpenProgram::Machine(readings) => {
+                Ok(readings[0].moves(ToolSelection::Number(number), None, unit)?.collect())
             }
         }
     }

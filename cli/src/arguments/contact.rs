@@ -83,6 +83,10 @@ pub(crate) struct CheckArguments {
     /// file [default: `3-axis`].
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) machine: Option<OsString>,
+    /// Control of a G-code program: `fanuc`, `haas`, `linuxcnc`, `siemens`, `heidenhain`, or a file (`touchoff controls`
+    /// prints one). Without it, what every one of them does is checked.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) control: Option<OsString>,
     /// Largest depth allowed for any surface of the tool in the part, in the part's unit.
     #[arg(long, value_name = "LENGTH", value_parser = length, default_value_t = 0.0)]
     pub(crate) tolerance: f64,
@@ -98,8 +102,8 @@ pub(crate) struct CheckArguments {
     /// is inside the material. Without this option, such a part ends with status 2.
     #[arg(long)]
     pub(crate) surface_only: bool,
-    /// Accept an implausible program: one that never comes within the tool's diameter of the part, or that would fit
-    /// the part in another unit. Without this option, such a program ends with status 2.
+    /// Accept what is left open: motions that only the machine knows, and an implausible program, which never comes within
+    /// the tool's diameter of the part or would fit it in another unit. Without this option, these end with status 2.
     #[arg(long)]
     pub(crate) anyway: bool,
 }

@@ -21,6 +21,20 @@ Examples:
   Let the ball cut to any depth, and keep the shank 1 mm away from the part:
     touchoff verify --part part.stl --unit mm --tool D2Ball --program program.apt --allow ball=inf --allow shank=-1";
 
+pub(super) const CONTROLS: &str = "\
+Examples:
+  What each control does:
+    touchoff controls
+  A file for your own control, to edit and to name in a job:
+    touchoff controls haas > mine.toml";
+
+pub(super) const MACHINES: &str = "\
+Examples:
+  Every machine, with limits, homes and pivots:
+    touchoff machines
+  A file for your own machine, to edit and to name in a job:
+    touchoff machines 'A-C trunnion' > mine.toml";
+
 pub(super) const REPORT: &str = "\
 Examples:
   Check a program, and write the report:

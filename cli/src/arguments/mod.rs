@@ -118,6 +118,20 @@ pub(crate) enum Command {
     /// List the built-in tools or the tools of files and libraries, or print the text of a built-in tool.
     #[command(after_help = examples::TOOLS)]
     Tools(Tools),
+    /// List the controls that are known, with what each does where controls differ; or print one as a file to edit.
+    #[command(after_help = examples::CONTROLS)]
+    Controls {
+        /// Control to print as a file.
+        #[arg(value_name = "NAME")]
+        name: Option<String>,
+    },
+    /// List the machines that come along, with limits, homes and pivots of their axes; or print the file of one.
+    #[command(after_help = examples::MACHINES)]
+    Machines {
+        /// Machine whose file is printed.
+        #[arg(value_name = "NAME")]
+        name: Option<String>,
+    },
     /// Check `.tool` files, and print the bounds that are proved for them.
     ///
     /// The exit status is 1 if a file has errors, and 3 if there are only warnings.

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::loaded_tool::{built_in, load_file, read_source};
 use crate::output::{Output, file_name};
 use crate::part;
-use crate::program::is_machine_file;
+use crate::program::is_toml;
 use crate::verify::{CheckedProgram, DEFAULT_MACHINE};
 use page::{Content, Page};
 use serde::Serialize;
@@ -115,11 +115,11 @@ fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
 
 /// Reads a program's file, after a check that it can be followed.
 fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Vec<u8>), Failure> {
-    let machine = match CheckedProgram::open(file, machine, ControlSetup::default())? {
+    let machine = match CheckedProgram::open(file, machine, &ControlSetup::default())? {
         CheckedProgram::Locations(_) => None,
         CheckedProgram::Machine(_) => {
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
-            let text = is_machine_file(machine).then(|| std::fs::read_to_string(machine));
+            let text = is_toml(machine).then(|| std::fs::read_to_string(machine));
             Some(BeginMachine { name: file_name(machine), text: text.transpose()? })
         }
     };

@@ -9,7 +9,7 @@ use crate::program::read_machine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
-use touchoff::gcode::ControlSetup;
+use touchoff::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff::machine::{Chain, Joints, Letter, Machine, Setup};
 use touchoff::program::Decimals;
 use touchoff::verify::{MachineProgram, ToolSelection};
@@ -79,7 +79,11 @@ impl Post {
         unit: Unit,
     ) -> Result<Post, Failure> {
         let machine = read_machine(name)?;
-        let mut control = ControlSetup::default();
+        // The program leaves one choice to the control: that rapid traverse is a straight line is part of what is proved.
+        let rules = ControlRules::default()
+            .with(Rule::Rapid, Choice::Straight)
+            .with(Rule::ToolChange, Choice::Moves);
+        let mut control = ControlSetup { rules, ..ControlSetup::default() };
         let in_mm = unit.millimetres();
         let chain = match (&arguments.work_offset, arguments.tool_length) {
             (Some(offset), Some(length)) => {

@@ -25,7 +25,7 @@ use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::postures::picture::quantity;
 use crate::progress::Progress;
-use crate::verify::{Entry, Inputs, Job, Verification};
+use crate::verify::{CheckedPair, Entry, Inputs, Job, Verification};
 use along::Along;
 use body::Shown;
 use cameras::Place;
@@ -138,7 +138,8 @@ impl<'a> Content<'a> {
         let (unit, bodies) = (inputs.job.unit, &inputs.bodies);
         let start = Instant::now();
         let points = along::points(inputs)?;
-        let pairs = verification.pairs.iter().enumerate().filter(|(_, pair)| pair.is_part);
+        let first = |(_, pair): &(usize, &CheckedPair<'_>)| pair.is_part && pair.reading == 0;
+        let pairs = verification.pairs.iter().enumerate().filter(first);
         let along = pairs
             .map(|(number, pair)| along::follow(inputs, &points, (number / bodies.len(), pair)));
         let along = along.collect::<Result<_, Failure>>()?;
@@ -174,7 +175,7 @@ impl<'a> Content<'a> {
             }
         }
         let mut comparison = None;
-        if let Some(cut) = &verification.cut {
+        if let Some(cut) = verification.cut() {
             let deviations = cut.stock.compare(&bodies[0].bvh)?;
             if let Some((body, layer)) = colouring::stock(cut, &deviations, shown.len())? {
                 shown.push(body);

@@ -1,14 +1,12 @@
 //! Findings of all kinds as they are printed: text, JSON, and what SARIF needs.
 
-use super::CheckedPair;
 use super::json::Row;
 use super::machine::MachineFinding;
-use super::rule;
+use super::{CheckedPair, Verification, rule};
 use super::stock::StockFinding;
 use super::text::describe;
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
-use touchoff::Unit;
 use touchoff::verify::{Finding, FindingKind};
 
 /// A finding as it is printed.
@@ -57,20 +55,27 @@ impl Severity {
 
 /// A finding as a JSON object.
 #[derive(Serialize)]
+pub(crate) struct EntryRow<'a> {
+    #[serde(flatten)]
+    kind: KindRow<'a>,
+    /// The readings of the program under which it holds, if not under all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    under: Option<String>,
+}
+
+#[derive(Serialize)]
 #[serde(untagged)]
-pub(crate) enum EntryRow<'a> {
+enum KindRow<'a> {
     Surface(Box<Row<'a>>),
     Machine(&'a MachineFinding<'a>),
     Stock(&'a StockFinding),
 }
 
-/// Returns all findings: those of surfaces by severity, then those of the machine and of the stock.
-pub(super) fn entries<'a>(
-    pairs: &'a [CheckedPair<'a>],
-    machine: &'a [MachineFinding<'a>],
-    stock: &'a [StockFinding],
-    (file, unit): (&'a str, Unit),
-) -> Vec<Entry<'a>> {
+/// Returns all findings: those of surfaces by severity, then those of the machine and of the stock. A finding of several
+/// readings is one.
+pub(super) fn entries<'a>(verification: &'a Verification<'a>) -> Vec<Entry<'a>> {
+    let Verification { inputs, pairs, machine, cuts, .. } = verification;
+    let (file, unit) = (&*inputs.file, inputs.job.unit);
     let groups = |(index, pair): (usize, &'a CheckedPair<'a>)| {
         let groups = pair.groups.iter().zip(&pair.remedies);
         groups.map(move |(group, remedy)| (index, group, *remedy))
@@ -81,33 +86,57 @@ pub(super) fn entries<'a>(
         let pair = &pairs[index];
         let kind = &group.worst.kind;
         let open = matches!(kind, FindingKind::Undecided { .. } | FindingKind::Ambiguous(_));
-        Entry {
+        let row = Row::of((group, remedy), &pair.scope, file);
+        let entry = Entry {
             rule: rule(kind),
             severity: if open { Severity::Undecided } else { Severity::Violation },
             line: group.worst.line,
             lines: [group.first.line, group.last.line],
             text: describe(group, remedy, &pair.scope),
-            row: EntryRow::Surface(Box::new(Row::of((group, remedy), &pair.scope, file))),
+            row: EntryRow { kind: KindRow::Surface(Box::new(row)), under: None },
             source: EntrySource::Surface(index, &group.worst),
+        };
+        (pair.reading, entry)
+    });
+    let machine = machine.iter().map(|(reading, finding)| {
+        let entry = Entry {
+            rule: finding.rule(),
+            severity: finding.severity(),
+            line: finding.line,
+            lines: [finding.line; 2],
+            text: finding.describe(),
+            row: EntryRow { kind: KindRow::Machine(finding), under: None },
+            source: EntrySource::Machine,
+        };
+        (*reading, entry)
+    });
+    let stock = cuts.iter().enumerate().flat_map(|(reading, cut)| {
+        let entry = |finding: &'a StockFinding| Entry {
+            rule: "stock",
+            severity: Severity::Violation,
+            line: finding.line,
+            lines: [finding.first_line, finding.last_line],
+            text: finding.describe(unit),
+            row: EntryRow { kind: KindRow::Stock(finding), under: None },
+            source: EntrySource::Stock(finding),
+        };
+        cut.findings.iter().map(move |finding| (reading, entry(finding)))
+    });
+    let mut entries: Vec<(Entry<'a>, Vec<usize>)> = Vec::new();
+    for (reading, entry) in surfaces.chain(machine).chain(stock) {
+        let is_same =
+            |(known, _): &&mut (Entry<'a>, Vec<usize>)| (known.line, &known.text) == (entry.line, &entry.text);
+        match entries.iter_mut().find(is_same) {
+            Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
+            _ => entries.push((entry, vec![reading])),
         }
-    });
-    let machine = machine.iter().map(|finding| Entry {
-        rule: finding.rule(),
-        severity: finding.severity(),
-        line: finding.line,
-        lines: [finding.line; 2],
-        text: finding.describe(),
-        row: EntryRow::Machine(finding),
-        source: EntrySource::Machine,
-    });
-    let stock = stock.iter().map(|finding| Entry {
-        rule: "stock",
-        severity: Severity::Violation,
-        line: finding.line,
-        lines: [finding.first_line, finding.last_line],
-        text: finding.describe(unit),
-        row: EntryRow::Stock(finding),
-        source: EntrySource::Stock(finding),
-    });
-    surfaces.chain(machine).chain(stock).collect()
+    }
+    let named = |(mut entry, readings): (Entry<'a>, Vec<usize>)| {
+        if let Some(under) = inputs.program.under(&readings) {
+            entry.text = format!("{}; {under}", entry.text);
+            entry.row.under = Some(under);
+        }
+        entry
+    };
+    entries.into_iter().map(named).collect()
 }

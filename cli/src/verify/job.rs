@@ -15,9 +15,12 @@ pub(crate) struct Job {
     pub(crate) program: PathBuf,
     /// Name of a machine that ships, or the file of another.
     pub(crate) machine: Option<OsString>,
+    /// Name of a control that is known, or the file of another.
+    pub(crate) control: Option<OsString>,
     /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
     pub(crate) work_offsets: [Option<[f64; 6]>; 9],
-    pub(crate) block_delete: bool,
+    /// Whether optional blocks are left out, if it is stated.
+    pub(crate) block_delete: Option<bool>,
     pub(crate) tools: Tools,
     pub(crate) tolerance: f64,
     pub(crate) resolution: Option<f64>,
@@ -47,9 +50,23 @@ pub(crate) struct ToolEntry {
     pub(super) set: BTreeMap<String, ParamValue>,
     /// Distance from the tip to the gauge point of the spindle, in mm.
     pub(super) length: Option<f64>,
+    /// The hand of its cutting edges, `right` if absent: that of the spindle's turn.
+    #[serde(default)]
+    pub(super) hand: Hand,
     /// Allowances of its surfaces, beside those of the job.
     #[serde(default)]
     pub(super) allow: BTreeMap<String, f64>,
+}
+
+/// The hand of cutting edges.
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Hand {
+    /// It cuts while the spindle turns clockwise (M3).
+    #[default]
+    Right,
+    /// It cuts while the spindle turns counter-clockwise (M4).
+    Left,
 }
 
 /// The value of a param: a number in the tool's unit, or an expression of the language.
@@ -102,10 +119,10 @@ struct JobFile {
     unit: String,
     program: PathBuf,
     machine: Option<String>,
+    control: Option<String>,
     #[serde(default)]
     work_offsets: BTreeMap<String, Vec<f64>>,
-    #[serde(default)]
-    block_delete: bool,
+    block_delete: Option<bool>,
     /// Library of the tools, which the program selects by number.
     tools: Option<PathBuf>,
     #[serde(default)]
@@ -135,6 +152,7 @@ impl Job {
     ) -> Result<Job, Failure> {
         if let Some(file) = file {
             let mut job = Job::read(&file)?;
+            job.control = arguments.control.or(job.control);
             job.resolution = arguments.resolution.or(job.resolution);
             job.surface_only |= arguments.surface_only;
             job.anyway |= arguments.anyway;
@@ -152,8 +170,9 @@ impl Job {
             unit,
             program,
             machine: arguments.machine,
+            control: arguments.control,
             work_offsets: [None; 9],
-            block_delete: false,
+            block_delete: None,
             tools: Tools::One(tool, arguments.params),
             tolerance: arguments.tolerance,
             resolution: arguments.resolution,
@@ -169,9 +188,11 @@ impl Job {
     pub(crate) fn files(&self) -> Vec<(String, &Path)> {
         let mut files =
             vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
-        let machine = self.machine.as_deref().map(Path::new);
         let has_ending = |file: &&Path, ending| file.extension().is_some_and(|end| end == ending);
-        files.extend(machine.filter(|m| has_ending(m, "toml")).map(|m| ("machine".to_owned(), m)));
+        for (role, name) in [("machine", &self.machine), ("control", &self.control)] {
+            let file = name.as_deref().map(Path::new).filter(|file| has_ending(file, "toml"));
+            files.extend(file.map(|file| (role.to_owned(), file)));
+        }
         match &self.tools {
             Tools::One(name, arguments) => {
                 let library = arguments.library.as_deref();
@@ -224,14 +245,15 @@ impl Job {
                 return Err(fault(format!("tool {number} is given twice: keep one of both")));
             }
         }
-        let machine = job.machine.map(|machine| {
-            if machine.ends_with(".toml") { folder.join(machine).into() } else { machine.into() }
-        });
+        let named = |name: String| -> OsString {
+            if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
+        };
         Ok(Job {
             part: beside(job.part),
             unit,
             program: beside(job.program),
-            machine,
+            machine: job.machine.map(named),
+            control: job.control.map(named),
             work_offsets: work_offsets(&job.work_offsets)?,
             block_delete: job.block_delete,
             tools: Tools::Numbered { library: job.tools.map(beside), entries },

@@ -17,6 +17,7 @@ use crate::output::{Output, write_file};
 use crate::part::{self, NO_INSIDE};
 use crate::progress::Progress;
 use entry::entries;
+use serde::Serialize;
 pub(crate) use entry::{Entry, EntrySource, Severity};
 use job::Fixture;
 pub(crate) use job::Job;
@@ -29,7 +30,7 @@ pub(crate) use text::summary;
 pub(crate) use tools::ProgramTool;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{FindingGroup, FindingKind, Tilt, Verifier, VerifyReport};
+use touchoff::verify::{FindingGroup, FindingKind, Gap, Move, Tilt, Verifier, VerifyReport};
 use touchoff::{Mesh, Unit};
 
 /// The exit status if there are findings.
@@ -46,6 +47,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) info: &'a ToolInfo,
     /// The tool's number in the program.
     pub(crate) number: Option<u32>,
+    /// The reading of the program, if there are several.
+    under: Option<String>,
     /// The part or the fixture.
     body: &'a str,
     unit: Unit,
@@ -63,6 +66,8 @@ struct Remedy {
 /// A tool checked against the part or a fixture.
 pub(crate) struct CheckedPair<'a> {
     pub(crate) scope: Scope<'a>,
+    /// Index of the reading of the program.
+    pub(crate) reading: usize,
     pub(crate) report: VerifyReport,
     pub(crate) groups: Vec<FindingGroup>,
     /// Remedies of the worst motion of each group.
@@ -135,18 +140,107 @@ impl Inputs {
         let Inputs { job, program, tools, bodies, .. } = self;
         let progress = Progress::steps(program.motions() * bodies.len(), "motions", json);
         let mut pairs = Vec::new();
-        for tool in tools {
-            for body in bodies {
-                pairs.push(check(job, (program, tools), tool, body, &progress)?);
+        for reading in 0..program.reading_count() {
+            for tool in tools {
+                for body in bodies {
+                    pairs.push(self.check_pair(reading, (tool, body), &progress)?);
+                }
             }
         }
         drop(progress);
-        let cut = match &job.stock {
-            Some(stock) => Some(stock::cut(job, stock, program, tools)?),
-            None => None,
+        let mut cuts = Vec::new();
+        if let Some(stock) = &job.stock {
+            for reading in 0..program.reading_count() {
+                cuts.push(stock::cut(job, stock, (program, reading), tools)?);
+            }
+        }
+        let machine = program.machine_findings(&self.file, tools);
+        let gaps = self.gaps()?;
+        Ok(Verification { inputs: self, pairs, machine, cuts, gaps })
+    }
+
+    /// Checks the motions of a tool in a reading against a body.
+    fn check_pair<'a>(
+        &self,
+        reading: usize,
+        (tool, body): (&'a ProgramTool, &'a Body),
+        progress: &Progress,
+    ) -> Result<CheckedPair<'a>, Failure> {
+        let Inputs { job, program, tools, .. } = self;
+        let info = tool.tool().info();
+        let mut verifier = Verifier::new(&body.bvh, tool.tool())?;
+        match body.margin {
+            Some(margin) if margin > 0.0 => {
+                for surface in info.surfaces.iter() {
+                    verifier = verifier.with_allowance(&surface.name, -margin)?;
+                }
+            }
+            Some(_) => (),
+            None => {
+                verifier = verifier.with_tolerance(job.tolerance)?;
+                for (surface, allowed) in &job.allow {
+                    // An allowance of a job holds for the tools that have the surface, and one has to have it.
+                    let has = |tool: &ProgramTool| tool.tool().info().surface_named(surface).is_some();
+                    if has(tool) || !tools.iter().any(has) {
+                        verifier = verifier.with_allowance(surface, *allowed)?;
+                    }
+                }
+                for (surface, allowed) in &tool.allow {
+                    verifier = verifier.with_allowance(surface, *allowed)?;
+                }
+            }
+        }
+        if let Some(resolution) = job.resolution {
+            verifier = verifier.with_resolution(resolution)?;
+        }
+        let moves = program.moves(reading, tool, body.link, job.unit)?;
+        let report = verifier.check_moves(moves, &|count| progress.advance(count))?;
+        let groups = FindingGroup::join(&report.findings);
+        let remedy = |group: &FindingGroup| Remedy {
+            lift: verifier.lift(&group.worst),
+            tilt: verifier.tilt(&group.worst).filter(|_| program.turns_axis()),
         };
-        let machine = program.machine_findings(&self.file);
-        Ok(Verification { inputs: self, pairs, machine, cut })
+        let remedies = groups.iter().map(remedy).collect();
+        let under = program.under(&[reading]);
+        let scope = Scope { info, number: tool.number, under, body: &body.name, unit: job.unit };
+        let is_part = body.margin.is_none();
+        Ok(CheckedPair { scope, reading, report, groups, remedies, is_part })
+    }
+
+    /// Returns what the program leaves open, here and on its machine.
+    fn gaps(&self) -> Result<Vec<Gap>, Failure> {
+        let Inputs { job, program, bodies, .. } = self;
+        let mut gaps = program.gaps();
+        let any_rapid = program.readings().iter().find_map(|reading| reading.summary().any_rapid);
+        if let (Some(line), Some(_)) = (any_rapid, &job.stock) {
+            let reason = "the path of several axes in rapid traverse is checked against the stock on the straight line only: \
+                          state `rapid` of the control, or the `rapid` rates of the machine's axes";
+            gaps.push(Gap::open(line, reason.to_owned()));
+        }
+        for (reading, read) in program.readings().iter().enumerate() {
+            let offsets = &read.summary().work_offsets;
+            for (offset, line) in offsets.iter().filter(|_| offsets.len() > 1) {
+                let mut is_near = false;
+                for tool in &self.tools {
+                    let is_its = |step: &Move| step.work_offset == Some(*offset);
+                    let moves = program.moves(reading, tool, None, job.unit)?.filter(is_its);
+                    let mut moves = moves.peekable();
+                    if moves.peek().is_some() {
+                        let approach = Verifier::new(&bodies[0].bvh, tool.tool())?.approach(moves)?;
+                        is_near |= !approach.is_far();
+                    }
+                }
+                let gap = Gap::open(*line, format!(
+                    "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
+                     or give a job per part"
+                ));
+                if !is_near && !gaps.contains(&gap) {
+                    gaps.push(gap);
+                }
+            }
+        }
+        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        Ok(gaps)
     }
 }
 
@@ -155,47 +249,65 @@ pub(crate) struct Verification<'a> {
     inputs: &'a Inputs,
     /// Each tool at each body.
     pub(crate) pairs: Vec<CheckedPair<'a>>,
-    machine: Vec<MachineFinding<'a>>,
-    pub(crate) cut: Option<CutStock>,
+    /// The findings about the machine, each with the index of its reading.
+    machine: Vec<(usize, MachineFinding<'a>)>,
+    /// The stock after each reading.
+    cuts: Vec<CutStock>,
+    /// What the program leaves open.
+    pub(crate) gaps: Vec<Gap>,
 }
 
 impl Verification<'_> {
     /// Returns all findings, the worst first.
     pub(crate) fn entries(&self) -> Vec<Entry<'_>> {
-        let stock = self.cut.as_ref().map_or(&[][..], |cut| &cut.findings);
-        entries(&self.pairs, &self.machine, stock, (&self.inputs.file, self.inputs.job.unit))
+        entries(self)
     }
 
-    /// Prints the summary, and writes what the job asks for of the stock.
+    /// Returns the stock after the first reading, if the job has one.
+    pub(crate) fn cut(&self) -> Option<&CutStock> {
+        self.cuts.first()
+    }
+
+    /// Prints the reasons for which there is no verdict, then the summary, and writes what the job asks for of the stock.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub(crate) fn print(&self) -> Result<(), Failure> {
         let Inputs { job, program, bodies, .. } = self.inputs;
+        for reason in self.refusals() {
+            message!("not verified: {reason}");
+        }
         program.print(&self.pairs, job.unit);
+        for gap in self.gaps.iter().filter(|gap| !gap.is_open || job.anyway) {
+            message!("{}", not_checked(gap));
+        }
         for pair in &self.pairs {
             message!("{}", summary(pair));
         }
-        if let (Some(cut), Some(entry)) = (&self.cut, &job.stock) {
+        if let (Some(cut), Some(entry)) = (self.cut(), &job.stock) {
             cut.report(entry, &bodies[0].bvh)?;
-        }
-        Ok(())
-    }
-
-    /// Returns the exit status, and reports why there is no verdict.
-    pub(crate) fn status(&self, entries: &[Entry<'_>]) -> u8 {
-        let refusals = self.refusals();
-        for reason in &refusals {
-            message!("not verified: {reason}");
         }
         if self.is_surface_only() {
             message!("{NO_INSIDE}; only its surface was checked");
         }
-        match entries.iter().all(|entry| entry.severity == Severity::Remark) {
-            _ if !refusals.is_empty() => NOT_CHECKED,
+        Ok(())
+    }
+
+    /// Returns the exit status. A violation is one whatever else is left open.
+    pub(crate) fn status(&self, entries: &[Entry<'_>]) -> u8 {
+        let has = |severity: Severity| entries.iter().any(|entry| entry.severity == severity);
+        match self.refusals().is_empty() {
+            _ if has(Severity::Violation) && !self.is_misplaced() => FOUND,
+            false => NOT_CHECKED,
+            true if has(Severity::Undecided) => FOUND,
             true => 0,
-            false => FOUND,
         }
+    }
+
+    /// Returns whether the program seems to be in another unit than the part, so that findings mean nothing.
+    fn is_misplaced(&self) -> bool {
+        let mut parts = self.pairs.iter().filter(|pair| pair.is_part);
+        !self.inputs.job.anyway && parts.any(|pair| pair.report.approach.unit_factor.is_some())
     }
 
     /// Returns whether the inside of a body is unknown, and only its surface was to be checked.
@@ -205,25 +317,54 @@ impl Verification<'_> {
 
     /// Returns the reasons for which a result without findings proves nothing.
     pub(crate) fn refusals(&self) -> Vec<String> {
-        let (pairs, job) = (&self.pairs, &self.inputs.job);
-        let mut reasons = Vec::new();
-        if pairs.iter().all(|pair| pair.report.moves == 0) {
-            reasons.push(
-                "no motion could be checked, since only the machine knows where each starts or ends: state tool lengths \
-                 and work offsets in a job"
-                    .to_owned(),
-            );
-        } else {
-            reasons.extend(implausibilities(pairs, job));
+        let Inputs { job, program, .. } = self.inputs;
+        let open = self.gaps.iter().filter(|gap| gap.is_open && !job.anyway);
+        let mut reasons: Vec<String> = open.map(described).collect();
+        let mut count = self.pairs.len();
+        for reading in 0..program.reading_count() {
+            let pairs: Vec<&CheckedPair<'_>> =
+                self.pairs.iter().filter(|pair| pair.reading == reading).collect();
+            if pairs.iter().all(|pair| pair.report.moves == 0) {
+                count = 0;
+            } else {
+                let touches_stock = self.cuts.get(reading).is_some_and(|cut| !cut.findings.is_empty());
+                reasons.extend(implausibilities(&pairs, job, touches_stock));
+            }
         }
-        if let (false, Some(line)) = (job.anyway, self.inputs.program.unknown_feed()) {
-            reasons.push(format!(
-                "the feed motion at line {line} starts or ends where only the machine knows: state tool lengths and \
-                 work offsets in a job, or accept the rest with `--anyway`"
-            ));
+        if count == 0 {
+            reasons.push("no motion could be checked".to_owned());
         }
+        let mut seen = Vec::new();
+        reasons.retain(|reason| !seen.contains(reason) && {
+            seen.push(reason.clone());
+            true
+        });
         reasons
     }
+}
+
+/// Returns the reason of a gap with its line.
+fn described(gap: &Gap) -> String {
+    match gap.line {
+        0 => gap.reason.clone(),
+        line => format!("line {line}: {}", gap.reason),
+    }
+}
+
+/// Returns the line of the verdict about a gap.
+pub(crate) fn not_checked(gap: &Gap) -> String {
+    format!("not checked: {}", described(gap))
+}
+
+/// A gap as a JSON object.
+#[derive(Serialize)]
+struct GapRow<'a> {
+    file: &'a str,
+    line: usize,
+    kind: &'static str,
+    /// Set if it allows no verdict.
+    open: bool,
+    reason: &'a str,
 }
 
 /// Checks a program, and returns the exit status.
@@ -233,6 +374,14 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let verification = inputs.check(json)?;
     let entries = verification.entries();
     let mut out = Output::rows();
+    if json {
+        for Gap { line, is_open, reason, .. } in &verification.gaps {
+            let (file, open) = (&*inputs.file, *is_open);
+            let row = GapRow { file, line: *line, kind: "not-checked", open, reason };
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+        }
+    }
     for entry in &entries {
         if json {
             serde_json::to_writer(&mut out, &entry.row)?;
@@ -272,54 +421,12 @@ fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
     Ok(bodies)
 }
 
-/// Checks the motions of a tool against a body.
-fn check<'a>(
-    job: &Job,
-    (program, tools): (&CheckedProgram, &[ProgramTool]),
-    tool: &'a ProgramTool,
-    body: &'a Body,
-    progress: &Progress,
-) -> Result<CheckedPair<'a>, Failure> {
-    let info = tool.tool().info();
-    let mut verifier = Verifier::new(&body.bvh, tool.tool())?;
-    match body.margin {
-        Some(margin) if margin > 0.0 => {
-            for surface in info.surfaces.iter() {
-                verifier = verifier.with_allowance(&surface.name, -margin)?;
-            }
-        }
-        Some(_) => (),
-        None => {
-            verifier = verifier.with_tolerance(job.tolerance)?;
-            for (surface, allowed) in &job.allow {
-                // An allowance of a job holds for the tools that have the surface, and one has to have it.
-                let has = |tool: &ProgramTool| tool.tool().info().surface_named(surface).is_some();
-                if has(tool) || !tools.iter().any(has) {
-                    verifier = verifier.with_allowance(surface, *allowed)?;
-                }
-            }
-            for (surface, allowed) in &tool.allow {
-                verifier = verifier.with_allowance(surface, *allowed)?;
-            }
-        }
-    }
-    if let Some(resolution) = job.resolution {
-        verifier = verifier.with_resolution(resolution)?;
-    }
-    let moves = program.moves(tool, body.link, job.unit)?;
-    let report = verifier.check_moves(moves, &|count| progress.advance(count))?;
-    let groups = FindingGroup::join(&report.findings);
-    let remedy = |group: &FindingGroup| Remedy {
-        lift: verifier.lift(&group.worst),
-        tilt: verifier.tilt(&group.worst).filter(|_| program.turns_axis()),
-    };
-    let remedies = groups.iter().map(remedy).collect();
-    let scope = Scope { info, number: tool.number, body: &body.name, unit: job.unit };
-    Ok(CheckedPair { scope, report, groups, remedies, is_part: body.margin.is_none() })
-}
-
 /// Returns the reasons to doubt that the motions that were checked are meant for these bodies.
-fn implausibilities(pairs: &[CheckedPair<'_>], job: &Job) -> Vec<String> {
+fn implausibilities(
+    pairs: &[&CheckedPair<'_>],
+    job: &Job,
+    touches_stock: bool,
+) -> Vec<String> {
     let mut reasons = Vec::new();
     for pair in pairs {
         let CheckedPair { scope, report, .. } = pair;
@@ -338,7 +445,9 @@ fn implausibilities(pairs: &[CheckedPair<'_>], job: &Job) -> Vec<String> {
         }
     }
     let parts = || pairs.iter().filter(|pair| pair.is_part);
-    if !job.anyway && parts().all(|pair| pair.report.approach.is_far()) {
+    // A program that touches a fixture or the stock is meant for this setup.
+    let touches = touches_stock || pairs.iter().any(|pair| !pair.groups.is_empty());
+    if !job.anyway && !touches && parts().all(|pair| pair.report.approach.is_far()) {
         reasons.push(
             "the program never comes within the tool's diameter of the part: check the part, its position and its \
              unit, or accept the program with `--anyway`"

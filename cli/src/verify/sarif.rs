@@ -88,10 +88,11 @@ struct Region {
 }
 
 /// The rules, with what each finds.
-const RULES: [(&str, &str); 9] = [
+const RULES: [(&str, &str); 10] = [
     ("deep", "A surface of the tool is deeper in the part, a fixture or the machine than allowed."),
     ("near", "A surface of the tool comes nearer than its margin."),
     ("inside", "The tool, or a piece of it, is inside the material."),
+    ("spindle", "A feed motion has a spindle that does not turn, or turns the wrong way round."),
     ("length", "A feed motion has the length offset of another tool."),
     ("limit", "An axis of the machine goes beyond its limit."),
     ("singular", "A rotary axis turns far while the tool axis hardly moves."),

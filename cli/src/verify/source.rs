@@ -5,13 +5,13 @@ use super::job::Job;
 use super::machine::MachineFinding;
 use super::tools::{self, ProgramTool};
 use crate::failure::Failure;
-use crate::program::{self, read_machine};
+use crate::program::{self, read_control, read_machine};
 use std::iter;
 use std::path::Path;
-use touchoff::gcode::ControlSetup;
-use touchoff::machine::Side;
+use touchoff::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff::machine::{Machine, Side};
 use touchoff::program::ProgramFile;
-use touchoff::verify::{MachineProgram, Move, ToolSelection, UnknownMotions};
+use touchoff::verify::{Gap, MachineProgram, Move, ToolSelection};
 use touchoff::{Program, Unit};
 
 /// The machine of G-code for which none is named.
@@ -21,8 +21,8 @@ pub(crate) const DEFAULT_MACHINE: &str = "3-axis";
 pub(crate) enum CheckedProgram {
     /// Positions of the tip with the axis, a program per tool change.
     Locations(Vec<Program>),
-    /// G-code.
-    Machine(Box<MachineProgram>),
+    /// G-code, in each of its readings.
+    Machine(Vec<MachineProgram>),
 }
 
 impl CheckedProgram {
@@ -31,14 +31,22 @@ impl CheckedProgram {
     /// # Errors
     /// As for [`CheckedProgram::open`], or if a single program of positions has a motion that is not known.
     pub(super) fn read(job: &Job) -> Result<CheckedProgram, Failure> {
+        let mut rules = match &job.control {
+            Some(control) => read_control(Path::new(control))?,
+            None => ControlRules::default(),
+        };
+        if let Some(left_out) = job.block_delete {
+            let choice = if left_out { Choice::LeftOut } else { Choice::Executed };
+            rules = rules.with(Rule::OptionalBlocks, choice);
+        }
         let setup = ControlSetup {
             work_offsets: job.work_offsets,
             lengths: tools::lengths(&job.tools),
-            block_delete: job.block_delete,
+            rules,
             ..ControlSetup::default()
         };
         let machine = job.machine.as_deref().map(Path::new);
-        let program = CheckedProgram::open(&job.program, machine, setup)?;
+        let program = CheckedProgram::open(&job.program, machine, &setup)?;
         if let CheckedProgram::Locations(programs) = &program
             && let [program] = &programs[..]
         {
@@ -55,47 +63,79 @@ impl CheckedProgram {
     pub(crate) fn open(
         file: &Path,
         machine: Option<&Path>,
-        setup: ControlSetup,
+        setup: &ControlSetup,
     ) -> Result<CheckedProgram, Failure> {
-        let text = match (ProgramFile::read(file)?, machine) {
+        let is_plain = machine.is_none() && setup.rules == ControlRules::default();
+        let text = match (ProgramFile::read(file)?, is_plain) {
             (ProgramFile::Gcode(text), _) => text,
-            (ProgramFile::Locations(programs), None) => {
+            (ProgramFile::Locations(programs), true) => {
                 return Ok(CheckedProgram::Locations(programs));
             }
-            (ProgramFile::Locations(_), Some(_)) => {
+            (ProgramFile::Locations(_), false) => {
                 return Err(Failure::Usage(
-                    "a machine is for G-code: this program states positions of the tip",
+                    "a machine or a control is for G-code: this program states positions of the tip",
                 ));
             }
         };
         let machine = read_machine(machine.unwrap_or(Path::new(DEFAULT_MACHINE)))?;
-        let program = MachineProgram::new(&file.display().to_string(), text, machine, setup)?;
-        Ok(CheckedProgram::Machine(Box::new(program)))
+        let name = file.display().to_string();
+        Ok(CheckedProgram::Machine(MachineProgram::readings(&name, text, machine, setup)?))
     }
 
-    /// Returns the line of the first feed motion that cannot be checked.
-    pub(super) fn unknown_feed(&self) -> Option<usize> {
+    /// Returns the readings of G-code; none for positions, which have one meaning.
+    pub(crate) fn readings(&self) -> &[MachineProgram] {
         match self {
-            CheckedProgram::Locations(_) => None,
-            CheckedProgram::Machine(program) => program.summary().unknown?.feed_line,
+            CheckedProgram::Locations(_) => &[],
+            CheckedProgram::Machine(readings) => readings,
         }
     }
 
-    /// Returns the findings about the machine's axes.
-    pub(super) fn machine_findings<'a>(&self, file: &'a str) -> Vec<MachineFinding<'a>> {
+    /// Returns the machine of G-code.
+    pub(crate) fn machine(&self) -> Option<&Machine> {
+        Some(self.readings().first()?.machine())
+    }
+
+    /// Returns the number of readings.
+    pub(super) fn reading_count(&self) -> usize {
+        self.readings().len().max(1)
+    }
+
+    /// Names the readings for which something holds; `None` if it holds for all.
+    pub(super) fn under(&self, holds: &[usize]) -> Option<String> {
+        let readings = self.readings();
+        let holds: Vec<_> =
+            holds.iter().filter_map(|index| Some(readings.get(*index)?.assumed())).collect();
+        MachineProgram::under(readings, &holds)
+    }
+
+    /// Returns what the program leaves open.
+    pub(super) fn gaps(&self) -> Vec<Gap> {
         match self {
-            CheckedProgram::Locations(_) => Vec::new(),
-            CheckedProgram::Machine(program) => MachineFinding::all(program, file),
+            CheckedProgram::Locations(programs) => tool_changes(programs).into_iter().collect(),
+            CheckedProgram::Machine(readings) => MachineProgram::gaps(readings),
         }
+    }
+
+    /// Returns the findings about the machine, each with the index of its reading.
+    pub(super) fn machine_findings<'a>(
+        &self,
+        file: &'a str,
+        tools: &[ProgramTool],
+    ) -> Vec<(usize, MachineFinding<'a>)> {
+        let all = |(index, program)| {
+            let findings = MachineFinding::all(program, file, tools).into_iter();
+            findings.map(move |finding| (index, finding))
+        };
+        self.readings().iter().enumerate().flat_map(all).collect()
     }
 
     /// Returns whether the program can turn the tool axis.
     pub(super) fn turns_axis(&self) -> bool {
         match self {
             CheckedProgram::Locations(_) => true,
-            CheckedProgram::Machine(program) => {
-                program.machine().axes().iter().any(|axis| axis.letter.is_rotary())
-            }
+            CheckedProgram::Machine(_) => self
+                .machine()
+                .is_some_and(|machine| machine.axes().iter().any(|axis| axis.letter.is_rotary())),
         }
     }
 
@@ -111,8 +151,14 @@ impl CheckedProgram {
                 }
                 numbers
             }
-            CheckedProgram::Machine(program) => {
-                program.summary().tools.iter().map(|tool| tool.number).collect()
+            CheckedProgram::Machine(readings) => {
+                let mut numbers = Vec::new();
+                for tool in readings.iter().flat_map(|program| &program.summary().tools) {
+                    if !numbers.contains(&tool.number) {
+                        numbers.push(tool.number);
+                    }
+                }
+                numbers
             }
         }
     }
@@ -123,8 +169,9 @@ impl CheckedProgram {
             CheckedProgram::Locations(programs) => {
                 programs.iter().map(|program| program.locations.len()).sum()
             }
-            CheckedProgram::Machine(program) => {
-                program.summary().tools.iter().map(|tool| tool.motions).sum()
+            CheckedProgram::Machine(readings) => {
+                let tools = readings.iter().flat_map(|program| &program.summary().tools);
+                tools.map(|tool| tool.motions).sum()
             }
         }
     }
@@ -147,9 +194,10 @@ impl CheckedProgram {
         programs.iter().filter(move |program| selection.contains(program.tool))
     }
 
-    /// Returns the motions of a tool relative to a link of the table, or to the part.
+    /// Returns the motions of a tool in a reading, relative to a link of the table or to the part.
     pub(crate) fn moves<'a>(
         &'a self,
+        reading: usize,
         tool: &ProgramTool,
         link: Option<usize>,
         unit: Unit,
@@ -160,15 +208,16 @@ impl CheckedProgram {
                 let programs = self.programs(tool.selection);
                 Box::new(programs.flat_map(move |program| Move::all(program, symmetry)))
             }
-            CheckedProgram::Machine(program) => {
-                Box::new(program.moves(tool.selection, link, unit)?)
+            CheckedProgram::Machine(readings) => {
+                Box::new(readings[reading].moves(tool.selection, link, unit)?)
             }
         })
     }
 
-    /// Returns all motions in the order of the program, each with its tool.
+    /// Returns all motions of a reading in the order of the program, each with its tool.
     pub(super) fn moves_in_order<'a>(
         &'a self,
+        reading: usize,
         tools: &'a [ProgramTool],
         unit: Unit,
     ) -> Result<Box<dyn Iterator<Item = (&'a ProgramTool, Move)> + 'a>, Failure> {
@@ -185,8 +234,8 @@ impl CheckedProgram {
                     symmetry.into_iter().flat_map(|symmetry| Move::all(program, symmetry))
                 }))
             }
-            CheckedProgram::Machine(program) => {
-                Box::new(program.moves(ToolSelection::All, None, unit)?)
+            CheckedProgram::Machine(readings) => {
+                Box::new(readings[reading].moves(ToolSelection::All, None, unit)?)
             }
         };
         Ok(Box::new(moves.filter_map(move |step| Some((tool_of(step.tool)?, step)))))
@@ -197,10 +246,10 @@ impl CheckedProgram {
     /// # Errors
     /// If the program is not for a machine, its table has no such axis, or the part is turned in its frame.
     pub(super) fn link(&self, axis: &str, job: &Job) -> Result<Option<usize>, Failure> {
-        let CheckedProgram::Machine(program) = self else {
+        let Some(machine) = self.machine() else {
             return Err(Failure::Usage("`moves_with` is for programs on a machine"));
         };
-        let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
+        let axes = machine.axes().iter().filter(|axis| axis.side == Side::Table);
         let links: Vec<String> =
             iter::once("base".to_owned()).chain(axes.map(|axis| axis.letter.to_string())).collect();
         match links.iter().position(|link| link == axis) {
@@ -225,42 +274,27 @@ impl CheckedProgram {
             program::print_approach(&pair.report, unit);
         }
         match self {
-            CheckedProgram::Locations(programs) => {
-                program::print_ignored(programs);
-                print_tool_changes(programs);
+            CheckedProgram::Locations(programs) => program::print_ignored(programs),
+            CheckedProgram::Machine(readings) => {
+                let stated = self.machine().map_or("", Machine::name);
+                match readings.len() {
+                    1 => message!("machine: {stated}"),
+                    count => message!("machine: {stated}, in {count} readings of the program"),
+                }
             }
-            CheckedProgram::Machine(program) => print_machine(program),
         }
     }
 }
 
-/// Prints the number of motions to the first position after a tool change, which the program does not state.
-fn print_tool_changes(programs: &[Program]) {
-    let [_, changed @ ..] = programs else { return };
-    if let Some(first) = changed.first() {
-        message!(
-            "{} to the first position after a tool change not checked, first to line {}: only the machine knows where \
-             they start",
-            match changed.len() {
-                1 => "1 motion".to_owned(),
-                count => format!("{count} motions"),
-            },
-            first.locations[0].line
-        );
-    }
-}
-
-/// Prints the machine, the number of motions that were not checked, and notes.
-fn print_machine(program: &MachineProgram) {
-    let summary = program.summary();
-    message!("machine: {}", program.machine().name());
-    if let Some(UnknownMotions { count, line, .. }) = summary.unknown {
-        message!(
-            "{count} motion{} not checked, first at line {line}: only the machine knows where they start or end",
-            if count == 1 { "" } else { "s" }
-        );
-    }
-    for note in &summary.notes {
-        message!("{note}");
-    }
+/// Returns the motions to the first position after a tool change, which the program does not state.
+fn tool_changes(programs: &[Program]) -> Option<Gap> {
+    let [_, changed @ ..] = programs else { return None };
+    let line = changed.first()?.locations[0].line;
+    let count = changed.len();
+    let plural = if count == 1 { "" } else { "s" };
+    let reason = format!(
+        "{count} motion{plural} to the first position after a tool change not checked, first to line {line}: only the machine \
+         knows where they start"
+    );
+    Some(Gap::said(line, reason))
 }

@@ -50,7 +50,7 @@ pub(crate) struct CutStock {
 pub(super) fn cut(
     job: &Job,
     entry: &StockEntry,
-    program: &CheckedProgram,
+    (program, reading): (&CheckedProgram, usize),
     tools: &[ProgramTool],
 ) -> Result<CutStock, Failure> {
     let mut stock = match (&entry.mesh, entry.corners) {
@@ -67,7 +67,7 @@ pub(super) fn cut(
     let mut findings: Vec<StockFinding> = Vec::new();
     // The index in `findings` of the contact that each surface goes on with.
     let mut open: Vec<(usize, usize)> = Vec::new();
-    for (tool, step) in program.moves_in_order(tools, job.unit)? {
+    for (tool, step) in program.moves_in_order(reading, tools, job.unit)? {
         let info = tool.tool().info();
         let max_speed = step.path.max_speed(info, job.unit);
         let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };

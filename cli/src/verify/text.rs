@@ -81,6 +81,10 @@ fn place(group: &FindingGroup) -> String {
     let Finding { from, time, rapid, .. } = group.worst;
     let rapid = if rapid { ", in rapid traverse" } else { "" };
     match (group.motions, from) {
+        (1, Some(from)) if group.worst.any_rates => format!(
+            "in rapid traverse from line {from} at some rates of its axes (the straight line is clear; `rapid` of the \
+             control or of the machine's axes states the path)"
+        ),
         (1, Some(from)) => {
             format!("at fraction {time:.2} of the motion from line {from}{rapid}")
         }
@@ -119,6 +123,10 @@ pub(crate) fn summary(pair: &CheckedPair<'_>) -> String {
         Some(number) => format!("T{number} at {}: ", scope.body),
         None if scope.body == super::PART => String::new(),
         None => format!("{}: ", scope.body),
+    };
+    let tool = match &scope.under {
+        Some(under) => format!("{under}: {tool}"),
+        None => tool,
     };
     let count = groups.len();
     if count == 0 {

@@ -1,6 +1,6 @@
 //! The tools of a program.
 
-use super::job::Tools;
+use super::job::{Hand, Tools};
 use crate::arguments::ToolArguments;
 use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
@@ -21,6 +21,7 @@ pub(crate) struct ProgramTool {
     named: (OsString, ToolArguments),
     /// Allowances of its own surfaces.
     pub(super) allow: Vec<(String, f64)>,
+    pub(super) hand: Hand,
 }
 
 impl ProgramTool {
@@ -56,6 +57,7 @@ pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramToo
                 loaded: LoadedTool::load(name, arguments)?,
                 named: (name.clone(), arguments.clone()),
                 allow: Vec::new(),
+                hand: Hand::Right,
             }])
         }
         Tools::Numbered { library, entries } => {
@@ -81,6 +83,7 @@ pub(super) fn load(tools: &Tools, used: &[Option<u32>]) -> Result<Vec<ProgramToo
                     selection: ToolSelection::Number(*number),
                     loaded: LoadedTool::load(&name, &arguments)?,
                     named: (name, arguments),
+                    hand: entry.map_or(Hand::Right, |entry| entry.hand),
                     allow: entry.map_or(Vec::new(), |entry| {
                         entry.allow.iter().map(|(name, depth)| (name.clone(), *depth)).collect()
                     }),

@@ -42,8 +42,8 @@ pub(super) struct Block {
     pub(super) label: Option<OWord>,
     pub(super) keyword: Option<Keyword>,
     assignments: Vec<(Parameter, f64)>,
-    /// Set if a coordinate has no decimal point and is not zero.
-    pub(super) whole_number: bool,
+    /// Coordinates that have no decimal point and are not zero, as bits from A.
+    whole: u32,
     /// Set if the line begins with `/`.
     pub(super) deletable: bool,
 }
@@ -100,7 +100,7 @@ impl Block {
         self.label = None;
         self.keyword = None;
         self.assignments.clear();
-        self.whole_number = false;
+        self.whole = 0;
     }
 
     /// Returns whether the block has no word yet.
@@ -135,9 +135,11 @@ impl Block {
                 }
                 self.unused |= bit;
                 self.values[usize::from(letter as u8 - b'A')] = value;
-                let is_coordinate = "XYZABCIJKR".contains(letter);
+                let is_coordinate = "XYZABCIJKRQ".contains(letter);
                 let is_whole = !written.contains(['.', '[', '#']);
-                self.whole_number |= is_coordinate && is_whole && value != 0.0;
+                if is_coordinate && is_whole && value != 0.0 {
+                    self.whole |= bit;
+                }
                 Ok(())
             }
         }
@@ -206,6 +208,11 @@ impl Block {
         Ok(())
     }
 
+    /// Returns the words of all groups.
+    pub(super) fn codes(&self) -> impl Iterator<Item = Code> + '_ {
+        self.codes.iter().flatten().copied()
+    }
+
     /// Returns the word of a group.
     pub(super) fn code_of(&self, group: Group) -> Option<Code> {
         self.codes[group as usize]
@@ -219,6 +226,31 @@ impl Block {
     /// Returns whether the block has one of the letters.
     pub(super) fn has_any(&self, letters: &str) -> bool {
         letters.chars().any(|letter| self.has(letter))
+    }
+
+    /// Returns whether a coordinate that no word has used has no decimal point.
+    pub(super) fn has_whole(&self) -> bool {
+        self.whole & self.unused != 0
+    }
+
+    /// Multiplies the coordinates without a decimal point by a factor of their letter.
+    pub(super) fn scale_whole(&mut self, factor: impl Fn(char) -> f64) {
+        for index in 0..26u8 {
+            if self.whole & self.unused & (1 << index) != 0 {
+                self.values[usize::from(index)] *= factor(char::from(b'A' + index));
+            }
+        }
+    }
+
+    /// Returns whether one of the letters has a number other than 0.
+    pub(super) fn is_nonzero(&self, letters: &str) -> bool {
+        let value = |letter: char| self.values[usize::from(letter as u8 - b'A')];
+        letters.chars().any(|letter| self.has(letter) && value(letter) != 0.0)
+    }
+
+    /// Returns whether the block moves, or changes what motions do.
+    pub(super) fn has_effect(&self) -> bool {
+        self.codes.iter().any(Option::is_some) || self.keyword.is_some() || self.has_any("XYZABC")
     }
 
     /// Returns the number after a letter, which counts as used.

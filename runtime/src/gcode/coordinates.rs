@@ -6,6 +6,7 @@ use super::code::{Code, Group};
 use super::modal::Motion;
 use super::motion::{AXES, Control};
 use super::note::Subject;
+use super::rules::{Choice, Rule};
 use super::state::{ControlState, Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
 use super::{GcodeFault, StepPath};
 use nalgebra::Vector3;
@@ -41,9 +42,56 @@ impl Control {
                 return Err(GcodeFault::Missing { word: code.to_string(), needed });
             };
             self.notes.add(self.line, Subject::ToolChange);
+            self.stop_spindle();
+            self.leave_for_change();
+            self.length_cancelled = false;
             self.change(|state| state.tool = Some(tool));
         }
         Ok(())
+    }
+
+    /// Moves the axes as a tool change does.
+    fn leave_for_change(&mut self) {
+        let stated = self.change_position;
+        let (moved, target) = match stated {
+            Some(target) => (target.map(|value| value.is_some()), target),
+            None => match self.choice(Rule::ToolChange) {
+                Choice::Retracts => {
+                    let height = self.home.map(|home| home[2]);
+                    let z_alone = [false, false, true, false, false, false];
+                    (z_alone, [None, None, height, None, None, None])
+                }
+                Choice::Moves => (self.axes, [None; 6]),
+                _ => return,
+            },
+        };
+        if !moved.contains(&true) {
+            return;
+        }
+        let mut machine = self.state.to_machine(self.position);
+        for axis in (0..6).filter(|axis| moved[*axis]) {
+            machine[axis] = target[axis];
+        }
+        let end = self.state.from_machine(machine);
+        self.push(true, end, moved, StepPath::ToolChange(target));
+    }
+
+    /// Applies the length of the tool in the spindle without a word, where the control does.
+    pub(super) fn length_without_word(&mut self) {
+        if let (LengthOffset::Off, false, Some(tool)) =
+            (self.state.length, self.length_cancelled, self.state.tool)
+            && tool != 0
+            && self.choice(Rule::ToolLength) == Choice::Always
+        {
+            let length = self.registered(tool);
+            self.change(|state| state.length = length);
+        }
+    }
+
+    /// Switches the tool length offset off.
+    pub(super) fn cancel_length(&mut self) {
+        self.length_cancelled = true;
+        self.change(|state| state.length = LengthOffset::Off);
     }
 
     /// Executes the words that change coordinates and use no axis words, and G68.
@@ -72,6 +120,7 @@ impl Control {
         if code.tenths == 490 {
             let tcp = off(self.transformed);
             self.vector = None;
+            self.length_cancelled = true;
             self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, tcp));
             return Ok(());
         }
@@ -173,6 +222,7 @@ impl Control {
             tenths @ 540..=590 => WorkOffset::Standard((tenths / 10 - 53) as u8),
             tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
         };
+        self.offset_stated = true;
         if offset != self.state.work_offset {
             self.check_unrotated(code)?;
         }

@@ -2,8 +2,8 @@
 //!
 //! A cycle moves in rapid traverse over its hole, in rapid traverse to the plane R, at feed rate to its
 //! depth, and back: to R (G99), or to the level at which the first cycle of the series began, if that is
-//! above R (G98). Under G91, R is relative to that level and the depth to R. A tool that begins below R is
-//! raised to it first (LinuxCNC, `interp_cycles.cc`).
+//! above R (G98). Under G91, R is relative to that level and the depth to R. Whether a tool that begins below R
+//! rises to it before it moves sideways is a [rule](Rule::CycleBelowR) of the control.
 //!
 //! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
@@ -11,7 +11,7 @@
 
 use super::block::Block;
 use super::motion::{AXES, Control};
-use super::note::Subject;
+use super::rules::{Choice, Rule};
 use super::state::{ControlState, Position, Tcp};
 use super::{GcodeFault, MAX_CYCLE_STEPS, StepPath};
 use std::sync::Arc;
@@ -68,8 +68,7 @@ impl Control {
         if repeats > 0 && cycle.initial.zip(levels.retract).is_some_and(|(initial, r)| initial < r)
         {
             let is_below = self.position[normal].zip(levels.retract).is_some_and(|(z, r)| z < r);
-            if is_below {
-                self.notes.add(self.line, Subject::CycleFromBelow);
+            if is_below && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst {
                 self.move_along(normal, true, levels.retract);
             }
         }
@@ -133,7 +132,7 @@ impl Control {
         Ok(Cycle { retract, depth, peck, incremental, initial, state: Arc::clone(&self.state) })
     }
 
-    fn levels(&self, cycle: &Cycle) -> Result<Levels, GcodeFault> {
+    fn levels(&mut self, cycle: &Cycle) -> Result<Levels, GcodeFault> {
         let (retract, depth) = match cycle.incremental {
             false => (Some(cycle.retract), Some(cycle.depth)),
             true => {
@@ -149,7 +148,13 @@ impl Control {
             let (retract, depth) = (cycle.retract, cycle.depth);
             return Err(GcodeFault::CycleBelow { retract, depth });
         }
-        let clear = match self.modal.retract_to_r {
+        let to_r = match self.modal.retract_to_r {
+            Some(to_r) => to_r,
+            // A cycle that begins at R returns there in either case.
+            None if cycle.initial.is_some() && cycle.initial == retract => true,
+            None => self.choice(Rule::CycleReturn) == Choice::PlaneR,
+        };
+        let clear = match to_r {
             true => retract,
             false => retract.zip(cycle.initial).map(|(retract, initial)| retract.max(initial)),
         };

@@ -1,6 +1,7 @@
 //! The order in which blocks are executed: subprograms and their repeats.
 
 use super::block::{begin, next};
+use super::code::Group;
 use super::expression::Parameters;
 use super::label::{Label, OWord, Place, Role, Subprogram, Subprograms};
 use super::text::{self, Extent};
@@ -82,6 +83,25 @@ impl<'a> Flow<'a> {
                 Ok(None) => place = after,
                 _ => return Some(place.line),
             }
+        }
+        None
+    }
+
+    /// Returns the line of the title of another main program after the present one: one that ends as such.
+    pub(super) fn other_program(&self) -> Option<usize> {
+        let mut place = if self.calls.is_empty() { self.place } else { return None };
+        let mut title = None;
+        while let Some((line, after)) = text::line(self.text, place) {
+            let (_, mut cursor) = begin(line);
+            if let Ok(Some(b'O' | b'o')) = next(&mut cursor) {
+                title = Some(place.line);
+            } else if title.is_some() {
+                let stop = text::block(line).and_then(|block| block.code_of(Group::Stop));
+                if stop.is_some_and(|code| matches!(code.tenths, 20 | 300)) {
+                    return title;
+                }
+            }
+            place = after;
         }
         None
     }

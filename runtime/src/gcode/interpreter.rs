@@ -9,8 +9,10 @@ use super::label::{Label, Role};
 use super::modal::FeedMode;
 use super::motion::Control;
 use super::note::{ProgramNote, Subject};
+use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
+use std::collections::BTreeMap;
 use std::mem;
 
 /// An interpreter of a program: an iterator over its steps.
@@ -23,7 +25,6 @@ pub struct Interpreter<'a> {
     parameters: Parameters,
     block: Block,
     control: Control,
-    omits_optional_blocks: bool,
     finished: bool,
 }
 
@@ -36,15 +37,15 @@ impl<'a> Interpreter<'a> {
         let extent = text::extent(text);
         let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
         let mut control = Control::new(setup);
-        if let Some(line) = extent.left_out {
-            control.notes.add(line, Subject::TextAfterEnd);
+        if let Some((line, has_blocks)) = extent.left_out {
+            let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
+            control.notes.add(line, subject);
         }
         Ok(Interpreter {
             flow,
             parameters: Parameters::default(),
             block: Block::default(),
             control,
-            omits_optional_blocks: setup.block_delete,
             finished: false,
         })
     }
@@ -52,6 +53,11 @@ impl<'a> Interpreter<'a> {
     /// Returns the notes about the blocks that were executed so far, by line.
     pub fn notes(&self) -> Vec<ProgramNote> {
         self.control.notes.list()
+    }
+
+    /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
+    pub fn asked(&self) -> &BTreeMap<Rule, usize> {
+        &self.control.asked
     }
 
     /// Executes the next line.
@@ -62,14 +68,50 @@ impl<'a> Interpreter<'a> {
             return Ok(());
         };
         let mut block = mem::take(&mut self.block);
-        let result = self.line(line, text, &mut block);
+        let result = self.blocks(line, text, &mut block);
         self.block = block;
         result.map_err(|fault| GcodeError { line, fault })
     }
 
+    /// Executes the block of a line, and those after semicolons if they end a block.
+    fn blocks(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
+        self.control.line = line;
+        let after = after_semicolon(text).filter(|after| self.are_blocks(after));
+        self.line(line, text, block)?;
+        let Some(after) = after else { return Ok(()) };
+        if self.control.choice(Rule::Semicolon) == Choice::Comment {
+            return Ok(());
+        }
+        for text in after.split(';') {
+            if self.finished {
+                break;
+            }
+            if block.code_of(Group::Subprogram).is_some() {
+                return Err(GcodeFault::Combination {
+                    word: "`;`".to_owned(),
+                    condition: "its block calls or ends a subprogram",
+                    remedy: "write the block after it on a line of its own",
+                });
+            }
+            self.line(line, text, block)?;
+        }
+        Ok(())
+    }
+
+    /// Returns whether a text behind a semicolon can be read as blocks that do something.
+    fn are_blocks(&self, text: &str) -> bool {
+        let mut block = Block::default();
+        let mut has_effect = false;
+        text.split(';').all(|text| {
+            let is_read = block.parse(text, &mut self.parameters.clone()).is_ok();
+            has_effect |= is_read && block.has_effect();
+            is_read
+        }) && has_effect
+    }
+
     fn line(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
         let is_optional = text.trim_start().starts_with('/');
-        if is_optional && self.omits_optional_blocks {
+        if is_optional && self.control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
             self.control.notes.add(line, Subject::OmittedOptionalBlock);
             return Ok(());
         }
@@ -105,8 +147,14 @@ impl<'a> Interpreter<'a> {
                 if let Some(line) = self.flow.text_after_end() {
                     self.control.notes.add(line, Subject::TextAfterEnd);
                 }
+                if let Some(line) = self.flow.other_program() {
+                    self.control.notes.add(line, Subject::OtherProgram);
+                }
             }
-            Some(_) => self.control.notes.add(line, Subject::Stop),
+            Some(_) => {
+                self.control.pause_spindle();
+                self.control.notes.add(line, Subject::Stop);
+            }
             None => {}
         }
         Ok(())
@@ -135,6 +183,32 @@ impl Iterator for Interpreter<'_> {
 
 impl std::iter::FusedIterator for Interpreter<'_> {}
 
+/// Returns whether a word means something else in DIN/ISO programs of Heidenhain.
+fn is_other_word(code: Code) -> bool {
+    match (code.letter, code.tenths) {
+        ('G', tenths) => matches!(
+            tenths,
+            100 | 200 | 210 | 280 | 300 | 430..=449 | 490 | 520..=599 | 680..=699 | 730 | 740 | 810..=869 | 890 | 920..=929
+                | 980 | 990
+        ),
+        ('M', tenths) => matches!(tenths, 980 | 990),
+        _ => false,
+    }
+}
+
+/// Returns the text after the first semicolon outside comments in brackets, if a word could begin there.
+fn after_semicolon(text: &str) -> Option<&str> {
+    let mut depth = 0;
+    let position = text.bytes().position(|byte| {
+        depth += i32::from(byte == b'(') - i32::from(byte == b')');
+        byte == b';' && depth == 0
+    })?;
+    let after = &text[position + 1..];
+    let mut bytes = after.bytes().filter(|byte| !byte.is_ascii_whitespace());
+    let begins = bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || b"/#".contains(&byte));
+    (begins && bytes.next().is_some_and(|byte| !byte.is_ascii_alphabetic())).then_some(after)
+}
+
 /// Returns the label and the repeats of M98.
 fn called(block: &mut Block) -> Result<(Label, u32), GcodeFault> {
     let expected = "the number of a program after P";
@@ -151,14 +225,57 @@ impl Control {
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
         self.note_words(block);
+        self.check_dialect(block)?;
         check_axis_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
         dwell(block)?;
         self.motion_mode(block);
         self.settings(block)?;
+        self.numbers(block);
         self.coordinates(block)?;
+        let is_one_shot = block.code_of(Group::OneShot).is_some();
+        let is_machine = block.code_of(Group::Machine).is_some();
+        if block.has_any("XYZABC") && !is_one_shot && !is_machine {
+            self.length_without_word();
+            if !self.offset_stated && self.choice(Rule::StartOffset) == Choice::NoOffset {
+                let needed = "a work offset (G54) before, since this control starts without one";
+                return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
+            }
+        }
         self.motion(block)
+    }
+
+    /// Refuses words that mean something else in the dialect of the control.
+    fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let other = block.codes().find(|code| is_other_word(*code));
+        match other {
+            Some(code) if self.choice(Rule::Dialect) == Choice::Heidenhain => {
+                let meaning = "another word in DIN/ISO programs of Heidenhain";
+                let remedy = "post the program for this control, or state another `dialect`";
+                Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Gives the numbers of a block the unit that the control gives them.
+    fn numbers(&mut self, block: &mut Block) {
+        if !self.modal.unit_stated && block.is_nonzero("XYZIJKRQ") {
+            self.modal.unit = match self.choice(Rule::Unit) {
+                Choice::Inch => Unit::Inch,
+                _ => Unit::Millimetre,
+            };
+        }
+        if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
+            let has_angles = block.code_of(Group::Rotation).is_some();
+            let length = if self.modal.unit == Unit::Inch { 1e-4 } else { 1e-3 };
+            block.scale_whole(|letter| match letter {
+                'A' | 'B' | 'C' => 1e-3,
+                'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
+                _ => length,
+            });
+        }
     }
 
     /// Notes the words that are passed over.
@@ -166,12 +283,10 @@ impl Control {
         for code in &block.passed_over {
             self.notes.add(self.line, Subject::PassedOver(*code));
         }
-        if block.take('S').is_some() {
+        if block.has('S') {
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
         }
-        if block.whole_number {
-            self.notes.add(self.line, Subject::WholeNumbers);
-        }
+        self.spindle_words(block);
     }
 
     /// Reads the feed mode and F.
@@ -208,18 +323,18 @@ impl Control {
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
         match tenths(Group::Units) {
-            Some(200 | 700 | 7000) => self.modal.unit = Unit::Inch,
-            Some(_) => self.modal.unit = Unit::Millimetre,
+            Some(200 | 700 | 7000) => (self.modal.unit, self.modal.unit_stated) = (Unit::Inch, true),
+            Some(_) => (self.modal.unit, self.modal.unit_stated) = (Unit::Millimetre, true),
             None => {}
         }
         if let Some(distance) = tenths(Group::Distance) {
             self.modal.incremental = distance == 910;
         }
         if let Some(distance) = tenths(Group::ArcDistance) {
-            self.modal.absolute_centres = distance == 901;
+            self.modal.absolute_centres = Some(distance == 901);
         }
         if let Some(retract) = tenths(Group::Retract) {
-            self.modal.retract_to_r = retract == 990;
+            self.modal.retract_to_r = Some(retract == 990);
         }
         if let Some(plane) = tenths(Group::Plane) {
             self.select(match plane {

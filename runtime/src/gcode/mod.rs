@@ -35,15 +35,19 @@
 //! [`Interpreter::notes`].
 //!
 //! **What is unknown.** A coordinate is `None` if only the machine knows it: before it is programmed first,
-//! after G28 without a [home](ControlSetup::home), after a change between work offsets that are not given,
+//! after G28 without a [home](ControlSetup::home), after a tool change that [moves](Choice::Moves) the axes,
+//! after a change between work offsets that are not given,
 //! after a tool length that is not given comes into force (Z), and after tool centre point control is
 //! switched on or off while A, B and C are not all known to be 0 (X Y Z). It becomes known when it is
 //! programmed in G90.
 //!
-//! **Assumptions.** G0 moves all axes on one straight line. Rotary axes count on without a modulus. A tool
-//! change (M6) leaves the axes where they are, and loads the tool of its own block or, without T there, the
-//! last T. Start values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms share the parameters
-//! of their caller, except those of O-words, whose #1 to #30 and names are their own.
+//! **What differs between controls.** Where a program leaves a choice to the control, a [`Rule`] decides. The
+//! [setup](ControlSetup::rules) states them, and [`Interpreter::asked`] lists those that the program depends on.
+//! Without a statement the first choice of a rule is made.
+//!
+//! **Assumptions.** A tool change (M6) loads the tool of its own block or, without T there, the last T. Start
+//! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms share the parameters of their
+//! caller, except those of O-words, whose #1 to #30 and names are their own.
 
 mod arc;
 mod block;
@@ -58,6 +62,8 @@ mod label;
 mod modal;
 mod motion;
 mod note;
+mod rules;
+mod spindle;
 mod state;
 mod text;
 
@@ -66,12 +72,13 @@ pub use error::{GcodeError, GcodeFault};
 pub use expression::ExpressionFault;
 pub use interpreter::Interpreter;
 pub use note::{NoteKind, ProgramNote};
+pub use rules::{Choice, ControlError, ControlRules, Rule};
+pub use spindle::Spindle;
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 
 pub use crate::machine::Plane;
 
-use crate::unit::Unit;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -99,15 +106,19 @@ pub struct ControlSetup {
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
     pub second_home: Option<[f64; 6]>,
-    /// Unit before the first G20 or G21: millimetre or inch.
-    pub unit: Unit,
-    /// Position of the switch for optional blocks: if set, blocks that begin with `/` are left out. By
-    /// default they are executed. The two settings can give different paths: check a program with both.
-    pub block_delete: bool,
+    /// What the control does where controls differ.
+    pub rules: ControlRules,
+    /// The axes that the machine has.
+    pub axes: [bool; 6],
+    /// The rotary axes A, B, C that turn without a limit.
+    pub endless: [bool; 3],
+    /// Where M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
+    /// [rules](Rule::ToolChange) say.
+    pub tool_change: Option<Position>,
 }
 
 impl Default for ControlSetup {
-    /// Returns a control in millimetres that knows no position, and executes optional blocks.
+    /// Returns a control that knows no position and states no rule.
     fn default() -> ControlSetup {
         ControlSetup {
             start: [None; 6],
@@ -115,8 +126,10 @@ impl Default for ControlSetup {
             lengths: BTreeMap::new(),
             home: None,
             second_home: None,
-            unit: Unit::Millimetre,
-            block_delete: false,
+            rules: ControlRules::default(),
+            axes: [true; 6],
+            endless: [true; 3],
+            tool_change: None,
         }
     }
 }
@@ -141,6 +154,8 @@ pub struct Step {
     /// Under G43.5, the unit vector from the tip to the spindle at the end, in the workpiece's frame; `None`
     /// until the program gives one.
     pub tool_vector: Option<[f64; 3]>,
+    /// The spindle during the motion.
+    pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.
     pub state: Arc<ControlState>,
 }
@@ -166,8 +181,12 @@ pub enum StepPath {
     /// A rotation of A, B and C that aligns the tool with z of a tilted plane (G53.1). The angles are the
     /// machine's.
     Align,
-    /// An arc whose start is unknown in its plane.
+    /// A path between known ends that only the control knows: an arc whose start is unknown in its plane, or half a turn
+    /// the shorter way.
     Undetermined,
+    /// The motion of a tool change to a position in machine coordinates, on a path that only the machine knows.
+    /// [Commanded](Step::commanded) axes move.
+    ToolChange(Position),
 }
 
 /// Reads a whole program: its steps, and the notes about it. [`Interpreter`] returns the steps one by one.

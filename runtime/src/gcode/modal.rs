@@ -40,27 +40,30 @@ pub(super) struct Modal {
     pub(super) motion: Option<Motion>,
     pub(super) plane: Plane,
     pub(super) unit: Unit,
+    /// Set by G20 and G21.
+    pub(super) unit_stated: bool,
     /// G91.
     pub(super) incremental: bool,
-    /// G90.1.
-    pub(super) absolute_centres: bool,
+    /// G90.1 or G91.1; `None` before either.
+    pub(super) absolute_centres: Option<bool>,
     pub(super) feed_mode: FeedMode,
     pub(super) feed: Option<f64>,
-    /// G99: canned cycles end in the plane R.
-    pub(super) retract_to_r: bool,
+    /// G99: canned cycles end in the plane R; `None` before G98 or G99.
+    pub(super) retract_to_r: Option<bool>,
 }
 
 impl Modal {
-    pub(super) fn new(unit: Unit) -> Modal {
+    pub(super) fn new() -> Modal {
         Modal {
             motion: None,
             plane: Plane::Xy,
-            unit,
+            unit: Unit::Millimetre,
+            unit_stated: false,
             incremental: false,
-            absolute_centres: false,
+            absolute_centres: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,
-            retract_to_r: false,
+            retract_to_r: None,
         }
     }
 

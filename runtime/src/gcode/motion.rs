@@ -6,7 +6,9 @@ use super::block::Block;
 use super::code::Group;
 use super::cycle::Cycle;
 use super::modal::{FeedMode, Modal, Motion};
-use super::note::{Notes, Subject};
+use super::note::Notes;
+use super::rules::{Choice, ControlRules, Rule};
+use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Step, StepPath};
 use std::collections::{BTreeMap, VecDeque};
@@ -14,6 +16,9 @@ use std::sync::Arc;
 
 /// Letters of the axes.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// The increment of angles, in degrees: nearer to half a turn a control may take either way.
+const ANGLE_INCREMENT: f64 = 1e-3;
 
 /// A control: everything that blocks change and motions depend on.
 #[derive(Debug)]
@@ -26,7 +31,7 @@ pub(super) struct Control {
     /// Origin and rotation of the work offsets.
     pub(super) origins: BTreeMap<WorkOffset, (Position, f64)>,
     pub(super) lengths: BTreeMap<u32, f64>,
-    home: Option<[f64; 6]>,
+    pub(super) home: Option<[f64; 6]>,
     second_home: Option<[f64; 6]>,
     /// Shift by G52.
     pub(super) local: [f64; 6],
@@ -44,6 +49,18 @@ pub(super) struct Control {
     /// The last tool vector of G43.5.
     pub(super) vector: Option<[f64; 3]>,
     pub(super) notes: Notes,
+    rules: ControlRules,
+    /// The rules that the program depends on, each with the first line.
+    pub(super) asked: BTreeMap<Rule, usize>,
+    pub(super) axes: [bool; 6],
+    endless: [bool; 3],
+    /// Where M6 leaves the axes, if the machine states it.
+    pub(super) change_position: Option<Position>,
+    /// Set once a work offset was selected.
+    pub(super) offset_stated: bool,
+    /// Set by G49, until the next tool change.
+    pub(super) length_cancelled: bool,
+    pub(super) spindle: SpindleWords,
     /// Steps that were not yet returned.
     pub(super) pending: VecDeque<Step>,
 }
@@ -67,7 +84,7 @@ impl Control {
         };
         Control {
             line: 0,
-            modal: Modal::new(setup.unit),
+            modal: Modal::new(),
             state: Arc::new(state),
             position: setup.start,
             origins,
@@ -83,8 +100,23 @@ impl Control {
             cycle: None,
             vector: None,
             notes: Notes::default(),
+            rules: setup.rules.clone(),
+            asked: BTreeMap::new(),
+            axes: setup.axes,
+            endless: setup.endless,
+            change_position: setup.tool_change,
+            offset_stated: false,
+            length_cancelled: false,
+            spindle: SpindleWords::default(),
             pending: VecDeque::new(),
         }
+    }
+
+    /// Returns what the control does under a rule, and notes that the program depends on it.
+    pub(super) fn choice(&mut self, rule: Rule) -> Choice {
+        self.asked.entry(rule).or_insert(self.line);
+        let first = || rule.choices().next().expect("a rule has choices");
+        self.rules.get(rule).unwrap_or_else(first)
     }
 
     /// Reads the motion mode.
@@ -163,12 +195,35 @@ impl Control {
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
         let (mut end, _, mut commanded) = self.take_end(block);
+        let mut path = StepPath::Line;
         if turns {
             end[3..].fill(None);
             commanded[3..].fill(true);
+        } else if self.turn_shorter(&end) {
+            path = StepPath::Undetermined;
         }
-        self.push(rapid, end, commanded, StepPath::Line);
+        self.push(rapid, end, commanded, path);
         Ok(())
+    }
+
+    /// Counts the present angles of endless axes so that the way to absolute ones is the shorter, if the control goes that
+    /// way. Returns whether one of them is half a turn away, where both ways are as short.
+    fn turn_shorter(&mut self, end: &Position) -> bool {
+        let mut is_half = false;
+        for axis in 3..6 {
+            let (Some(from), Some(to)) = (self.position[axis], end[axis]) else { continue };
+            let turn = to - from;
+            let is_long = turn.abs() >= 180.0 - ANGLE_INCREMENT;
+            if self.modal.incremental || !self.endless[axis - 3] || !is_long {
+                continue;
+            }
+            if self.choice(Rule::Rotary) == Choice::Shortest {
+                let shorter = turn - 360.0 * (turn / 360.0).round();
+                self.position[axis] = Some(to - shorter);
+                is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
+            }
+        }
+        is_half
     }
 
     /// Takes the tool vector under G43.5, and returns whether the block has one.
@@ -207,12 +262,16 @@ impl Control {
         }
         self.check_feed(word)?;
         self.check_tilted(block)?;
-        let length = |value: f64| self.modal.millimetres(value);
+        let modal = self.modal;
+        let length = |value: f64| modal.millimetres(value);
         let words = ArcWords {
             clockwise,
             plane: self.modal.plane,
             offsets: ['I', 'J', 'K'].map(|letter| block.take(letter).map(length)),
-            absolute: self.modal.absolute_centres,
+            absolute: match self.modal.absolute_centres {
+                Some(absolute) => absolute,
+                None => self.choice(Rule::Dialect) == Choice::Heidenhain,
+            },
             radius: block.take('R').map(length),
             turns: block
                 .take_whole('P', 1, 1_000_000, "a number of turns from 1 after P")?
@@ -278,7 +337,16 @@ impl Control {
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: "G53".to_owned(), needed: "an axis word" });
         }
-        self.move_machine(rapid, axes.map(|value| value.is_some()), axes);
+        let mut target = axes;
+        // The choice matters where both are known and differ.
+        let height = self.state.to_machine(self.position)[2].zip(self.state.length.length());
+        if let (Some(z), Some((_, length))) = (axes[2], height)
+            && length != 0.0
+            && self.choice(Rule::MachineCoordinates) == Choice::WithLength
+        {
+            target[2] = Some(z + length);
+        }
+        self.move_machine(rapid, axes.map(|value| value.is_some()), target);
         Ok(())
     }
 
@@ -305,10 +373,15 @@ impl Control {
         if named.contains(&true) {
             self.push(true, end, commanded, StepPath::Line);
         } else {
-            named = [true; 6];
+            named = self.axes;
         }
         let home = if word == "G28" { self.home } else { self.second_home };
         self.move_machine(true, named, home.map_or([None; 6], |home| home.map(Some)));
+        if self.state.length != LengthOffset::Off
+            && self.choice(Rule::ReferenceReturn) == Choice::CancelsLength
+        {
+            self.cancel_length();
+        }
         Ok(())
     }
 
@@ -347,12 +420,10 @@ impl Control {
         path: StepPath,
     ) {
         let start = std::mem::replace(&mut self.position, end);
-        let is_long = |axis: usize| {
-            start[axis].zip(end[axis]).is_some_and(|(start, end)| (end - start).abs() > 180.0)
+        let spindle = match self.modal.motion {
+            Some(Motion::Cycle(74 | 84)) => Spindle::Tapping,
+            _ => self.spindle(rapid),
         };
-        if (3..6).any(is_long) {
-            self.notes.add(self.line, Subject::LongTurn);
-        }
         let state = Arc::clone(&self.state);
         let (line, tool_vector) = (self.line, self.vector);
         self.pending.push_back(Step {
@@ -363,6 +434,7 @@ impl Control {
             commanded,
             path,
             tool_vector,
+            spindle,
             state,
         });
     }

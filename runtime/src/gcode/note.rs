@@ -34,21 +34,14 @@ pub enum NoteKind {
     ToolChange,
     /// A stop, at which an operator can move the tool.
     Stop,
-    /// Coordinates without a decimal point. They are read as whole millimetres, inches or degrees; a control
-    /// can be set to read them as increments of 0.001.
-    WholeNumbers,
     /// A block that begins with `/`, and was executed.
     ExecutedOptionalBlock,
     /// A block that begins with `/`, and was left out.
     OmittedOptionalBlock,
-    /// A canned cycle that begins below its plane R. The tool is raised first, as by LinuxCNC; other controls
-    /// move sideways first.
-    CycleFromBelow,
-    /// A rotary axis that turns by more than half a turn in one block. A control can be set to take the
-    /// shorter way.
-    LongTurn,
     /// Text after the end of the program, which is not read.
     TextAfterEnd,
+    /// Another program in the file, which is not read.
+    OtherProgram,
 }
 
 impl fmt::Display for ProgramNote {
@@ -71,19 +64,13 @@ impl fmt::Display for NoteKind {
             }
             NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
             NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),
-            NoteKind::WholeNumbers => {
-                f.write_str("coordinates without a decimal point are read as whole units")
-            }
             NoteKind::ExecutedOptionalBlock => f.write_str("an optional block (/) is executed"),
             NoteKind::OmittedOptionalBlock => f.write_str("an optional block (/) is left out"),
-            NoteKind::CycleFromBelow => {
-                f.write_str("the cycle begins below R: the tool is raised before it moves sideways")
-            }
-            NoteKind::LongTurn => {
-                f.write_str("a rotary axis turns by more than 180 degrees in one block")
-            }
             NoteKind::TextAfterEnd => {
                 f.write_str("the text after the end of the program is not read")
+            }
+            NoteKind::OtherProgram => {
+                f.write_str("another program begins here, and is not checked: give a file per program")
             }
         }
     }
@@ -96,12 +83,10 @@ pub(super) enum Subject {
     RoundedCorners(Code),
     ToolChange,
     Stop,
-    WholeNumbers,
     ExecutedOptionalBlock,
     OmittedOptionalBlock,
-    CycleFromBelow,
-    LongTurn,
     TextAfterEnd,
+    OtherProgram,
 }
 
 /// The notes of a program.
@@ -140,12 +125,10 @@ impl Subject {
             Subject::RoundedCorners(code) => NoteKind::RoundedCorners { word: code.to_string() },
             Subject::ToolChange => NoteKind::ToolChange,
             Subject::Stop => NoteKind::Stop,
-            Subject::WholeNumbers => NoteKind::WholeNumbers,
             Subject::ExecutedOptionalBlock => NoteKind::ExecutedOptionalBlock,
             Subject::OmittedOptionalBlock => NoteKind::OmittedOptionalBlock,
-            Subject::CycleFromBelow => NoteKind::CycleFromBelow,
-            Subject::LongTurn => NoteKind::LongTurn,
             Subject::TextAfterEnd => NoteKind::TextAfterEnd,
+            Subject::OtherProgram => NoteKind::OtherProgram,
         }
     }
 }

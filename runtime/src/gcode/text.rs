@@ -1,5 +1,7 @@
 //! The lines of a program text, and its end.
 
+use super::block::Block;
+use super::expression::Parameters;
 use super::label::Place;
 
 /// Returns the line at a place, and the place after it. Lines may end in LF, CRLF or a lone CR.
@@ -36,6 +38,12 @@ fn is_empty(line: &str) -> bool {
         || line.starts_with('(') && line.find(')') == Some(line.len() - 1)
 }
 
+/// Reads a line on its own, as far as it depends on no parameter.
+pub(super) fn block(line: &str) -> Option<Block> {
+    let mut block = Block::default();
+    block.parse(line, &mut Parameters::default()).ok().map(|()| block)
+}
+
 /// The extent of a program in its file.
 #[derive(Debug)]
 pub(super) struct Extent<'a> {
@@ -45,8 +53,8 @@ pub(super) struct Extent<'a> {
     pub(super) start: Place,
     /// Set if `%` ends the program.
     pub(super) closed: bool,
-    /// The line of the first text after it.
-    pub(super) left_out: Option<usize>,
+    /// The line of the first text after it, and whether there are blocks in that text.
+    pub(super) left_out: Option<(usize, bool)>,
 }
 
 /// Finds the first line and the end of a program.
@@ -58,8 +66,8 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
     while let Some((found, after)) = line(text, place) {
         if extent.closed {
             if !found.trim().is_empty() && !is_percent(found, false) {
-                extent.left_out = Some(place.line);
-                break;
+                let (_, has_blocks) = extent.left_out.get_or_insert((place.line, false));
+                *has_blocks |= block(found).is_some_and(|block| block.has_effect());
             }
         } else if is_percent(found, is_first) {
             if is_first {

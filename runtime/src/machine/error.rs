@@ -48,6 +48,11 @@ pub enum MachineFault {
     /// The name is empty or has a control character.
     #[error("the name is empty or has a control character: give the machine a name of one line")]
     Name,
+    /// The position of a tool change is none.
+    #[error(
+        "`tool_change` is \"stays\", or finite joint values of axes of the machine, such as {{ Z = 0 }}"
+    )]
+    ToolChange,
     /// An axis is given twice.
     #[error("axis {letter} is given again, first in line {first}: remove one of them")]
     Repeated {

@@ -4,6 +4,7 @@ use super::chain::is_within;
 use super::{Axis, Letter, MAX_DEGREES, MAX_LENGTH, Machine, MachineError, MachineFault, Side};
 use nalgebra::{Point3, Vector3};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -16,7 +17,16 @@ const SMALLEST_SINE: f64 = 1e-3;
 #[serde(deny_unknown_fields)]
 struct MachineFile {
     name: Spanned<String>,
+    tool_change: Option<Spanned<ToolChangeEntry>>,
     axis: Vec<Spanned<AxisEntry>>,
+}
+
+/// Where M6 leaves the axes: `"stays"`, or joint values by letter.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum ToolChangeEntry {
+    Word(String),
+    Position(BTreeMap<Letter, f64>),
 }
 
 /// The keys of an `[[axis]]`.
@@ -51,7 +61,9 @@ pub(super) fn parse(text: &str, file: &str) -> Result<Machine, MachineError> {
     });
     let assembled = parsed.and_then(|parsed| {
         let name = name(parsed.name)?;
-        Ok(Machine { name, axes: axes(text, &parsed.axis)? })
+        let axes = axes(text, &parsed.axis)?;
+        let tool_change = parsed.tool_change.map(|entry| tool_change(entry, &axes)).transpose()?;
+        Ok(Machine { name, axes, tool_change })
     });
     let machine = assembled.map_err(|(span, fault)| MachineError::Line {
         file: file.to_owned(),
@@ -76,6 +88,29 @@ fn name(name: Spanned<String>) -> Result<String, Located> {
         return Err((span, MachineFault::Name));
     }
     Ok(name)
+}
+
+/// Returns the joint values after a tool change, of the axes that it moves.
+fn tool_change(
+    entry: Spanned<ToolChangeEntry>,
+    axes: &[Axis],
+) -> Result<[Option<f64>; 6], Located> {
+    let span = entry.span();
+    let values = match entry.into_inner() {
+        ToolChangeEntry::Word(word) if word == "stays" => BTreeMap::new(),
+        ToolChangeEntry::Word(_) => return Err((span, MachineFault::ToolChange)),
+        ToolChangeEntry::Position(values) => values,
+    };
+    let mut joints = [None; 6];
+    for (letter, value) in values {
+        let bound = if letter.is_rotary() { MAX_DEGREES } else { MAX_LENGTH };
+        let is_known = axes.iter().any(|axis| axis.letter == letter);
+        if !is_known || !is_within(value, bound) {
+            return Err((span, MachineFault::ToolChange));
+        }
+        joints[letter.index()] = Some(value);
+    }
+    Ok(joints)
 }
 
 /// Checks the axes one by one, each against those before it.

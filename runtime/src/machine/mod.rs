@@ -15,6 +15,10 @@
 //! | `point` | rotary only: a point of the axis in machine coordinates, with all axes at 0 |
 //! | `limits` | optional: least and greatest joint value |
 //! | `home` | optional: joint value of the reference position, for G28 |
+//! | `rapid` | optional, for all axes or none: speed in rapid traverse, in mm or degrees per minute |
+//!
+//! The file can state `tool_change`: `"stays"` if M6 leaves the axes where they are, or the joint values at which it leaves
+//! axes, such as `{ Z = 0 }`; axes that are not named stay. Without it, the control's rules decide.
 //!
 //! Linear axes move along the machine coordinate of their letter, and no rotary axis carries one. Directions
 //! are those of ISO 841, also for axes of the table: a positive command turns such a table clockwise. A
@@ -98,7 +102,7 @@ const LIBRARY: [(&str, &str); 5] = [
 ];
 
 /// The letter of an axis (ISO 841).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[allow(missing_docs)]
 pub enum Letter {
     X,
@@ -166,6 +170,7 @@ pub struct Axis {
 pub struct Machine {
     name: String,
     axes: Vec<Axis>,
+    tool_change: Option<[Option<f64>; 6]>,
 }
 
 impl Machine {
@@ -210,6 +215,11 @@ impl Machine {
         }
     }
 
+    /// Returns the file of a machine of the library, as text.
+    pub fn file(name: &str) -> Option<&'static str> {
+        LIBRARY.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+    }
+
     /// Returns the names of the machines that come with the library.
     pub fn names() -> impl Iterator<Item = &'static str> {
         LIBRARY.iter().map(|(name, _)| *name)
@@ -233,6 +243,12 @@ impl Machine {
     /// Returns the joint values of the reference position, in mm and degrees, as far as the file states them.
     pub fn home(&self) -> [Option<f64>; 6] {
         Letter::ALL.map(|letter| self.axis(letter).and_then(|axis| axis.home))
+    }
+
+    /// Returns the joint values, in mm and degrees, at which a tool change leaves the axes: `None` for an axis that stays.
+    /// `None` for all if the file does not state it.
+    pub fn tool_change(&self) -> Option<[Option<f64>; 6]> {
+        self.tool_change
     }
 
     /// Returns the chain from the workpiece to the tool's tip.

@@ -1,7 +1,7 @@
 //! Closest approach of a program to the part. A program for another location or in another unit gouges nothing,
 //! but stays far from the part.
 
-use super::moves::{self, Move, MovePath};
+use super::moves::{self, Move, MovePath, RapidBox};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use crate::certify::Certifier;
 use crate::interval::Interval;
@@ -140,7 +140,9 @@ impl<'a> ApproachSearch<'a> {
         if let Some(clearance) = self.clearance {
             let over_motion = match (&step.path, last) {
                 // An ambiguous motion is a finding; only its end is checked.
-                (MovePath::Ambiguous(..), _) | (_, None) => Some(bound),
+                (MovePath::Ambiguous(..), _) => Some(bound),
+                (MovePath::Box(path), _) => self.around(path, (step.line, MAX_HALVINGS)),
+                (_, None) => Some(bound),
                 (path, Some((first, _))) => {
                     let span = Span { times: [0.0, 1.0], lower_bounds: [first, bound], max_travel };
                     self.span(path, span, (step.line, MAX_HALVINGS))
@@ -150,6 +152,24 @@ impl<'a> ApproachSearch<'a> {
             self.clearance = clearance.filter(|bound| *bound > self.diameter);
         }
         self.last = Some((bound, end));
+    }
+
+    /// Returns a lower bound on the distance over a box of poses, as [`ApproachSearch::span`] does.
+    fn around(&mut self, path: &RapidBox, (line, halvings): (usize, u32)) -> Option<f64> {
+        let middle = path.pose(0.5);
+        let low = self.query(&middle, line);
+        let size = middle.tip().coords.norm() + path.radius() + low;
+        let bound = low - path.radius() - 8.0 * f64::EPSILON * size;
+        if bound >= (1.0 - TOLERANCE_FRACTION) * self.distance && bound > self.diameter {
+            return Some(bound);
+        }
+        if self.distance <= self.diameter {
+            return None;
+        }
+        let halvings = halvings.checked_sub(1)?;
+        let [one, other] = path.halves();
+        let one = self.around(&one, (line, halvings))?;
+        Some(one.min(self.around(&other, (line, halvings))?))
     }
 
     /// Returns the closest approach of the motions that were added.
@@ -207,7 +227,9 @@ impl<'a> ApproachSearch<'a> {
         let travels = match path {
             MovePath::Joints(joints) => [[from, middle], [middle, to]]
                 .map(|times| moves::span(joints, times, self.reach, self.symmetry).max_travel),
-            MovePath::Straight(_) | MovePath::Ambiguous(..) => [0.5 * max_travel; 2],
+            MovePath::Straight(_) | MovePath::Box(_) | MovePath::Ambiguous(..) => {
+                [0.5 * max_travel; 2]
+            }
         };
         let before = Span {
             times: [from, middle],
@@ -228,6 +250,7 @@ const CHORDS: u32 = 16;
 fn path_length(path: &MovePath) -> f64 {
     match path {
         MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.displacement().norm(),
+        MovePath::Box(path) => 2.0 * path.radius(),
         MovePath::Joints(joints) => {
             let tips = (0..=CHORDS).map(|k| joints.pose(f64::from(k) / f64::from(CHORDS)).tip());
             let tips: Vec<Point3<f64>> = tips.collect();

@@ -1,6 +1,6 @@
 //! The check of motions one after another.
 
-use super::moves::{self, JointPath, Move, MovePath, Span};
+use super::moves::{self, JointPath, Move, MovePath, RapidBox, Span};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use crate::certify::{Certifier, MotionDepth, MotionVerdict};
 use crate::id::SurfaceId;
@@ -9,6 +9,7 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tool::Symmetry;
 use std::cmp::Ordering;
+use std::collections::VecDeque;
 use std::mem;
 
 /// Checks motions one after another.
@@ -37,6 +38,9 @@ const DEVIATION_SHARE: f64 = 0.25;
 
 /// Largest number of halvings of a joint motion. A span that is still too inaccurate is undecided.
 const MAX_HALVINGS: u32 = 24;
+
+/// Largest number of pieces of a box that are halved.
+const MAX_PIECES: usize = 1 << 14;
 
 impl<'a> Checker<'a> {
     pub(super) fn new(
@@ -69,6 +73,16 @@ impl<'a> Checker<'a> {
     /// Returns the findings of a motion, `index` being its number in the program.
     pub(super) fn check(&mut self, index: usize, step: &Move) -> Vec<Finding> {
         let mut found = Vec::new();
+        let finding = |time, pose, kind, any_rates| Finding {
+            location: index,
+            line: step.line,
+            from: step.from,
+            rapid: step.rapid,
+            time,
+            pose,
+            any_rates,
+            kind,
+        };
         match &step.path {
             MovePath::Straight(motion) => {
                 let margin = self.modes[usize::from(step.rapid)].margin;
@@ -87,22 +101,74 @@ impl<'a> Checker<'a> {
                 let task = (step.rapid, resolution);
                 self.joints(task, joints, ([0.0, 1.0], MAX_HALVINGS), &mut found);
             }
+            MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
+                Ok(straight) => {
+                    found = self.motion(true, &straight);
+                    if found.is_empty() {
+                        let found = self.rapid_box(path).into_iter();
+                        return found.map(|(pose, kind)| finding(0.5, pose, kind, true)).collect();
+                    }
+                }
+                Err(error) => found.push((1.0, FindingKind::Ambiguous(error))),
+            },
             MovePath::Ambiguous(error, rest) => {
                 found.push((1.0, FindingKind::Ambiguous(*error)));
                 found
                     .extend(self.motion(step.rapid, rest).into_iter().map(|(_, kind)| (1.0, kind)));
             }
         }
-        let finding = |(time, kind)| Finding {
-            location: index,
-            line: step.line,
-            from: step.from,
-            rapid: step.rapid,
-            time,
-            pose: step.path.pose(time),
-            kind,
-        };
-        found.into_iter().map(finding).collect()
+        let on_path = |(time, kind)| finding(time, step.path.pose(time), kind, false);
+        found.into_iter().map(on_path).collect()
+    }
+
+    /// Returns the findings of rapid traverse through any poses of a box, each with its pose.
+    ///
+    /// The box is halved until each piece is proved: around the pose in its middle the tool is in free space, or no deeper
+    /// than allowed by more than a pose in the piece is away from the middle. It ends at a pose in the middle of a piece
+    /// that is a finding by itself. A piece that would need more than [`MAX_PIECES`] is undecided.
+    fn rapid_box(&mut self, path: &RapidBox) -> Vec<(Pose, FindingKind)> {
+        let margin = self.modes[1].margin;
+        let lipschitz = self.verifier.lipschitz();
+        let mut open = VecDeque::from([path.clone()]);
+        let mut count = 0;
+        while let Some(piece) = open.pop_front() {
+            let middle = piece.pose(0.5);
+            // Every pose is within the radius of the middle; its coordinates are rounded.
+            let size = middle.tip().coords.norm() + 2.0 * piece.radius();
+            let radius = piece.radius() + 16.0 * f64::EPSILON * size;
+            self.free_space.wait = 0;
+            if self.free_space.contains([middle, middle], radius, margin) {
+                continue;
+            }
+            let found = match Motion::with_spin(&middle, &middle) {
+                Ok(rest) => self.motion(true, &rest),
+                Err(error) => vec![(0.5, FindingKind::Ambiguous(error))],
+            };
+            if !found.is_empty() {
+                let spread = 2.0 * path.radius() * lipschitz;
+                let over_box = |(_, mut kind)| {
+                    match &mut kind {
+                        FindingKind::Deep { max_depth, .. } => *max_depth += spread,
+                        FindingKind::Near { min_distance, .. } => {
+                            *min_distance = (*min_distance - spread).max(0.0);
+                        }
+                        _ => (),
+                    }
+                    (middle, kind)
+                };
+                return found.into_iter().map(over_box).collect();
+            }
+            if radius * lipschitz <= self.verifier.resolution {
+                continue;
+            }
+            count += 1;
+            if count > MAX_PIECES {
+                let undecided = |k| (middle, FindingKind::Undecided { surface: SurfaceId(k) });
+                return (0..self.verifier.allowed.len()).map(undecided).collect();
+            }
+            open.extend(piece.halves());
+        }
+        Vec::new()
     }
 
     fn motion(&mut self, rapid: bool, motion: &Motion) -> Vec<(f64, FindingKind)> {

@@ -74,6 +74,9 @@ pub struct Finding {
     pub time: f64,
     /// Pose of the tool at that time, in the part's frame and unit.
     pub pose: Pose,
+    /// Set in rapid traverse whose axes move at rates that are not known: the pose is on the path at some rates, and not on the
+    /// straight one.
+    pub any_rates: bool,
     /// The kind of violation.
     pub kind: FindingKind,
 }

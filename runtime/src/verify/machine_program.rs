@@ -7,31 +7,42 @@
 //! The frame of the part is that of one work offset, when the rotary axes stand at its values. A motion whose start or
 //! end only the machine knows is not checked, and listed.
 
-use super::moves::{JointPath, Move, MovePath};
-use crate::gcode::{ControlSetup, GcodeError, Interpreter, ProgramNote, Step};
+use super::moves::{JointPath, Move, MovePath, RapidBox};
+use crate::gcode::{
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule, Spindle,
+    Step, WorkOffset,
+};
 use crate::machine::{
     JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
 };
 use crate::motion::Motion;
 use crate::unit::Unit;
 use nalgebra::Vector3;
-use resolve::{Resolved, Resolver};
+use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 mod fault;
+mod gap;
 mod path;
 mod rapid;
 mod resolve;
 
 pub use fault::{MachineProgramError, StepFault};
+pub use gap::Gap;
+pub use resolve::UnknownCause;
 
-/// A G-code program on a machine.
+/// Largest number of readings of a program.
+pub const MAX_READINGS: usize = 8;
+
+/// A G-code program on a machine, as one control reads it.
 #[derive(Clone, Debug)]
 pub struct MachineProgram {
     file: String,
-    text: String,
-    machine: Machine,
+    text: Arc<str>,
+    machine: Arc<Machine>,
     setup: ControlSetup,
+    assumed: ControlRules,
     summary: MachineSummary,
 }
 
@@ -41,23 +52,41 @@ pub struct MachineProgram {
 pub struct MachineSummary {
     /// The tools in the order of their first motion that is checked.
     pub tools: Vec<ToolUse>,
-    /// Motions that are not checked, since only the machine knows where they start or end, or what positions mean.
-    pub unknown: Option<UnknownMotions>,
+    /// Tools with motions of which none is checked, each with the line of its first.
+    pub unchecked_tools: Vec<(Option<u32>, usize)>,
+    /// Motions that are not checked, by their cause.
+    pub unknown: Vec<UnknownMotions>,
+    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
+    pub any_rapid: Option<usize>,
+    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
+    pub any_rotary_rapid: Option<usize>,
+    /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
+    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
+    /// The line of the first feed without a tool length offset in a program that names no tool.
+    pub no_offset: Option<usize>,
+    /// The work offsets of motions at feed rate, each with the line of the first.
+    pub work_offsets: Vec<(WorkOffset, usize)>,
+    /// Rules of the control on which the program depends and which are not stated, each with the first line.
+    pub open_rules: BTreeMap<Rule, usize>,
     /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
     pub other_lengths: Vec<(usize, u32, u32)>,
-    /// Axes that leave their limits, each with its line: the worst per axis and limit. Empty if the origin of the part on
-    /// the machine is not given.
+    /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
+    /// origin of the part on the machine is given.
     pub limits: Vec<(usize, LimitViolation)>,
+    /// Set if the machine states limits of X, Y or Z that are not checked.
+    pub limits_unchecked: bool,
     /// Singular passes, each with its line.
     pub singular: Vec<(usize, SingularPass)>,
     /// Notes of the interpreter.
     pub notes: Vec<ProgramNote>,
 }
 
-/// Motions that are not checked.
+/// Motions that are not checked for one cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnknownMotions {
+    /// The cause.
+    pub cause: UnknownCause,
     /// Their number.
     pub count: usize,
     /// The line of the first.
@@ -100,9 +129,13 @@ impl ToolSelection {
 impl MachineProgram {
     /// Interprets a program on a machine. `name` is the program's name in errors.
     ///
-    /// `setup` states work offsets and tool lengths. The frame of the part is that of G54. If its origin on the machine is
-    /// not given, the machine's home and limits have no part, and the table may turn under tool centre point control
-    /// only. If the length of a tool is not given, the tip is where the program says.
+    /// `setup` states work offsets, tool lengths, and the rules of the control. The frame of the part is that of G54. If its
+    /// origin on the machine is not given, the machine's home and the limits of X, Y and Z have no part, and the table may
+    /// turn under tool centre point control only. If the length of a tool is not given, the tip is where the program says
+    /// under a length offset.
+    ///
+    /// Of a rule that is not stated, M6 moves the axes where only the machine knows, axes in rapid traverse move at any
+    /// rates, and the first choice is made otherwise. [`MachineProgram::readings`] makes the others too.
     ///
     /// # Errors
     /// If a line stops the interpreter, or if a motion is not possible on the machine.
@@ -110,8 +143,70 @@ impl MachineProgram {
         name: &str,
         text: String,
         machine: Machine,
-        mut setup: ControlSetup,
+        setup: ControlSetup,
     ) -> Result<MachineProgram, MachineProgramError> {
+        let read = (Arc::from(text), Arc::new(machine));
+        MachineProgram::reading(name, read, setup, ControlRules::default())
+    }
+
+    /// Interprets a program in every way in which a control does, as far as its rules are not stated: a program per
+    /// combination of the choices on which it depends. A result holds if it holds for all.
+    ///
+    /// # Errors
+    /// As for [`MachineProgram::new`], and if there are more than [`MAX_READINGS`].
+    pub fn readings(
+        name: &str,
+        text: String,
+        machine: Machine,
+        setup: &ControlSetup,
+    ) -> Result<Vec<MachineProgram>, MachineProgramError> {
+        let (text, machine): (Arc<str>, _) = (Arc::from(text), Arc::new(machine));
+        let mut branched: BTreeMap<Rule, usize> = BTreeMap::new();
+        loop {
+            let mut assumed = vec![ControlRules::default()];
+            for rule in branched.keys() {
+                let choices = |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
+                assumed = assumed.into_iter().flat_map(choices).collect();
+            }
+            if assumed.len() > MAX_READINGS {
+                let rules = branched.iter().map(|(rule, line)| format!("`{}` (line {line})", rule.key()));
+                let rules = rules.collect::<Vec<_>>().join(", ");
+                return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
+            }
+            let read = |assumed: ControlRules| {
+                let read = (Arc::clone(&text), Arc::clone(&machine));
+                MachineProgram::reading(name, read, setup.clone(), assumed)
+            };
+            let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+            let known = branched.len();
+            for program in &programs {
+                let open = program.summary.open_rules.iter().filter(|(rule, _)| is_branched(**rule));
+                for (rule, line) in open {
+                    branched.entry(*rule).or_insert(*line);
+                }
+            }
+            if branched.len() == known {
+                return Ok(programs);
+            }
+        }
+    }
+
+    /// Interprets a program under the rules of the setup and those that are assumed besides.
+    fn reading(
+        name: &str,
+        (text, machine): (Arc<str>, Arc<Machine>),
+        mut setup: ControlSetup,
+        assumed: ControlRules,
+    ) -> Result<MachineProgram, MachineProgramError> {
+        let stated = setup.rules.clone();
+        setup.rules = stated.clone().and(&assumed);
+        if setup.rules.get(Rule::ToolChange).is_none() {
+            setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
+        }
+        setup.axes = Letter::ALL.map(|letter| machine.axis(letter).is_some());
+        setup.endless = [Letter::A, Letter::B, Letter::C]
+            .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none()));
+        setup.tool_change = machine.tool_change();
         let is_placed = setup.work_offsets[0].is_some();
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
         setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
@@ -119,10 +214,20 @@ impl MachineProgram {
             setup.home = Some(machine.home().map(Option::unwrap_or_default));
         }
         let file = name.to_owned();
-        let mut program =
-            MachineProgram { file, text, machine, setup, summary: MachineSummary::default() };
-        program.summary = program.run(is_placed)?;
+        let summary = MachineSummary::default();
+        let mut program = MachineProgram { file, text, machine, setup, assumed, summary };
+        program.summary = program.run(is_placed).map_err(|error| match program.assumed {
+            ref assumed if *assumed == ControlRules::default() => error,
+            ref assumed => MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() },
+        })?;
+        let is_open = |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
+        program.summary.open_rules.retain(|rule, _| is_open(rule));
         Ok(program)
+    }
+
+    /// Returns the rules that this reading assumes, since they are not stated.
+    pub fn assumed(&self) -> &ControlRules {
+        &self.assumed
     }
 
     /// Returns the summary of the program on its machine.
@@ -182,6 +287,7 @@ impl MachineProgram {
     fn run(&self, is_placed: bool) -> Result<MachineSummary, MachineProgramError> {
         let mut summary = MachineSummary::default();
         let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
+        let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
         let mut is_last_singular = false;
         let mut interpreter =
             Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
@@ -193,19 +299,29 @@ impl MachineProgram {
                 line: step.line,
                 fault,
             })?;
+            let number = step.state.tool;
+            if !matches!(resolved, Resolved::ToolChange) && !seen.iter().any(|(tool, _)| *tool == number) {
+                seen.push((number, step.line));
+            }
+            if !step.rapid {
+                summary.add_feed(&step);
+            }
             let motions = match resolved {
-                Resolved::Unknown | Resolved::Arrival(_) => {
-                    let unknown = UnknownMotions { count: 0, line: step.line, feed_line: None };
-                    let unknown = summary.unknown.get_or_insert(unknown);
-                    unknown.count += 1;
-                    if !step.rapid {
-                        unknown.feed_line.get_or_insert(step.line);
-                    }
+                Resolved::ToolChange => continue,
+                Resolved::Unknown(cause) | Resolved::Arrival(_, cause) => {
+                    summary.add_unknown(&step, cause);
                     continue;
                 }
                 Resolved::Motions(motions) => motions,
+                Resolved::AnyRapid(AnyRapid { straight, edges }) => {
+                    let found = match edges {
+                        Some(_) => &mut summary.any_rapid,
+                        None => &mut summary.any_rotary_rapid,
+                    };
+                    found.get_or_insert(step.line);
+                    vec![(straight, 0.0)]
+                }
             };
-            let number = step.state.tool;
             let index = *uses.entry(number).or_insert_with(|| {
                 summary.tools.push(ToolUse { number, line: step.line, motions: 0 });
                 summary.tools.len() - 1
@@ -219,8 +335,8 @@ impl MachineProgram {
             }
             for (motion, _) in &motions {
                 // Without a work offset, linear joints are known up to a displacement only.
-                let violations = if is_placed { motion.check_limits() } else { Vec::new() };
-                for violation in violations {
+                let is_known = |found: &LimitViolation| is_placed || found.letter.is_rotary();
+                for violation in motion.check_limits().into_iter().filter(is_known) {
                     add_violation(&mut summary.limits, step.line, violation);
                 }
                 let pass = motion.singular_pass();
@@ -231,7 +347,53 @@ impl MachineProgram {
             }
         }
         summary.notes = interpreter.notes();
+        summary.open_rules.clone_from(interpreter.asked());
+        let is_checked = |number: &Option<u32>| uses.contains_key(number);
+        summary.unchecked_tools = seen.into_iter().filter(|(tool, _)| !is_checked(tool)).collect();
+        let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
+        summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok(summary)
+    }
+}
+
+/// Returns whether each choice of a rule is a reading of its own. The others are judged by the choice that includes all.
+fn is_branched(rule: Rule) -> bool {
+    !matches!(
+        rule,
+        Rule::ToolChange | Rule::Rapid | Rule::Unit | Rule::StartOffset | Rule::Dialect
+    )
+}
+
+impl MachineSummary {
+    /// Notes what a motion at feed rate needs.
+    fn add_feed(&mut self, step: &Step) {
+        let tool = step.state.tool;
+        if step.spindle != Spindle::Tapping
+            && !self.spindle.iter().any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
+        {
+            self.spindle.push((step.line, tool, step.spindle));
+        }
+        if tool.is_none() && step.state.length == LengthOffset::Off {
+            self.no_offset.get_or_insert(step.line);
+        }
+        let offset = step.state.work_offset;
+        if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
+            self.work_offsets.push((offset, step.line));
+        }
+    }
+
+    fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
+        let position = self.unknown.iter().position(|known| known.cause == cause);
+        let position = position.unwrap_or_else(|| {
+            let motions = UnknownMotions { cause, count: 0, line: step.line, feed_line: None };
+            self.unknown.push(motions);
+            self.unknown.len() - 1
+        });
+        let unknown = &mut self.unknown[position];
+        unknown.count += 1;
+        if !step.rapid {
+            unknown.feed_line.get_or_insert(step.line);
+        }
     }
 }
 
@@ -272,6 +434,7 @@ fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usiz
         from,
         rapid: step.rapid,
         tool: step.state.tool,
+        work_offset: Some(step.state.work_offset),
         path,
     };
     let rest = |motion: JointMotion, at: f64| {
@@ -279,8 +442,20 @@ fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usiz
         Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
     };
     match resolved {
-        Resolved::Unknown => Vec::new(),
-        Resolved::Arrival(motion) => {
+        Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
+        Resolved::AnyRapid(AnyRapid { straight, edges: None }) => {
+            moves_of(step, Resolved::Motions(vec![(straight, 0.0)]), frame, from)
+        }
+        Resolved::AnyRapid(AnyRapid { straight, edges: Some(edges) }) => {
+            let start = from.is_none().then(|| rest(straight.clone(), 0.0)).flatten();
+            let start = start.map(|path| as_move(None, path));
+            let corner = path(straight, 0.0).pose(0.0);
+            let way = |edge: JointMotion| path(edge, 0.0).pose(1.0).tip() - corner.tip();
+            let ways = edges.into_iter().map(way).collect();
+            let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
+            start.into_iter().chain([as_move(Some(from.unwrap_or(step.line)), all)]).collect()
+        }
+        Resolved::Arrival(motion, _) => {
             rest(*motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
         }
         Resolved::Motions(motions) => {

@@ -35,10 +35,10 @@ pub use approach::Approach;
 pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
 pub use group::FindingGroup;
 pub use machine_program::{
-    MachineProgram, MachineProgramError, MachineSummary, StepFault, ToolSelection, ToolUse,
-    UnknownMotions,
+    Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault, ToolSelection, ToolUse,
+    UnknownCause, UnknownMotions,
 };
-pub use moves::{JointPath, Move, MovePath};
+pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;
 
 use crate::certify::{Certifier, TriangleBvh};
@@ -246,6 +246,16 @@ impl<'a> Verifier<'a> {
             inside_known: self.bvh.has_inside(),
             unrestricted: count > 0 && !self.restricts(modes, &max_depths),
         })
+    }
+
+    /// Returns the closest approach of motions, without a check of their depths.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub fn approach(&self, moves: impl IntoIterator<Item = Move>) -> Result<Approach, VerifyError> {
+        let mut approach = ApproachSearch::new(self)?;
+        moves.into_iter().for_each(|step| approach.add(&[step], &[]));
+        Ok(approach.finish())
     }
 
     /// Returns the greatest depth that each surface can have.

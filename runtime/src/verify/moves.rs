@@ -1,5 +1,6 @@
 //! The motions of a program, each with its place in the file.
 
+use crate::gcode::WorkOffset;
 use crate::machine::JointMotion;
 use crate::motion::{Motion, MotionError};
 use crate::pose::Pose;
@@ -21,6 +22,8 @@ pub struct Move {
     pub rapid: bool,
     /// Number of the tool in the spindle, if the program states it.
     pub tool: Option<u32>,
+    /// The work offset, in a program on a machine.
+    pub work_offset: Option<WorkOffset>,
     /// The path of the tool, in the frame and unit of the part.
     pub path: MovePath,
 }
@@ -32,8 +35,50 @@ pub enum MovePath {
     Straight(Motion),
     /// The control interpolates the axes of a machine.
     Joints(Box<JointPath>),
+    /// Each axis moves at a rate that is not known.
+    Box(Box<RapidBox>),
     /// The rotation is ambiguous. Only the end is known, as a motion of length 0.
     Ambiguous(MotionError, Motion),
+}
+
+/// The poses of a tool that moves without turning from one position to another, on any path on which each axis moves at
+/// a constant rate until it arrives: those of a box, which the ways of the axes span.
+#[derive(Clone, Debug)]
+pub struct RapidBox {
+    start: Pose,
+    /// The way of each axis, in the frame and unit of the part. They are orthogonal.
+    edges: Vec<Vector3<f64>>,
+}
+
+impl RapidBox {
+    /// Creates the box at a pose with the ways of up to three axes, which are orthogonal.
+    pub fn new(start: Pose, edges: Vec<Vector3<f64>>) -> RapidBox {
+        RapidBox { start, edges }
+    }
+
+    fn at(&self, tip: Point3<f64>) -> Pose {
+        Pose::turned(*self.start.rotation(), tip, true)
+    }
+
+    /// Returns the pose at a fraction of every way.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        self.at(self.start.tip() + fraction * self.edges.iter().sum::<Vector3<f64>>())
+    }
+
+    /// Returns an upper bound on the distance of the box's poses from that in its middle, without rounding.
+    pub(super) fn radius(&self) -> f64 {
+        0.5 * self.edges.iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
+    }
+
+    /// Returns both halves of the box, divided across its longest way.
+    pub(super) fn halves(&self) -> [RapidBox; 2] {
+        let mut half = self.clone();
+        let longest = half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
+        let Some(longest) = longest else { return [half.clone(), half] };
+        *longest *= 0.5;
+        let middle = self.start.tip() + *longest;
+        [half.clone(), RapidBox { start: self.at(middle), ..half }]
+    }
 }
 
 /// A joint motion in the unit of the part.
@@ -114,7 +159,8 @@ impl Move {
                 MovePath::Ambiguous(error, rest.expect("a pose with a spin, if the tool needs one"))
             }
         };
-        Move { line: to.line, from: from.map(|from| from.line), rapid: to.rapid, tool: None, path }
+        let from = from.map(|from| from.line);
+        Move { line: to.line, from, rapid: to.rapid, tool: None, work_offset: None, path }
     }
 }
 
@@ -124,6 +170,7 @@ impl MovePath {
         match self {
             MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.pose(fraction),
             MovePath::Joints(path) => path.pose(fraction),
+            MovePath::Box(path) => path.pose(fraction),
         }
     }
 
@@ -133,6 +180,7 @@ impl MovePath {
         match self {
             MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
             MovePath::Joints(path) => path.motion.max_speed(reach / path.scale) * path.scale,
+            MovePath::Box(path) => 2.0 * path.radius(),
         }
     }
 
@@ -141,6 +189,7 @@ impl MovePath {
         match self {
             MovePath::Straight(motion) => travel(motion, reach),
             MovePath::Joints(path) => span(path, [0.0, 1.0], reach, symmetry).max_travel,
+            MovePath::Box(path) => 2.0 * path.radius(),
             MovePath::Ambiguous(..) => f64::INFINITY,
         }
     }

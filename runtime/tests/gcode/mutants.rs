@@ -4,7 +4,7 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
-use touchoff::gcode::{ControlSetup, Interpreter};
+use touchoff::gcode::{Choice, ControlRules, ControlSetup, Interpreter, Rule};
 
 const THREE_AXES: &str = "%\nO1000 (PLATE)\nN10 G17 G21 G40 G49 G80 G90 G94 G98\nN20 G91 G28 Z0.\nN30 T1 M6\n\
     N40 G54 G90 G0 X10. Y10. S3000 M3\nN50 G43 H1 Z50. M8\nN60 G99 G81 R2. Z-12.5 F150.\nN70 X20.\nN80 G98 Y20.\n\
@@ -90,7 +90,10 @@ fn setups() -> [ControlSetup; 2] {
         home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
         ..ControlSetup::default()
     };
-    [ControlSetup { block_delete: true, ..known }, ControlSetup::default()]
+    let rules = ControlRules::named("haas").expect("a control");
+    let rules = rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
+    let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
+    [ControlSetup { rules, ..known }, ControlSetup::default()]
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use crate::common::{folder, text};
 use touchoff::gcode::{
-    ControlSetup, GcodeError, Interpreter, NoteKind, Position, Step, StepPath, Tcp, read,
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, NoteKind, Position, Rule, Step, StepPath, Tcp,
+    read,
 };
 
 fn at_zero() -> ControlSetup {
@@ -318,15 +319,13 @@ fn notes_name_what_is_left_to_the_control() {
         (2, 2, passed("M8")),
         (2, 1, passed("S")),
         (3, 1, NoteKind::ExecutedOptionalBlock),
-        (3, 2, NoteKind::WholeNumbers),
         (4, 1, NoteKind::ToolChange),
-        (5, 1, NoteKind::LongTurn),
         (6, 1, NoteKind::Stop),
         (10, 1, NoteKind::TextAfterEnd),
     ] {
         assert!(kinds.contains(&expected), "{expected:?} is not in {kinds:?}");
     }
-    assert_eq!(kinds.len(), 9, "{kinds:?}");
+    assert_eq!(kinds.len(), 7, "{kinds:?}");
     // Text after M30 that is no subprogram, and Fanuc's path modes, on and off.
     let program = "G5.1 Q1\nG5.1 Q0\nG8 P0\nG61\nM30\n(end)\n\nG0 X1\n";
     let (_, notes) = read(program, &at_zero()).expect("a program");
@@ -345,7 +344,10 @@ fn notes_name_what_is_left_to_the_control() {
     }
     let (_, notes) = read("M30\n(end)\nN5 O7\nG0 X1\nM99\n", &at_zero()).expect("a program");
     assert_eq!(notes, []);
-    let setup = ControlSetup { block_delete: true, ..at_zero() };
+    let setup = ControlSetup {
+        rules: ControlRules::default().with(Rule::OptionalBlocks, Choice::LeftOut),
+        ..at_zero()
+    };
     let (steps, notes) = read("/2 G0 X1\nG0 X2\nM30", &setup).expect("a program");
     assert_eq!(steps.len(), 1);
     assert!(notes.iter().any(|note| note.kind == NoteKind::OmittedOptionalBlock));

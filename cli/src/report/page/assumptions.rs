@@ -8,6 +8,7 @@ use crate::program::ignored_words;
 use crate::verify::CheckedProgram;
 use maud::{Markup, html};
 use touchoff::Unit;
+use touchoff::machine::Machine;
 
 pub(super) fn section(content: &Content<'_>) -> Markup {
     html! {
@@ -68,23 +69,23 @@ fn lines(content: &Content<'_>) -> Vec<String> {
                 lines.push(format!("Words that move nothing were ignored: {words}."));
             }
         }
-        CheckedProgram::Machine(program) => {
+        CheckedProgram::Machine(readings) => {
+            let control = match &job.control {
+                Some(control) => format!("Control: {}.", control.display()),
+                None => "No control is named: what every control does that is known is checked.".to_owned(),
+            };
             lines.push(format!(
-                "Machine: {}. Between two blocks the control interpolates its axes; rapid traverse is one straight motion of \
-                 all axes. G54 is the frame of the part.",
-                program.machine().name()
+                "Machine: {}. {control} Between two blocks the control interpolates its axes. G54 is the frame of the part.",
+                inputs.program.machine().map_or("", Machine::name)
             ));
-            if let Some(unknown) = program.summary().unknown {
-                lines.push(format!(
-                    "{} motions were not checked, the first at line {}: only the machine knows where they start or end.",
-                    unknown.count, unknown.line
-                ));
+            if readings.len() > 1 {
+                let each = readings.iter().map(|reading| reading.assumed().to_string());
+                lines.push(format!("Readings of the program: {}.", each.collect::<Vec<_>>().join("; ")));
             }
-            lines.extend(program.summary().notes.iter().map(|note| format!("{note}.")));
         }
     }
     if job.anyway {
-        lines.push("An implausible program was accepted (`anyway`).".to_owned());
+        lines.push("What is left open was accepted (`anyway`).".to_owned());
     }
     if verification.is_surface_only() {
         lines.push("The inside of a mesh is undefined; only its surface was checked.".to_owned());

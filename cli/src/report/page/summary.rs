@@ -36,7 +36,7 @@ fn verdict(content: &Content<'_>) -> Markup {
     let [violations, undecided, remarks] =
         [Severity::Violation, Severity::Undecided, Severity::Remark].map(count);
     let plural = |count: usize| if count == 1 { "" } else { "s" };
-    let (class, text) = if !refusals.is_empty() {
+    let (class, text) = if content.verification.status(content.entries) == verify::NOT_CHECKED {
         ("open", "Not verified".to_owned())
     } else if violations > 0 {
         ("bad", format!("{violations} violation{}", plural(violations)))
@@ -72,7 +72,10 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
         )
     };
     let mut rows = vec![("Part", vec![plain(&job.part.display().to_string()), sides])];
-    let pairs = verification.pairs.iter().filter(|pair| pair.is_part && pair.report.moves > 0);
+    let pairs = verification
+        .pairs
+        .iter()
+        .filter(|pair| pair.is_part && pair.reading == 0 && pair.report.moves > 0);
     let mut program = vec![plain(&job.program.display().to_string())];
     program.extend(pairs.flat_map(|pair| travel(pair, unit)));
     rows.push(("Program", program));
@@ -89,7 +92,7 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
     }
     let checked = verification.pairs.iter().map(|pair| plain(&verify::summary(pair)));
     rows.push(("Checked", checked.collect()));
-    if let (Some(cut), Some(comparison)) = (&verification.cut, &content.comparison) {
+    if let (Some(cut), Some(comparison)) = (verification.cut(), &content.comparison) {
         let farthest = |what: &str, point: Option<DeviationPoint>| match point {
             None => format!("{what}: none"),
             Some(point) => format!(
@@ -111,6 +114,11 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
                 ),
             ],
         ));
+    }
+    let gaps = verification.gaps.iter().map(|gap| plain(&verify::not_checked(gap)));
+    let gaps: Vec<String> = gaps.collect();
+    if !gaps.is_empty() {
+        rows.push(("Not checked", gaps));
     }
     let mut rules: BTreeMap<&str, usize> = BTreeMap::new();
     for entry in content.entries {

@@ -7,6 +7,25 @@ use crate::machine::{InverseError, JointError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MachineProgramError {
+    /// A control reads the program in this way, and is stopped by it.
+    #[error("{error} (under {rules}; a control that is named, or whose rules are stated, reads it in one way)")]
+    Under {
+        /// The error.
+        error: Box<MachineProgramError>,
+        /// The rules that are assumed.
+        rules: String,
+    },
+    /// Controls read the program in too many ways.
+    #[error(
+        "{file}: controls read this program in more than {} ways, by the rules {rules}: name the control, or state its rules",
+        super::MAX_READINGS
+    )]
+    Readings {
+        /// The program.
+        file: String,
+        /// The keys of the rules, each with the line that depends on it.
+        rules: String,
+    },
     /// A line stops the interpreter.
     #[error("{file}:{line}: {fault}")]
     Gcode {

@@ -1,7 +1,9 @@
 //! Rapid traverse in which each axis moves at its own rate.
 //!
 //! Without rapid interpolation a control starts all axes together, and each stops when it arrives: the path is straight
-//! between two arrivals. Acceleration is not modelled.
+//! between two arrivals. Acceleration is not modelled. At rates that are not known the axes can be at any positions between
+//! their ends: let u be the fraction that each axis has travelled. It is the least of 1 and t over the axis's time, and for
+//! given u > 0 there are times for which all are reached at t = 1.
 
 use crate::machine::{Chain, JointError, JointMotion, Joints, Letter, LinearPath, Machine};
 
@@ -48,12 +50,16 @@ pub(super) fn motions(
     };
     let ends = times.into_iter().map(at);
     let mut from = start;
-    let motion = |to: Joints| {
-        let [start, end] = [std::mem::replace(&mut from, to), to];
-        let linear = |joints: Joints| [joints[0], joints[1], joints[2]];
-        let rotary = |joints: Joints| [joints[3], joints[4], joints[5]];
-        let path = LinearPath::Line { start: linear(start), end: linear(end) };
-        JointMotion::new(chain, [rotary(start), rotary(end)], &path)
-    };
-    ends.map(motion).collect()
+    ends.map(|to| line(chain, [std::mem::replace(&mut from, to), to])).collect()
+}
+
+/// Returns the motion in which all axes move from one joint position to another in proportion.
+///
+/// # Errors
+/// As for [`JointMotion::new`].
+pub(super) fn line(chain: &Chain, [start, end]: [Joints; 2]) -> Result<JointMotion, JointError> {
+    let linear = |joints: Joints| [joints[0], joints[1], joints[2]];
+    let rotary = |joints: Joints| [joints[3], joints[4], joints[5]];
+    let path = LinearPath::Line { start: linear(start), end: linear(end) };
+    JointMotion::new(chain, [rotary(start), rotary(end)], &path)
 }

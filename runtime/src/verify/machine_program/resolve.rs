@@ -4,11 +4,13 @@ use super::StepFault;
 use super::path::{self, Map};
 use super::rapid;
 use crate::gcode::{
-    self, ControlSetup, ControlState, LengthOffset, Position, Rotation, Step, StepPath, WorkOffset,
+    self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step, StepPath,
+    WorkOffset,
 };
 use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
@@ -17,21 +19,89 @@ const LENGTH_TOLERANCE: f64 = 1e-3;
 pub(super) enum Resolved {
     /// The motions, in order, each with a bound on its distance from that of the control, in mm.
     Motions(Vec<(JointMotion, f64)>),
+    /// Rapid traverse of several axes whose rates are unknown.
+    AnyRapid(AnyRapid),
     /// Only the end is known: a motion that rests there.
-    Arrival(Box<JointMotion>),
+    Arrival(Box<JointMotion>, UnknownCause),
     /// The end is unknown.
-    Unknown,
+    Unknown(UnknownCause),
+    /// A tool change: no motion of the program.
+    ToolChange,
 }
 
-impl Resolved {
-    /// Returns the motions of axes from one joint position to another, at their rates.
-    fn rapid(
-        chain: &Chain,
-        rates: Option<&Joints>,
-        joints: [Joints; 2],
-    ) -> Result<Resolved, StepFault> {
-        let motions = rapid::motions(chain, rates, joints)?;
-        Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
+/// Rapid traverse of several axes whose rates are unknown.
+pub(super) struct AnyRapid {
+    /// The motion if all axes arrive together.
+    pub(super) straight: JointMotion,
+    /// The motions of each axis by itself from the start, if no rotary axis moves: the axes' positions at any rates are
+    /// those of the box that they span.
+    pub(super) edges: Option<Vec<JointMotion>>,
+}
+
+/// The reason for which only the machine knows where a motion starts or ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum UnknownCause {
+    /// The program has not stated a position before.
+    Start,
+    /// A tool change moved the axes.
+    ToolChange,
+    /// A return to a reference position that is not known.
+    Return,
+    /// A shift by G92 at an unknown position.
+    Shift,
+    /// No tool length offset is in force, and the length of the tool is not stated.
+    NoOffset {
+        /// The tool.
+        tool: u32,
+    },
+    /// The length offset is that of another tool, and one of both lengths is not stated.
+    OtherOffset {
+        /// The tool.
+        tool: u32,
+        /// The register.
+        register: u32,
+    },
+    /// The head turns, and the length of the tool is not stated.
+    NoLever,
+    /// The table turns, and the position of the part on it is not stated.
+    NoPartPosition,
+    /// The way of an axis that turns by half a turn.
+    HalfTurn,
+}
+
+impl fmt::Display for UnknownCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            UnknownCause::Start => f.write_str("the program states no position before"),
+            UnknownCause::ToolChange => f.write_str(
+                "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
+                 the control",
+            ),
+            UnknownCause::Return => f.write_str(
+                "only the machine knows its reference position: state `home` of its axes and the origin of G54 in \
+                 `work_offsets`",
+            ),
+            UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
+            UnknownCause::NoOffset { tool } => write!(
+                f,
+                "T{tool} moves without a tool length offset: write G43 H{tool}, or state the length of tool {tool} in the \
+                 job (0 if Z of the work offset is that of its tip)"
+            ),
+            UnknownCause::OtherOffset { tool, register } => write!(
+                f,
+                "T{tool} moves with the length offset H{register} of another tool: state the lengths of both in the job"
+            ),
+            UnknownCause::NoLever => {
+                f.write_str("the head turns the tool, whose length is not stated: state it in the job")
+            }
+            UnknownCause::NoPartPosition => f.write_str(
+                "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
+            ),
+            UnknownCause::HalfTurn => {
+                f.write_str("an axis turns by half a turn, for which both ways are as short, or an arc begins there")
+            }
+        }
     }
 }
 
@@ -41,8 +111,7 @@ pub(super) struct Resolver<'a> {
     lengths: &'a BTreeMap<u32, f64>,
     /// Origin of the part in machine coordinates.
     origin: [f64; 6],
-    /// Rates of the axes in rapid traverse, if each moves at its own.
-    rates: Option<Joints>,
+    rapid: RapidPath,
     /// Set if a rotary axis carries the tool.
     has_head: bool,
     /// Set if the origin of the part on the machine is given.
@@ -53,6 +122,17 @@ pub(super) struct Resolver<'a> {
     chain: Option<(f64, Chain)>,
     /// The joint values after the last step, as far as they are known.
     joints: Position,
+    /// The reason for which others are not.
+    cause: UnknownCause,
+}
+
+/// The path of several axes in rapid traverse.
+enum RapidPath {
+    Straight,
+    /// Each axis at its rate.
+    Rates(Joints),
+    /// Each axis at a rate that is not known.
+    Any,
 }
 
 /// The mapping of a step's coordinates.
@@ -89,12 +169,17 @@ impl<'a> Resolver<'a> {
             machine,
             lengths: &setup.lengths,
             origin,
-            rates: rapid::rates(machine),
+            rapid: match (setup.rules.get(Rule::Rapid), rapid::rates(machine)) {
+                (Some(Choice::Straight), _) => RapidPath::Straight,
+                (_, Some(rates)) => RapidPath::Rates(rates),
+                (_, None) => RapidPath::Any,
+            },
             has_head: has_rotary(Side::Tool),
             is_placed: setup.work_offsets[0].is_some(),
             part_position_unknown: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
             chain: None,
             joints,
+            cause: UnknownCause::Start,
         }
     }
 
@@ -103,14 +188,26 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        let Some(frame) = self.frame(&step.state)? else {
-            // Only the machine knows what positions mean.
-            self.joints = self.joints.map(|_| None);
-            return Ok(Resolved::Unknown);
+        if let StepPath::ToolChange(target) = step.path {
+            for k in (0..6).filter(|k| step.commanded[*k]) {
+                self.joints[k] = target[k].filter(|_| self.is_placed);
+            }
+            self.cause = UnknownCause::ToolChange;
+            return Ok(Resolved::ToolChange);
+        }
+        let frame = match self.frame(&step.state)? {
+            Ok(frame) => frame,
+            Err(cause) => {
+                // Only the machine knows what positions mean.
+                self.joints = self.joints.map(|_| None);
+                self.cause = cause;
+                return Ok(Resolved::Unknown(cause));
+            }
         };
         if matches!(step.path, StepPath::Align) {
             return self.align(&frame, &step.state);
         }
+        self.count_turns(&frame, &step.start);
         let current = self.current_position(&frame);
         let mut ends = [step.start, step.end];
         for k in 0..6 {
@@ -130,7 +227,10 @@ impl<'a> Resolver<'a> {
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
-            return Ok(Resolved::Unknown);
+            if (0..6).any(|k| step.commanded[k] && step.end[k].is_none()) {
+                self.cause = UnknownCause::Return;
+            }
+            return Ok(Resolved::Unknown(self.cause));
         };
         let turns = |side: Side| {
             let is_turned = |position: [f64; 6]| {
@@ -146,31 +246,66 @@ impl<'a> Resolver<'a> {
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined);
         let resolved = match start.filter(|_| is_determined) {
-            Some(start) => match &self.rates {
-                Some(rates) if step.rapid && !frame.is_tip => {
-                    let joints = [start, end].map(|position| frame.joints(position));
-                    Resolved::rapid(&frame.chain, Some(rates), joints)?
-                }
-                _ => Resolved::Motions(frame.motions(&step.path, [start, end])?),
-            },
+            Some(start) if step.rapid && !frame.is_tip => {
+                let joints = [start, end].map(|position| frame.joints(position));
+                self.rapid(&frame.chain, joints)?
+            }
+            Some(start) => Resolved::Motions(frame.motions(&step.path, [start, end])?),
             None => {
                 let mut motions = frame.motions(&StepPath::Line, [end, end])?;
                 let (rest, _) = motions.swap_remove(0);
-                Resolved::Arrival(Box::new(rest))
+                let cause = if is_determined { self.cause } else { UnknownCause::HalfTurn };
+                Resolved::Arrival(Box::new(rest), cause)
             }
         };
         let last = match &resolved {
             Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
-            Resolved::Arrival(rest) => Some(&**rest),
-            Resolved::Unknown => None,
+            Resolved::AnyRapid(AnyRapid { straight, .. }) => Some(straight),
+            Resolved::Arrival(rest, _) => Some(&**rest),
+            Resolved::Unknown(_) | Resolved::ToolChange => None,
         };
         if let Some(last) = last {
             self.joints = last.joints(1.0).map(Some);
         }
         if frame.is_tip && frame.has_unknown_lever {
             self.joints[..3].fill(None);
+            self.cause = UnknownCause::NoLever;
         }
         Ok(resolved)
+    }
+
+    /// Resolves rapid traverse of the axes from one joint position to another.
+    fn rapid(&self, chain: &Chain, joints @ [start, end]: [Joints; 2]) -> Result<Resolved, StepFault> {
+        let moving: Vec<usize> = (0..6).filter(|k| start[*k] != end[*k]).collect();
+        let rates = match &self.rapid {
+            RapidPath::Rates(rates) => Some(rates),
+            RapidPath::Any if moving.len() > 1 => {
+                let straight = rapid::line(chain, joints)?;
+                let edge = |k: &usize| {
+                    let mut to = start;
+                    to[*k] = end[*k];
+                    rapid::line(chain, [start, to])
+                };
+                let is_linear = moving.iter().all(|k| *k < 3);
+                let edges = is_linear.then(|| moving.iter().map(edge).collect());
+                return Ok(Resolved::AnyRapid(AnyRapid { straight, edges: edges.transpose()? }));
+            }
+            RapidPath::Any | RapidPath::Straight => None,
+        };
+        let motions = rapid::motions(chain, rates, joints)?;
+        Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
+    }
+
+    /// Adds whole turns to the rotary joints, if the step starts at an angle that differs by them.
+    fn count_turns(&mut self, frame: &Frame, start: &Position) {
+        for k in 3..6 {
+            if let (Some(joint), Some(start)) = (&mut self.joints[k], start[k]) {
+                let turns = (start + frame.rotary[k - 3] - *joint) / 360.0;
+                if turns.round() != 0.0 && (turns - turns.round()).abs() < 1e-9 {
+                    *joint += 360.0 * turns.round();
+                }
+            }
+        }
     }
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
@@ -185,13 +320,16 @@ impl<'a> Resolver<'a> {
         let found = chain.inverse(&Point3::origin(), &axis, &near)?.joints;
         let before = known(&self.joints);
         (3..6).for_each(|k| self.joints[k] = Some(found[k]));
-        let Some(joints) = before else { return Ok(Resolved::Unknown) };
-        if self.part_position_unknown || frame.has_unknown_lever {
-            return Ok(Resolved::Unknown);
+        let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
+        if self.part_position_unknown {
+            return Ok(Resolved::Unknown(UnknownCause::NoPartPosition));
+        }
+        if frame.has_unknown_lever {
+            return Ok(Resolved::Unknown(UnknownCause::NoLever));
         }
         let mut end = joints;
         end[3..].copy_from_slice(&found[3..]);
-        Resolved::rapid(&frame.chain, self.rates.as_ref(), [joints, end])
+        self.rapid(&frame.chain, [joints, end])
     }
 
     /// Returns the indices of the rotary joints of a side.
@@ -206,13 +344,16 @@ impl<'a> Resolver<'a> {
         if self.is_placed { *chain } else { chain.without_linear_limits() }
     }
 
-    /// Returns the mapping of a state's coordinates; `None` if only the machine knows it.
-    fn frame(&mut self, state: &ControlState) -> Result<Option<Frame>, StepFault> {
+    /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
+    fn frame(&mut self, state: &ControlState) -> Result<Result<Frame, UnknownCause>, StepFault> {
         let is_tip = state.turns_with_workpiece();
-        let Some(Lengths { length, offset, is_known }) = self.lengths(state)? else {
-            return Ok(None);
+        let Lengths { length, offset, is_known } = match self.lengths(state)? {
+            Ok(lengths) => lengths,
+            Err(cause) => return Ok(Err(cause)),
         };
-        let Some(shift) = self.known_in_machine(&state.shift) else { return Ok(None) };
+        let Some(shift) = self.known_in_machine(&state.shift) else {
+            return Ok(Err(UnknownCause::Shift));
+        };
         let chain = match &self.chain {
             Some((known, chain)) if *known == length => *chain,
             _ => {
@@ -261,7 +402,7 @@ impl<'a> Resolver<'a> {
         };
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
         let has_unknown_lever = self.has_head && !is_known;
-        Ok(Some(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
+        Ok(Ok(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
     }
 
     /// Returns the coordinates, if those of all axes of the machine are known. Others are 0.
@@ -275,20 +416,27 @@ impl<'a> Resolver<'a> {
         known(&values)
     }
 
-    /// Returns the length of the tool in the spindle and the length offset; `None` if the offset is that of another tool
-    /// and one of both is unknown. If neither is known, both count as 0: the tip is then where the program says.
-    fn lengths(&self, state: &ControlState) -> Result<Option<Lengths>, StepFault> {
+    /// Returns the length of the tool in the spindle and the length offset; the cause if only the machine knows where the
+    /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
+    /// for a program that names no tool: Z of the work offset is then that of the tip.
+    fn lengths(
+        &self,
+        state: &ControlState,
+    ) -> Result<Result<Lengths, UnknownCause>, StepFault> {
         let known = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
-            (LengthOffset::Off, None) => of(0.0, 0.0, false),
+            (LengthOffset::Off, None) => match state.tool {
+                Some(tool) => return Ok(Err(UnknownCause::NoOffset { tool })),
+                None => of(0.0, 0.0, false),
+            },
             (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
                 of(length, offset, true)
             }
             (LengthOffset::On { register, length: offset }, length) => {
-                if state.tool.is_some_and(|tool| tool != register) {
-                    return Ok(None);
+                if let Some(tool) = state.tool.filter(|tool| *tool != register) {
+                    return Ok(Err(UnknownCause::OtherOffset { tool, register }));
                 }
                 let known = offset.or(length);
                 of(known.unwrap_or(0.0), known.unwrap_or(0.0), known.is_some())
@@ -301,7 +449,7 @@ impl<'a> Resolver<'a> {
         {
             return Err(StepFault::Length { register, offset, tool, length });
         }
-        Ok(Some(lengths))
+        Ok(Ok(lengths))
     }
 
     /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.

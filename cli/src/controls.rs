@@ -1,0 +1,138 @@
+//! `touchoff controls` and `touchoff machines`: what is known by name, with every rule and every axis.
+
+use crate::failure::Failure;
+use crate::output::Output;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Write;
+use touchoff::gcode::{ControlRules, Rule};
+use touchoff::machine::{Axis, Machine, Side};
+
+/// A control as a JSON object.
+#[derive(Serialize)]
+struct ControlRow<'a> {
+    name: &'a str,
+    /// The words of the rules by their keys.
+    rules: BTreeMap<&'static str, &'static str>,
+}
+
+/// A machine as a JSON object.
+#[derive(Serialize)]
+struct MachineRow<'a> {
+    name: &'a str,
+    /// Joint values after a tool change, in the order X Y Z A B C, of the axes that it moves.
+    tool_change: Option<[Option<f64>; 6]>,
+    axes: Vec<AxisRow>,
+}
+
+/// An axis, with lengths in mm and angles in degrees.
+#[derive(Serialize)]
+struct AxisRow {
+    letter: String,
+    carries: &'static str,
+    direction: [f64; 3],
+    /// A point of a rotary axis: its pivot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    point: Option<[f64; 3]>,
+    limits: Option<[f64; 2]>,
+    home: Option<f64>,
+    /// Rate in rapid traverse, per minute.
+    rapid: Option<f64>,
+}
+
+/// Lists the controls with every rule, or prints one as a file.
+pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
+    let mut out = Output::lines();
+    if let (Some(name), false) = (name, json) {
+        write!(out, "{}", ControlRules::named(name)?.to_toml())?;
+        return Ok(out.flush()?);
+    }
+    let names: Vec<&str> = ControlRules::names().filter(|known| name.is_none_or(|name| name == *known)).collect();
+    if let (Some(name), []) = (name, &names[..]) {
+        ControlRules::named(name)?;
+    }
+    for name in names {
+        let control = ControlRules::named(name)?;
+        let rules = Rule::all().filter_map(|rule| Some((rule, control.get(rule)?)));
+        if json {
+            let rules = rules.map(|(rule, choice)| (rule.key(), rule.describe(choice)[0])).collect();
+            serde_json::to_writer(&mut out, &ControlRow { name, rules })?;
+            writeln!(out)?;
+            continue;
+        }
+        writeln!(out, "{name}")?;
+        for (rule, choice) in rules {
+            let ([word, meaning], about) = (rule.describe(choice), rule.about());
+            let stated = format!("{} = \"{word}\"", rule.key());
+            writeln!(out, "  {stated:<40} {about}: {meaning}")?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+/// Lists the machines with every axis, or prints the file of one.
+pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
+    let mut out = Output::lines();
+    if let (Some(name), false) = (name, json) {
+        Machine::named(name)?;
+        write!(out, "{}", Machine::file(name).unwrap_or_default())?;
+        return Ok(out.flush()?);
+    }
+    if let Some(name) = name {
+        Machine::named(name)?;
+    }
+    for known in Machine::names().filter(|known| name.is_none_or(|name| name == *known)) {
+        let machine = Machine::named(known)?;
+        let axes: Vec<AxisRow> = machine.axes().iter().map(AxisRow::of).collect();
+        if json {
+            let row = MachineRow { name: known, tool_change: machine.tool_change(), axes };
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+            continue;
+        }
+        let change = match machine.tool_change() {
+            None => "not stated: the control decides".to_owned(),
+            Some(joints) if joints == [None; 6] => "the axes stay".to_owned(),
+            Some(joints) => format!("{joints:?}"),
+        };
+        writeln!(out, "{known} (tool change: {change})")?;
+        for axis in axes {
+            writeln!(out, "  {}", axis.describe())?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+impl AxisRow {
+    fn of(axis: &Axis) -> AxisRow {
+        AxisRow {
+            letter: axis.letter.to_string(),
+            carries: if axis.side == Side::Table { "table" } else { "tool" },
+            direction: axis.direction.into(),
+            point: axis.letter.is_rotary().then(|| axis.point.into()),
+            limits: axis.limits,
+            home: axis.home,
+            rapid: axis.rapid,
+        }
+    }
+
+    fn describe(&self) -> String {
+        let AxisRow { letter, carries, direction, point, limits, home, rapid } = self;
+        let unit = if point.is_some() { "°" } else { " mm" };
+        let limits = match limits {
+            Some([low, high]) => format!("from {low} to {high}{unit}"),
+            None => "without limits".to_owned(),
+        };
+        let mut text = format!("{letter} moves the {carries}, {limits}");
+        if let Some(home) = home {
+            text += &format!(", home {home}");
+        }
+        if let Some(rapid) = rapid {
+            text += &format!(", rapid {rapid}{unit}/min");
+        }
+        if let Some(point) = point {
+            text += &format!(", about {direction:?} through {point:?}");
+        }
+        text
+    }
+}

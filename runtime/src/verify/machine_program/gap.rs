@@ -1,0 +1,137 @@
+//! What a verdict about a program leaves open.
+
+use super::{MachineProgram, MachineSummary, UnknownMotions};
+use crate::gcode::{ControlRules, NoteKind, Rule, Spindle};
+
+/// Something that was not checked, or that was taken for granted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Gap {
+    /// The line of its first occurrence, 1-based.
+    pub line: usize,
+    /// Set if there is no verdict with it: a collision could be missed that the program alone makes.
+    pub is_open: bool,
+    /// What was not checked, why, and what to state or write. A sentence without a full stop.
+    pub reason: String,
+}
+
+impl Gap {
+    /// Creates a gap that leaves a verdict possible.
+    pub fn said(line: usize, reason: String) -> Gap {
+        Gap { line, is_open: false, reason }
+    }
+
+    /// Creates a gap that allows no verdict.
+    pub fn open(line: usize, reason: String) -> Gap {
+        Gap { line, is_open: true, reason }
+    }
+}
+
+impl MachineProgram {
+    /// Returns what the readings of a program leave open: first what allows no verdict, each in the order of lines.
+    pub fn gaps(readings: &[MachineProgram]) -> Vec<Gap> {
+        let mut gaps: Vec<(Gap, Vec<&ControlRules>)> = Vec::new();
+        for program in readings {
+            for gap in program.summary.gaps() {
+                match gaps.iter_mut().find(|(known, _)| *known == gap) {
+                    Some((_, rules)) => rules.push(&program.assumed),
+                    None => gaps.push((gap, vec![&program.assumed])),
+                }
+            }
+        }
+        let described = |(mut gap, rules): (Gap, Vec<&ControlRules>)| {
+            if let Some(under) = MachineProgram::under(readings, &rules) {
+                gap.reason = format!("{} ({under})", gap.reason);
+            }
+            gap
+        };
+        let mut gaps: Vec<Gap> = gaps.into_iter().map(described).collect();
+        gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
+        gaps
+    }
+
+    /// Names the readings for which something holds, by what they assume: `under rotary = "shortest"`. `None` if it holds for
+    /// all.
+    pub fn under(readings: &[MachineProgram], holds: &[&ControlRules]) -> Option<String> {
+        if holds.len() == readings.len() {
+            return None;
+        }
+        // A rule with one choice in all of these, and with another elsewhere, is a condition.
+        let first = holds.first()?;
+        let mut common = ControlRules::default();
+        for rule in Rule::all() {
+            let Some(choice) = first.get(rule) else { continue };
+            if holds.iter().all(|rules| rules.get(rule) == Some(choice)) {
+                common = common.with(rule, choice);
+            }
+        }
+        match common == ControlRules::default() {
+            false => Some(format!("under {common}")),
+            true => Some(format!("under {} of {} readings", holds.len(), readings.len())),
+        }
+    }
+}
+
+impl MachineSummary {
+    /// Returns what this reading leaves open.
+    fn gaps(&self) -> Vec<Gap> {
+        let mut gaps = Vec::new();
+        let mut add = |line: usize, is_open: bool, reason: String| {
+            gaps.push(Gap { line, is_open, reason });
+        };
+        for UnknownMotions { cause, count, line, feed_line } in &self.unknown {
+            let plural = if *count == 1 { "" } else { "s" };
+            let feed = match feed_line {
+                Some(line) => format!(", first in feed at line {line}"),
+                None => String::new(),
+            };
+            let reason = format!("{count} motion{plural} not checked, first at line {line}{feed}: {cause}");
+            add(feed_line.unwrap_or(*line), feed_line.is_some(), reason);
+        }
+        for (tool, line) in &self.unchecked_tools {
+            let name = tool.map_or("the tool before the first change".to_owned(), |tool| format!("T{tool}"));
+            add(*line, true, format!("no motion of {name} is checked"));
+        }
+        if let Some(line) = self.any_rotary_rapid {
+            let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
+                          only: state `rapid` of the control, or the `rapid` rates of the machine's axes";
+            add(line, true, reason.to_owned());
+        }
+        if let Some(line) = self.open_rules.get(&Rule::Unit) {
+            let reason = "no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control";
+            add(*line, true, reason.to_owned());
+        }
+        if let Some(line) = self.open_rules.get(&Rule::StartOffset) {
+            let reason = "no work offset before a position, which is taken in G54: write G54, or state `start_offset` of the \
+                          control";
+            add(*line, true, reason.to_owned());
+        }
+        let not_stated = self.spindle.iter().find(|(.., spindle)| *spindle == Spindle::NotStated);
+        if let (Some((line, ..)), false) = (not_stated, self.starts_spindle()) {
+            let reason = "the program feeds and never starts the spindle: write M3 with S before";
+            add(*line, true, reason.to_owned());
+        }
+        if let Some(line) = self.no_offset {
+            let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work \
+                          offset were set with the tool";
+            add(line, self.tools.iter().any(|tool| tool.number.is_some()), reason.to_owned());
+        }
+        if self.limits_unchecked {
+            let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";
+            add(0, false, reason.to_owned());
+        }
+        for note in &self.notes {
+            let is_open = note.kind == NoteKind::OtherProgram;
+            let times = if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
+            if !matches!(note.kind, NoteKind::PassedOver { .. }) {
+                add(note.line, is_open, format!("{}{times}", note.kind));
+            }
+        }
+        gaps
+    }
+
+    /// Returns whether the program says something about the spindle before some feed.
+    fn starts_spindle(&self) -> bool {
+        self.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated)
+    }
+}
