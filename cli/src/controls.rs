@@ -47,7 +47,8 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
         write!(out, "{}", ControlRules::named(name)?.to_toml())?;
         return Ok(out.flush()?);
     }
-    let names: Vec<&str> = ControlRules::names().filter(|known| name.is_none_or(|name| name == *known)).collect();
+    let names: Vec<&str> =
+        ControlRules::names().filter(|known| name.is_none_or(|name| name == *known)).collect();
     if let (Some(name), []) = (name, &names[..]) {
         ControlRules::named(name)?;
     }
@@ -55,7 +56,8 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
         let control = ControlRules::named(name)?;
         let rules = Rule::all().filter_map(|rule| Some((rule, control.get(rule)?)));
         if json {
-            let rules = rules.map(|(rule, choice)| (rule.key(), rule.describe(choice)[0])).collect();
+            let rules =
+                rules.map(|(rule, choice)| (rule.key(), rule.describe(choice)[0])).collect();
             serde_json::to_writer(&mut out, &ControlRow { name, rules })?;
             writeln!(out)?;
             continue;

@@ -21,7 +21,9 @@ impl Failure {
             | Failure::IsInput { .. }
             | Failure::Program(_)
             | Failure::Job { .. }
+            | Failure::MeshForJob { .. }
             | Failure::NoTool { .. }
+            | Failure::SeveralEntries { .. }
             | Failure::SeveralTools { .. }
             | Failure::WorkOffset { .. }
             | Failure::Machine(_)
@@ -115,6 +117,24 @@ pub(crate) enum Failure {
         file: String,
         /// The reason.
         message: String,
+    },
+    /// A mesh stands where a job file does.
+    #[error(
+        "`{file}` is a mesh, and `verify` takes a job file: name a mesh by `--part`, with `--unit`, `--tool` and `--program`"
+    )]
+    MeshForJob {
+        /// The mesh.
+        file: String,
+    },
+    /// Several tools of a library have one number.
+    #[error("`{file}` has {} tools `{name}`: {}; name one, in a job by `[tool.N] tool = \"FILE.tool\"`", tools.len(), tools.join(", "))]
+    SeveralEntries {
+        /// The number, as it was asked for.
+        name: String,
+        /// The library.
+        file: String,
+        /// The tools with this number.
+        tools: Vec<String>,
     },
     /// No tool is given for a number of the program.
     #[error("{}", no_tool(*number))]

@@ -2,9 +2,11 @@
 
 use crate::arguments::Import;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, write_file};
 use crate::progress::Progress;
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -93,6 +95,7 @@ impl Run<'_> {
         let library = Library::read(self.file)?;
         let tools = self.wanted(&library)?;
         let mut left_out = 0;
+        let mut written = Vec::new();
         if self.only.is_none() {
             for skipped in library.skipped() {
                 self.skip(out, &skipped.name, &skipped.reason)?;
@@ -113,6 +116,7 @@ impl Run<'_> {
                 Ok(exact) => {
                     if let Target::Folder(folder) = &self.target {
                         tool.write_to(folder)?;
+                        written.push(*tool);
                     }
                     self.print(out, tool, Some(exact))?;
                 }
@@ -121,6 +125,9 @@ impl Run<'_> {
                     left_out += 1;
                 }
             }
+        }
+        if let Target::Folder(folder) = &self.target {
+            write_numbers(folder, &written)?;
         }
         Ok(left_out)
     }
@@ -228,16 +235,80 @@ fn row(out: &mut Output, row: &Row<'_>) -> Result<(), Failure> {
 /// Returns the tool of a library by its name or number.
 ///
 /// # Errors
-/// [`Failure::NoSuchEntry`].
+/// [`Failure::NoSuchEntry`], and [`Failure::SeveralEntries`] for a number or a title that several tools have.
 pub(crate) fn find<'l>(
     library: &'l Library,
     name: &str,
     file: &Path,
 ) -> Result<&'l ImportedTool, Failure> {
-    library.find(name).ok_or_else(|| Failure::NoSuchEntry {
-        name: name.to_owned(),
-        file: file.display().to_string(),
-    })
+    let (name, file) = (name.to_owned(), file.display().to_string());
+    match &library.find(&name)[..] {
+        [] => Err(Failure::NoSuchEntry { name, file }),
+        [tool] => Ok(tool),
+        several => {
+            let tools = several.iter().map(|tool| format!("`{}`", tool.name)).collect();
+            Err(Failure::SeveralEntries { name, file, tools })
+        }
+    }
+}
+
+/// The file of a folder that lists the numbers of its tools.
+const NUMBERS: &str = "tools.toml";
+
+/// The tools of a folder: file names by the number of the tool, as `T1`.
+type Numbers = BTreeMap<String, Vec<String>>;
+
+/// Adds the numbers of tools to the list of a folder.
+fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> {
+    let mut numbers = read_numbers(folder)?;
+    for tool in tools {
+        let Some(number) = tool.entry.number else { continue };
+        let files = numbers.entry(format!("T{number}")).or_default();
+        if !files.contains(&tool.path()) {
+            files.push(tool.path());
+        }
+    }
+    if numbers.is_empty() {
+        return Ok(());
+    }
+    let mut text = "# The numbers of the tools in this folder.\n".to_owned();
+    for (number, files) in &numbers {
+        text += &format!("{number} = {files:?}\n");
+    }
+    write_file(&folder.join(NUMBERS), text)
+}
+
+fn read_numbers(folder: &Path) -> Result<Numbers, Failure> {
+    let file = folder.join(NUMBERS);
+    let name = || file.display().to_string();
+    match std::fs::read_to_string(&file) {
+        Ok(text) => toml::from_str(&text)
+            .map_err(|error| Failure::Job { file: name(), message: error.message().to_owned() }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Numbers::new()),
+        Err(source) => Err(Failure::Unreadable { file: name(), source }),
+    }
+}
+
+/// Returns the file of a tool in a folder of `.tool` files, by its name or by its number in the folder's list.
+///
+/// # Errors
+/// [`Failure::SeveralEntries`] for a number that several tools have, or if the list cannot be read.
+pub(crate) fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, Failure> {
+    let file = folder.join(name);
+    if file.is_file() {
+        return Ok(file);
+    }
+    let file = file.with_extension("tool");
+    let name = name.to_string_lossy().to_ascii_uppercase();
+    match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
+        Some([listed]) if !file.is_file() => Ok(folder.join(listed)),
+        Some(several) if !file.is_file() => Err(Failure::SeveralEntries {
+            name,
+            file: folder.display().to_string(),
+            tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
+        }),
+        _ => Ok(file),
+    }
 }
 
 /// The proof of a tool: whether depth is proved to be the distance, or why it does not compile.

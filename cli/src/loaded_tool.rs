@@ -2,7 +2,7 @@
 
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
-use crate::import::find;
+use crate::import::{find, find_in_folder};
 use crate::output::show;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -90,8 +90,7 @@ fn in_library<R>(
     read: impl FnOnce(&Path) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
     if library.is_dir() {
-        let file = library.join(name);
-        return read(&if file.is_file() { file } else { file.with_extension("tool") });
+        return read(&find_in_folder(library, name)?);
     }
     let name = name.to_string_lossy();
     let imported = Library::read(library)?;

@@ -106,12 +106,19 @@ impl OpenProgram {
                 faults.extend(summary.other_lengths.iter().map(|(line, register, tool)| {
                     format!("line {line}: T{tool} feeds with the length offset H{register}, which has another length")
                 }));
-                let starts = summary.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated);
+                let starts =
+                    summary.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated);
                 for (line, _, spindle) in &summary.spindle {
                     faults.extend(match spindle {
-                        Spindle::NotStated if starts => Some(format!("line {line}: feeds with the spindle off")),
-                        Spindle::Stopped => Some(format!("line {line}: feeds with the spindle off")),
-                        Spindle::WithoutSpeed => Some(format!("line {line}: feeds without a speed S of the spindle")),
+                        Spindle::NotStated if starts => {
+                            Some(format!("line {line}: feeds with the spindle off"))
+                        }
+                        Spindle::Stopped => {
+                            Some(format!("line {line}: feeds with the spindle off"))
+                        }
+                        Spindle::WithoutSpeed => {
+                            Some(format!("line {line}: feeds without a speed S of the spindle"))
+                        }
                         _ => None,
                     });
                 }

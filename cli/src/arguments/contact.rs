@@ -71,8 +71,9 @@ pub(crate) struct CheckArguments {
     /// Unit of the part, which most formats do not store: `mm`, `inch` or `m`.
     #[arg(long, required_unless_present = "job")]
     pub(crate) unit: Option<Unit>,
-    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
-    #[arg(long, value_name = "NAME|FILE.tool", required_unless_present = "job")]
+    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file. With `--tools` alone the program takes the
+    /// library's tools by their numbers.
+    #[arg(long, value_name = "NAME|FILE.tool", required_unless_present_any = ["job", "library"])]
     pub(crate) tool: Option<OsString>,
     #[command(flatten)]
     pub(crate) params: ToolArguments,
@@ -118,7 +119,8 @@ impl CheckArguments {
 
     /// Returns whether they state all that a check of a part needs.
     pub(crate) fn has_subject(&self) -> bool {
-        self.unit.is_some() && self.tool.is_some() && self.program.is_some()
+        let has_tool = self.tool.is_some() || self.params.library.is_some();
+        self.unit.is_some() && has_tool && self.program.is_some()
     }
 }
 

@@ -25,15 +25,15 @@ pub(super) const CONTROLS: &str = "\
 Examples:
   What each control does:
     touchoff controls
-  A file for your own control, to edit and to name in a job:
-    touchoff controls haas > mine.toml";
+  A control as a file, to edit and to name in a job as your own:
+    touchoff controls haas";
 
 pub(super) const MACHINES: &str = "\
 Examples:
   Every machine, with limits, homes and pivots:
     touchoff machines
-  A file for your own machine, to edit and to name in a job:
-    touchoff machines 'A-C trunnion' > mine.toml";
+  A machine as a file, to edit and to name in a job as your own:
+    touchoff machines 3-axis";
 
 pub(super) const REPORT: &str = "\
 Examples:

@@ -77,7 +77,9 @@ pub(super) fn follow(
     let stride = pair.report.moves.div_ceil(SAMPLES).max(1);
     let mut along =
         Along { tool, lines: Vec::new(), stride, samples: Vec::new(), findings: Vec::new() };
-    for (location, step) in inputs.program.moves(pair.reading, program_tool, None, unit)?.enumerate() {
+    for (location, step) in
+        inputs.program.moves(pair.reading, program_tool, None, unit)?.enumerate()
+    {
         along.lines.push(u32::try_from(step.line).unwrap_or(u32::MAX));
         if location % stride != 0 {
             continue;

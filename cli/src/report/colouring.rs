@@ -40,7 +40,8 @@ pub(super) fn depths(
         if number % bodies != index || pair.report.findings.is_empty() {
             continue;
         }
-        let mut probe = Probe::new(&part, inputs.tools[number / bodies % inputs.tools.len()].tool());
+        let mut probe =
+            Probe::new(&part, inputs.tools[number / bodies % inputs.tools.len()].tool());
         for finding in &pair.report.findings {
             let FindingKind::Deep { surface, allowed, depth, witness, .. } = finding.kind else {
                 continue;

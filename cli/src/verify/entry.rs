@@ -2,9 +2,9 @@
 
 use super::json::Row;
 use super::machine::MachineFinding;
-use super::{CheckedPair, Verification, rule};
 use super::stock::StockFinding;
 use super::text::describe;
+use super::{CheckedPair, Verification, rule};
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 use touchoff::verify::{Finding, FindingKind};
@@ -124,8 +124,9 @@ pub(super) fn entries<'a>(verification: &'a Verification<'a>) -> Vec<Entry<'a>> 
     });
     let mut entries: Vec<(Entry<'a>, Vec<usize>)> = Vec::new();
     for (reading, entry) in surfaces.chain(machine).chain(stock) {
-        let is_same =
-            |(known, _): &&mut (Entry<'a>, Vec<usize>)| (known.line, &known.text) == (entry.line, &entry.text);
+        let is_same = |(known, _): &&mut (Entry<'a>, Vec<usize>)| {
+            (known.line, &known.text) == (entry.line, &entry.text)
+        };
         match entries.iter_mut().find(is_same) {
             Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
             _ => entries.push((entry, vec![reading])),

@@ -2,6 +2,7 @@
 
 use crate::arguments::{CheckArguments, ParamArguments, ToolArguments};
 use crate::failure::Failure;
+use crate::output::extension;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -151,6 +152,11 @@ impl Job {
         arguments: CheckArguments,
     ) -> Result<Job, Failure> {
         if let Some(file) = file {
+            if extension(&file)
+                .is_some_and(|ending| matches!(&*ending, "stl" | "ply" | "obj" | "touchoff"))
+            {
+                return Err(Failure::MeshForJob { file: file.display().to_string() });
+            }
             let mut job = Job::read(&file)?;
             job.control = arguments.control.or(job.control);
             job.resolution = arguments.resolution.or(job.resolution);
@@ -160,10 +166,21 @@ impl Job {
         }
         let missing =
             Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
-        let (Some(part), Some(unit), Some(tool), Some(program)) =
-            (part, arguments.unit, arguments.tool, arguments.program)
+        let (Some(part), Some(unit), Some(program)) = (part, arguments.unit, arguments.program)
         else {
             return Err(missing);
+        };
+        let tools = match (arguments.tool, arguments.params) {
+            (Some(tool), params) => Tools::One(tool, params),
+            (None, ToolArguments { library: Some(library), params }) if params.is_empty() => {
+                Tools::Numbered { library: Some(library), entries: BTreeMap::new() }
+            }
+            (None, ToolArguments { library: Some(_), .. }) => {
+                return Err(Failure::UnusedParams(
+                    "name the tool whose params they are by `--tool`",
+                ));
+            }
+            (None, ToolArguments { library: None, .. }) => return Err(missing),
         };
         Ok(Job {
             part,
@@ -173,7 +190,7 @@ impl Job {
             control: arguments.control,
             work_offsets: [None; 9],
             block_delete: None,
-            tools: Tools::One(tool, arguments.params),
+            tools,
             tolerance: arguments.tolerance,
             resolution: arguments.resolution,
             allow: arguments.allow,

@@ -17,16 +17,16 @@ use crate::output::{Output, write_file};
 use crate::part::{self, NO_INSIDE};
 use crate::progress::Progress;
 use entry::entries;
-use serde::Serialize;
 pub(crate) use entry::{Entry, EntrySource, Severity};
 use job::Fixture;
 pub(crate) use job::Job;
 use machine::MachineFinding;
+use serde::Serialize;
 pub(crate) use source::{CheckedProgram, DEFAULT_MACHINE};
 use std::io::Write;
 use std::process::ExitCode;
 pub(crate) use stock::CutStock;
-pub(crate) use text::summary;
+use text::summary;
 pub(crate) use tools::ProgramTool;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
@@ -47,8 +47,6 @@ pub(crate) struct Scope<'a> {
     pub(crate) info: &'a ToolInfo,
     /// The tool's number in the program.
     pub(crate) number: Option<u32>,
-    /// The reading of the program, if there are several.
-    under: Option<String>,
     /// The part or the fixture.
     body: &'a str,
     unit: Unit,
@@ -180,7 +178,8 @@ impl Inputs {
                 verifier = verifier.with_tolerance(job.tolerance)?;
                 for (surface, allowed) in &job.allow {
                     // An allowance of a job holds for the tools that have the surface, and one has to have it.
-                    let has = |tool: &ProgramTool| tool.tool().info().surface_named(surface).is_some();
+                    let has =
+                        |tool: &ProgramTool| tool.tool().info().surface_named(surface).is_some();
                     if has(tool) || !tools.iter().any(has) {
                         verifier = verifier.with_allowance(surface, *allowed)?;
                     }
@@ -201,8 +200,7 @@ impl Inputs {
             tilt: verifier.tilt(&group.worst).filter(|_| program.turns_axis()),
         };
         let remedies = groups.iter().map(remedy).collect();
-        let under = program.under(&[reading]);
-        let scope = Scope { info, number: tool.number, under, body: &body.name, unit: job.unit };
+        let scope = Scope { info, number: tool.number, body: &body.name, unit: job.unit };
         let is_part = body.margin.is_none();
         Ok(CheckedPair { scope, reading, report, groups, remedies, is_part })
     }
@@ -226,14 +224,18 @@ impl Inputs {
                     let moves = program.moves(reading, tool, None, job.unit)?.filter(is_its);
                     let mut moves = moves.peekable();
                     if moves.peek().is_some() {
-                        let approach = Verifier::new(&bodies[0].bvh, tool.tool())?.approach(moves)?;
+                        let approach =
+                            Verifier::new(&bodies[0].bvh, tool.tool())?.approach(moves)?;
                         is_near |= !approach.is_far();
                     }
                 }
-                let gap = Gap::open(*line, format!(
-                    "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
+                let gap = Gap::open(
+                    *line,
+                    format!(
+                        "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
                      or give a job per part"
-                ));
+                    ),
+                );
                 if !is_near && !gaps.contains(&gap) {
                     gaps.push(gap);
                 }
@@ -263,6 +265,24 @@ impl Verification<'_> {
         entries(self)
     }
 
+    /// Summarises the findings of each tool at each body, those of several readings in one line if they are alike.
+    pub(crate) fn summaries(&self) -> Vec<String> {
+        let mut summaries: Vec<(String, Vec<usize>)> = Vec::new();
+        for pair in &self.pairs {
+            let text = summary(pair);
+            match summaries.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, readings)) => readings.push(pair.reading),
+                None => summaries.push((text, vec![pair.reading])),
+            }
+        }
+        let named =
+            |(text, readings): (String, Vec<usize>)| match self.inputs.program.under(&readings) {
+                Some(under) => format!("{under}: {text}"),
+                None => text,
+            };
+        summaries.into_iter().map(named).collect()
+    }
+
     /// Returns the stock after the first reading, if the job has one.
     pub(crate) fn cut(&self) -> Option<&CutStock> {
         self.cuts.first()
@@ -281,8 +301,8 @@ impl Verification<'_> {
         for gap in self.gaps.iter().filter(|gap| !gap.is_open || job.anyway) {
             message!("{}", not_checked(gap));
         }
-        for pair in &self.pairs {
-            message!("{}", summary(pair));
+        for summary in self.summaries() {
+            message!("{summary}");
         }
         if let (Some(cut), Some(entry)) = (self.cut(), &job.stock) {
             cut.report(entry, &bodies[0].bvh)?;
@@ -327,7 +347,8 @@ impl Verification<'_> {
             if pairs.iter().all(|pair| pair.report.moves == 0) {
                 count = 0;
             } else {
-                let touches_stock = self.cuts.get(reading).is_some_and(|cut| !cut.findings.is_empty());
+                let touches_stock =
+                    self.cuts.get(reading).is_some_and(|cut| !cut.findings.is_empty());
                 reasons.extend(implausibilities(&pairs, job, touches_stock));
             }
         }
@@ -335,9 +356,11 @@ impl Verification<'_> {
             reasons.push("no motion could be checked".to_owned());
         }
         let mut seen = Vec::new();
-        reasons.retain(|reason| !seen.contains(reason) && {
-            seen.push(reason.clone());
-            true
+        reasons.retain(|reason| {
+            !seen.contains(reason) && {
+                seen.push(reason.clone());
+                true
+            }
         });
         reasons
     }
@@ -374,14 +397,6 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let verification = inputs.check(json)?;
     let entries = verification.entries();
     let mut out = Output::rows();
-    if json {
-        for Gap { line, is_open, reason, .. } in &verification.gaps {
-            let (file, open) = (&*inputs.file, *is_open);
-            let row = GapRow { file, line: *line, kind: "not-checked", open, reason };
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
-        }
-    }
     for entry in &entries {
         if json {
             serde_json::to_writer(&mut out, &entry.row)?;
@@ -389,6 +404,14 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         } else {
             out.styled(entry.severity.style(), &format!("{}:{}:", inputs.file, entry.line))?;
             writeln!(out, " {}", entry.text)?;
+        }
+    }
+    if json {
+        for Gap { line, is_open, reason, .. } in &verification.gaps {
+            let (file, open) = (&*inputs.file, *is_open);
+            let row = GapRow { file, line: *line, kind: "not-checked", open, reason };
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
         }
     }
     out.flush()?;
@@ -422,11 +445,7 @@ fn bodies(job: &Job, program: &CheckedProgram) -> Result<Vec<Body>, Failure> {
 }
 
 /// Returns the reasons to doubt that the motions that were checked are meant for these bodies.
-fn implausibilities(
-    pairs: &[&CheckedPair<'_>],
-    job: &Job,
-    touches_stock: bool,
-) -> Vec<String> {
+fn implausibilities(pairs: &[&CheckedPair<'_>], job: &Job, touches_stock: bool) -> Vec<String> {
     let mut reasons = Vec::new();
     for pair in pairs {
         let CheckedPair { scope, report, .. } = pair;

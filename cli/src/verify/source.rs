@@ -153,9 +153,14 @@ impl CheckedProgram {
             }
             CheckedProgram::Machine(readings) => {
                 let mut numbers = Vec::new();
-                for tool in readings.iter().flat_map(|program| &program.summary().tools) {
-                    if !numbers.contains(&tool.number) {
-                        numbers.push(tool.number);
+                let summaries = || readings.iter().map(MachineProgram::summary);
+                let checked = summaries().flat_map(|summary| &summary.tools);
+                let others = summaries().flat_map(|summary| &summary.unchecked_tools);
+                // An empty spindle has no tool that could be missing.
+                let others = others.map(|(number, _)| *number).filter(|number| *number != 0);
+                for number in checked.map(|tool| tool.number).chain(others.map(Some)) {
+                    if !numbers.contains(&number) {
+                        numbers.push(number);
                     }
                 }
                 numbers
@@ -270,7 +275,7 @@ impl CheckedProgram {
 
     /// Prints what is known about the program before any finding.
     pub(super) fn print(&self, pairs: &[CheckedPair<'_>], unit: Unit) {
-        for pair in pairs.iter().filter(|pair| pair.is_part) {
+        for pair in pairs.iter().filter(|pair| pair.is_part && pair.reading == 0) {
             program::print_approach(&pair.report, unit);
         }
         match self {

@@ -115,7 +115,7 @@ fn format_small(value: f64, unit: Unit) -> String {
 }
 
 /// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
-pub(crate) fn summary(pair: &CheckedPair<'_>) -> String {
+pub(super) fn summary(pair: &CheckedPair<'_>) -> String {
     let CheckedPair { scope, report, groups, .. } = pair;
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let motions = report.motions;
@@ -123,10 +123,6 @@ pub(crate) fn summary(pair: &CheckedPair<'_>) -> String {
         Some(number) => format!("T{number} at {}: ", scope.body),
         None if scope.body == super::PART => String::new(),
         None => format!("{}: ", scope.body),
-    };
-    let tool = match &scope.under {
-        Some(under) => format!("{under}: {tool}"),
-        None => tool,
     };
     let count = groups.len();
     if count == 0 {

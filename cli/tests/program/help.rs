@@ -4,10 +4,11 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 21] = [
     // `sweep` makes the map that `map` and `path` read.
     "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample", "bench",
-    "import", "export", "tools", "check", "explain", "fmt", "expand", "draw",
+    "import", "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand",
+    "draw",
 ];
 
 const TOOL: &str = "tool My {

@@ -142,7 +142,11 @@ fn wrong_parts_and_tools_are_refused() {
     refused(&["--program", &program], 2, "bad.nc:2");
     refused(&["--program", &program, "--machine", "4-axis"], 2, "4-axis");
     let table = bench.write("table.csv", "0,0,9,0,0,1\n");
-    refused(&["--program", &table, "--machine", "3-axis"], 2, "a machine is for G-code");
+    refused(
+        &["--program", &table, "--machine", "3-axis"],
+        2,
+        "a machine or a control is for G-code",
+    );
     refused(&["--part", &part], 2, "--unit");
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = taken.local_addr().expect("an address").port().to_string();

@@ -1,6 +1,7 @@
 //! The program from the user's side: its output and its refusals.
 
 mod bench;
+mod controls;
 mod docs;
 mod explain;
 mod fmt;

@@ -65,19 +65,19 @@ impl Control {
                 _ => return,
             },
         };
-        if !moved.contains(&true) {
-            return;
+        if moved.contains(&true) {
+            self.move_machine(moved, target, (true, StepPath::ToolChange(target)));
         }
-        let mut machine = self.state.to_machine(self.position);
-        for axis in (0..6).filter(|axis| moved[*axis]) {
-            machine[axis] = target[axis];
-        }
-        let end = self.state.from_machine(machine);
-        self.push(true, end, moved, StepPath::ToolChange(target));
     }
 
-    /// Applies the length of the tool in the spindle without a word, where the control does.
+    /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
     pub(super) fn length_without_word(&mut self) {
+        if std::mem::take(&mut self.returned)
+            && self.choice(Rule::ReferenceReturn) == Choice::CancelsLength
+        {
+            self.length_cancelled = true;
+            self.change(|state| state.length = LengthOffset::Off);
+        }
         if let (LengthOffset::Off, false, Some(tool)) =
             (self.state.length, self.length_cancelled, self.state.tool)
             && tool != 0
@@ -86,12 +86,6 @@ impl Control {
             let length = self.registered(tool);
             self.change(|state| state.length = length);
         }
-    }
-
-    /// Switches the tool length offset off.
-    pub(super) fn cancel_length(&mut self) {
-        self.length_cancelled = true;
-        self.change(|state| state.length = LengthOffset::Off);
     }
 
     /// Executes the words that change coordinates and use no axis words, and G68.
@@ -116,6 +110,7 @@ impl Control {
 
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        self.returned = false;
         let off = |transformed| if transformed { Tcp::Rotary } else { Tcp::Off };
         if code.tenths == 490 {
             let tcp = off(self.transformed);

@@ -6,10 +6,11 @@ use super::code::{Code, Group};
 use super::expression::Parameters;
 use super::flow::Flow;
 use super::label::{Label, Role};
-use super::modal::FeedMode;
+use super::modal::{FeedMode, Motion};
 use super::motion::Control;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
+use super::state::Rotation;
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
@@ -205,7 +206,8 @@ fn after_semicolon(text: &str) -> Option<&str> {
     })?;
     let after = &text[position + 1..];
     let mut bytes = after.bytes().filter(|byte| !byte.is_ascii_whitespace());
-    let begins = bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || b"/#".contains(&byte));
+    let begins =
+        bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || b"/#".contains(&byte));
     (begins && bytes.next().is_some_and(|byte| !byte.is_ascii_alphabetic())).then_some(after)
 }
 
@@ -237,7 +239,11 @@ impl Control {
         let is_one_shot = block.code_of(Group::OneShot).is_some();
         let is_machine = block.code_of(Group::Machine).is_some();
         if block.has_any("XYZABC") && !is_one_shot && !is_machine {
-            self.length_without_word();
+            // The offset moves Z alone, but in a rotated plane.
+            let normal = matches!(self.modal.motion, Some(Motion::Cycle(_))) || block.has('Z');
+            if normal || self.state.rotation != Rotation::Off {
+                self.length_without_word();
+            }
             if !self.offset_stated && self.choice(Rule::StartOffset) == Choice::NoOffset {
                 let needed = "a work offset (G54) before, since this control starts without one";
                 return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
@@ -323,7 +329,9 @@ impl Control {
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
         match tenths(Group::Units) {
-            Some(200 | 700 | 7000) => (self.modal.unit, self.modal.unit_stated) = (Unit::Inch, true),
+            Some(200 | 700 | 7000) => {
+                (self.modal.unit, self.modal.unit_stated) = (Unit::Inch, true)
+            }
             Some(_) => (self.modal.unit, self.modal.unit_stated) = (Unit::Millimetre, true),
             None => {}
         }

@@ -58,6 +58,9 @@ pub(super) struct Control {
     pub(super) change_position: Option<Position>,
     /// Set once a work offset was selected.
     pub(super) offset_stated: bool,
+    /// Set by a return to a reference position under a length offset, until the next word or motion to which the offset
+    /// matters.
+    pub(super) returned: bool,
     /// Set by G49, until the next tool change.
     pub(super) length_cancelled: bool,
     pub(super) spindle: SpindleWords,
@@ -106,6 +109,7 @@ impl Control {
             endless: setup.endless,
             change_position: setup.tool_change,
             offset_stated: false,
+            returned: false,
             length_cancelled: false,
             spindle: SpindleWords::default(),
             pending: VecDeque::new(),
@@ -346,7 +350,7 @@ impl Control {
         {
             target[2] = Some(z + length);
         }
-        self.move_machine(rapid, axes.map(|value| value.is_some()), target);
+        self.move_machine(axes.map(|value| value.is_some()), target, (rapid, StepPath::Line));
         Ok(())
     }
 
@@ -376,17 +380,19 @@ impl Control {
             named = self.axes;
         }
         let home = if word == "G28" { self.home } else { self.second_home };
-        self.move_machine(true, named, home.map_or([None; 6], |home| home.map(Some)));
-        if self.state.length != LengthOffset::Off
-            && self.choice(Rule::ReferenceReturn) == Choice::CancelsLength
-        {
-            self.cancel_length();
-        }
+        let target = home.map_or([None; 6], |home| home.map(Some));
+        self.move_machine(named, target, (true, StepPath::Line));
+        self.returned = self.state.length != LengthOffset::Off;
         Ok(())
     }
 
     /// Moves axes to machine coordinates. An unknown coordinate leads where only the machine knows.
-    fn move_machine(&mut self, rapid: bool, mut commanded: [bool; 6], target: Position) {
+    pub(super) fn move_machine(
+        &mut self,
+        mut commanded: [bool; 6],
+        target: Position,
+        (rapid, path): (bool, StepPath),
+    ) {
         let mut machine = self.state.to_machine(self.position);
         for axis in 0..6 {
             if commanded[axis] {
@@ -408,7 +414,7 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
-        self.push(rapid, end, commanded, StepPath::Line);
+        self.push(rapid, end, commanded, path);
     }
 
     /// Adds a step from the present position, and moves there.

@@ -69,9 +69,9 @@ impl fmt::Display for NoteKind {
             NoteKind::TextAfterEnd => {
                 f.write_str("the text after the end of the program is not read")
             }
-            NoteKind::OtherProgram => {
-                f.write_str("another program begins here, and is not checked: give a file per program")
-            }
+            NoteKind::OtherProgram => f.write_str(
+                "another program begins here, and is not checked: give a file per program",
+            ),
         }
     }
 }

@@ -432,9 +432,10 @@ impl ControlRules {
                 let message = format!("{} is no rule: did you mean `{near}`?", shown(word));
                 return Err(fault(key.span().start, message));
             };
-            let choice = value.get_ref().as_str().and_then(|value| {
-                entry.choices.iter().find(|(_, known, _)| *known == value)
-            });
+            let choice = value
+                .get_ref()
+                .as_str()
+                .and_then(|value| entry.choices.iter().find(|(_, known, _)| *known == value));
             let Some((choice, ..)) = choice else {
                 let words: Vec<String> =
                     entry.choices.iter().map(|(_, known, _)| format!("\"{known}\"")).collect();
@@ -443,8 +444,9 @@ impl ControlRules {
             };
             stated.insert(entry.rule, *choice);
         }
-        let is_missing =
-            |entry: &&Entry| entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule);
+        let is_missing = |entry: &&Entry| {
+            entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule)
+        };
         match RULES.iter().find(is_missing) {
             None => Ok(ControlRules { stated }),
             Some(Entry { key, about, .. }) => {
@@ -521,7 +523,9 @@ pub enum ControlError {
         message: String,
     },
     /// A rule is not stated.
-    #[error("{file}: the rule `{key}` is missing ({about}): state it; `touchoff controls NAME` prints a whole file")]
+    #[error(
+        "{file}: the rule `{key}` is missing ({about}): state it; `touchoff controls NAME` prints a whole file"
+    )]
     Missing {
         /// The file.
         file: String,
@@ -567,7 +571,10 @@ mod tests {
         let line = |key: &str| 1 + file[..file.find(key).expect("a key")].matches('\n').count();
         assert_eq!(
             refused("\ncycle_below_r", "\ncycle_below"),
-            format!("c.toml:{}: `cycle_below` is no rule: did you mean `cycle_below_r`?", line("cycle_below_r"))
+            format!(
+                "c.toml:{}: `cycle_below` is no rule: did you mean `cycle_below_r`?",
+                line("cycle_below_r")
+            )
         );
         assert_eq!(
             refused("\"counts\"", "true"),

@@ -177,12 +177,16 @@ impl Library {
         &self.skipped
     }
 
-    /// Returns the tool with this name, title or number.
-    pub fn find(&self, wanted: &str) -> Option<&ImportedTool> {
+    /// Returns the tools with this name; without one, those with this title, and then those with this number.
+    pub fn find(&self, wanted: &str) -> Vec<&ImportedTool> {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
-        let named = |tool: &&ImportedTool| tool.name == wanted || tool.entry.title == wanted;
-        let numbered = |tool: &&ImportedTool| number.is_some() && tool.entry.number == number;
-        self.tools.iter().find(named).or_else(|| self.tools.iter().find(numbered))
+        let all = |is_wanted: &dyn Fn(&ImportedTool) -> bool| -> Vec<&ImportedTool> {
+            self.tools.iter().filter(|tool| is_wanted(tool)).collect()
+        };
+        let named = all(&|tool| tool.name == wanted);
+        let titled = all(&|tool| tool.entry.title == wanted);
+        let numbered = all(&|tool| number.is_some() && tool.entry.number == number);
+        [named, titled, numbered].into_iter().find(|found| !found.is_empty()).unwrap_or_default()
     }
 }
 

@@ -9,8 +9,8 @@
 
 use super::moves::{JointPath, Move, MovePath, RapidBox};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule, Spindle,
-    Step, WorkOffset,
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule,
+    Spindle, Step, WorkOffset,
 };
 use crate::machine::{
     JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
@@ -52,8 +52,9 @@ pub struct MachineProgram {
 pub struct MachineSummary {
     /// The tools in the order of their first motion that is checked.
     pub tools: Vec<ToolUse>,
-    /// Tools with motions of which none is checked, each with the line of its first.
-    pub unchecked_tools: Vec<(Option<u32>, usize)>,
+    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
+    /// the first change is not among them.
+    pub unchecked_tools: Vec<(u32, usize)>,
     /// Motions that are not checked, by their cause.
     pub unknown: Vec<UnknownMotions>,
     /// The line of the first motion in rapid traverse of several axes at rates that are not known.
@@ -91,8 +92,9 @@ pub struct UnknownMotions {
     pub count: usize,
     /// The line of the first.
     pub line: usize,
-    /// The line of the first in feed, if there is one.
-    pub feed_line: Option<usize>,
+    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
+    /// to its first position is the operator's, and that to the reference position the machine's.
+    pub open_line: Option<usize>,
 }
 
 /// A tool's use in a program.
@@ -165,11 +167,13 @@ impl MachineProgram {
         loop {
             let mut assumed = vec![ControlRules::default()];
             for rule in branched.keys() {
-                let choices = |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
+                let choices =
+                    |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
                 assumed = assumed.into_iter().flat_map(choices).collect();
             }
             if assumed.len() > MAX_READINGS {
-                let rules = branched.iter().map(|(rule, line)| format!("`{}` (line {line})", rule.key()));
+                let rules =
+                    branched.iter().map(|(rule, line)| format!("`{}` (line {line})", rule.key()));
                 let rules = rules.collect::<Vec<_>>().join(", ");
                 return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
             }
@@ -180,7 +184,8 @@ impl MachineProgram {
             let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
             let known = branched.len();
             for program in &programs {
-                let open = program.summary.open_rules.iter().filter(|(rule, _)| is_branched(**rule));
+                let open =
+                    program.summary.open_rules.iter().filter(|(rule, _)| is_branched(**rule));
                 for (rule, line) in open {
                     branched.entry(*rule).or_insert(*line);
                 }
@@ -218,9 +223,12 @@ impl MachineProgram {
         let mut program = MachineProgram { file, text, machine, setup, assumed, summary };
         program.summary = program.run(is_placed).map_err(|error| match program.assumed {
             ref assumed if *assumed == ControlRules::default() => error,
-            ref assumed => MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() },
+            ref assumed => {
+                MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
+            }
         })?;
-        let is_open = |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
+        let is_open =
+            |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
         program.summary.open_rules.retain(|rule, _| is_open(rule));
         Ok(program)
     }
@@ -300,7 +308,9 @@ impl MachineProgram {
                 fault,
             })?;
             let number = step.state.tool;
-            if !matches!(resolved, Resolved::ToolChange) && !seen.iter().any(|(tool, _)| *tool == number) {
+            if !matches!(resolved, Resolved::ToolChange)
+                && !seen.iter().any(|(tool, _)| *tool == number)
+            {
                 seen.push((number, step.line));
             }
             if !step.rapid {
@@ -348,8 +358,9 @@ impl MachineProgram {
         }
         summary.notes = interpreter.notes();
         summary.open_rules.clone_from(interpreter.asked());
-        let is_checked = |number: &Option<u32>| uses.contains_key(number);
-        summary.unchecked_tools = seen.into_iter().filter(|(tool, _)| !is_checked(tool)).collect();
+        let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
+        summary.unchecked_tools =
+            unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
         Ok(summary)
@@ -358,10 +369,7 @@ impl MachineProgram {
 
 /// Returns whether each choice of a rule is a reading of its own. The others are judged by the choice that includes all.
 fn is_branched(rule: Rule) -> bool {
-    !matches!(
-        rule,
-        Rule::ToolChange | Rule::Rapid | Rule::Unit | Rule::StartOffset | Rule::Dialect
-    )
+    !matches!(rule, Rule::ToolChange | Rule::Rapid | Rule::Unit | Rule::StartOffset | Rule::Dialect)
 }
 
 impl MachineSummary {
@@ -369,7 +377,10 @@ impl MachineSummary {
     fn add_feed(&mut self, step: &Step) {
         let tool = step.state.tool;
         if step.spindle != Spindle::Tapping
-            && !self.spindle.iter().any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
+            && !self
+                .spindle
+                .iter()
+                .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
         {
             self.spindle.push((step.line, tool, step.spindle));
         }
@@ -385,14 +396,16 @@ impl MachineSummary {
     fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
         let position = self.unknown.iter().position(|known| known.cause == cause);
         let position = position.unwrap_or_else(|| {
-            let motions = UnknownMotions { cause, count: 0, line: step.line, feed_line: None };
+            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
             self.unknown.push(motions);
             self.unknown.len() - 1
         });
         let unknown = &mut self.unknown[position];
         unknown.count += 1;
-        if !step.rapid {
-            unknown.feed_line.get_or_insert(step.line);
+        let is_first = cause == UnknownCause::Start;
+        let goes_home = (0..6).any(|k| step.commanded[k] && step.end[k].is_none());
+        if !step.rapid || !is_first && !goes_home {
+            unknown.open_line.get_or_insert(step.line);
         }
     }
 }

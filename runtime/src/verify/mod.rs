@@ -35,8 +35,8 @@ pub use approach::Approach;
 pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
 pub use group::FindingGroup;
 pub use machine_program::{
-    Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault, ToolSelection, ToolUse,
-    UnknownCause, UnknownMotions,
+    Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault,
+    ToolSelection, ToolUse, UnknownCause, UnknownMotions,
 };
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;

@@ -73,7 +73,8 @@ impl RapidBox {
     /// Returns both halves of the box, divided across its longest way.
     pub(super) fn halves(&self) -> [RapidBox; 2] {
         let mut half = self.clone();
-        let longest = half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
+        let longest =
+            half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
         let Some(longest) = longest else { return [half.clone(), half] };
         *longest *= 0.5;
         let middle = self.start.tip() + *longest;

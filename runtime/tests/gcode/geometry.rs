@@ -5,7 +5,8 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::{PI, TAU};
 use touchoff::gcode::{
-    Choice, ControlRules, ControlSetup, LengthOffset, Plane, Position, Rotation, Rule, Step, StepPath, Tcp, WorkOffset, read,
+    Choice, ControlRules, ControlSetup, LengthOffset, Plane, Position, Rotation, Rule, Step,
+    StepPath, Tcp, WorkOffset, read,
 };
 
 fn at_zero() -> ControlSetup {
@@ -135,10 +136,8 @@ fn half_turns_by_radius_do_not_depend_on_the_last_digit() {
 
 #[test]
 fn inches_are_converted_once() {
-    let setup = ControlSetup {
-        rules: ControlRules::default().with(Rule::Unit, Choice::Inch),
-        ..at_zero()
-    };
+    let setup =
+        ControlSetup { rules: ControlRules::default().with(Rule::Unit, Choice::Inch), ..at_zero() };
     assert_eq!(
         linear(ends("G0 X0.1 Y1 Z-3.3", &setup)[0]),
         [Some(0.1 * 25.4), Some(25.4), Some(-3.3 * 25.4)]

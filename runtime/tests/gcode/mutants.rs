@@ -91,7 +91,8 @@ fn setups() -> [ControlSetup; 2] {
         ..ControlSetup::default()
     };
     let rules = ControlRules::named("haas").expect("a control");
-    let rules = rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
+    let rules =
+        rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
     let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
     [ControlSetup { rules, ..known }, ControlSetup::default()]
 }

@@ -2,8 +2,8 @@
 
 use crate::common::{folder, text};
 use touchoff::gcode::{
-    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, NoteKind, Position, Rule, Step, StepPath, Tcp,
-    read,
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, NoteKind, Position, Rule, Step,
+    StepPath, Tcp, read,
 };
 
 fn at_zero() -> ControlSetup {

@@ -44,7 +44,7 @@ fn an_aligned_tool_is_tilted_wherever_it_stands() {
     assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
     assert!((pose.tip().coords - expected * -1.0).norm() < 1e-12, "{pose:?}");
     let unknown = &program.summary().unknown;
-    assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.feed_line.is_none()));
+    assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.open_line.is_none()));
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_shift_at_an_unknown_position_leaves_positions_unknown() {
     let program = program("3-axis", None, &[], "G92 X50. Y0. Z5.\nG0 X50. Y0. Z5.\nG1 X32.");
     let program = program.expect("a program");
     let [unknown] = &program.summary().unknown[..] else { panic!("{:?}", program.summary()) };
-    assert_eq!((unknown.count, unknown.feed_line), (2, Some(4)));
+    assert_eq!((unknown.count, unknown.open_line), (2, Some(4)));
 }
 
 #[test]

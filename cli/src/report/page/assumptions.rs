@@ -72,7 +72,8 @@ fn lines(content: &Content<'_>) -> Vec<String> {
         CheckedProgram::Machine(readings) => {
             let control = match &job.control {
                 Some(control) => format!("Control: {}.", control.display()),
-                None => "No control is named: what every control does that is known is checked.".to_owned(),
+                None => "No control is named: what every control does that is known is checked."
+                    .to_owned(),
             };
             lines.push(format!(
                 "Machine: {}. {control} Between two blocks the control interpolates its axes. G54 is the frame of the part.",
@@ -80,7 +81,10 @@ fn lines(content: &Content<'_>) -> Vec<String> {
             ));
             if readings.len() > 1 {
                 let each = readings.iter().map(|reading| reading.assumed().to_string());
-                lines.push(format!("Readings of the program: {}.", each.collect::<Vec<_>>().join("; ")));
+                lines.push(format!(
+                    "Readings of the program: {}.",
+                    each.collect::<Vec<_>>().join("; ")
+                ));
             }
         }
     }

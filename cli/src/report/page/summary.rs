@@ -90,7 +90,7 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
     if !fixtures.is_empty() {
         rows.push(("Fixtures", fixtures));
     }
-    let checked = verification.pairs.iter().map(|pair| plain(&verify::summary(pair)));
+    let checked = verification.summaries().into_iter().map(|summary| plain(&summary));
     rows.push(("Checked", checked.collect()));
     if let (Some(cut), Some(comparison)) = (verification.cut(), &content.comparison) {
         let farthest = |what: &str, point: Option<DeviationPoint>| match point {

@@ -8,7 +8,9 @@ use crate::machine::{InverseError, JointError};
 #[non_exhaustive]
 pub enum MachineProgramError {
     /// A control reads the program in this way, and is stopped by it.
-    #[error("{error} (under {rules}; a control that is named, or whose rules are stated, reads it in one way)")]
+    #[error(
+        "{error} (under {rules}; a control that is named, or whose rules are stated, reads it in one way)"
+    )]
     Under {
         /// The error.
         error: Box<MachineProgramError>,

@@ -79,18 +79,14 @@ impl MachineSummary {
         let mut add = |line: usize, is_open: bool, reason: String| {
             gaps.push(Gap { line, is_open, reason });
         };
-        for UnknownMotions { cause, count, line, feed_line } in &self.unknown {
+        for UnknownMotions { cause, count, line, open_line } in &self.unknown {
             let plural = if *count == 1 { "" } else { "s" };
-            let feed = match feed_line {
-                Some(line) => format!(", first in feed at line {line}"),
-                None => String::new(),
-            };
-            let reason = format!("{count} motion{plural} not checked, first at line {line}{feed}: {cause}");
-            add(feed_line.unwrap_or(*line), feed_line.is_some(), reason);
+            let reason =
+                format!("{count} motion{plural} not checked, first at line {line}: {cause}");
+            add(open_line.unwrap_or(*line), open_line.is_some(), reason);
         }
         for (tool, line) in &self.unchecked_tools {
-            let name = tool.map_or("the tool before the first change".to_owned(), |tool| format!("T{tool}"));
-            add(*line, true, format!("no motion of {name} is checked"));
+            add(*line, true, format!("no motion of T{tool} is checked"));
         }
         if let Some(line) = self.any_rotary_rapid {
             let reason = "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line \
@@ -122,7 +118,8 @@ impl MachineSummary {
         }
         for note in &self.notes {
             let is_open = note.kind == NoteKind::OtherProgram;
-            let times = if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
+            let times =
+                if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
             if !matches!(note.kind, NoteKind::PassedOver { .. }) {
                 add(note.line, is_open, format!("{}{times}", note.kind));
             }

@@ -4,8 +4,8 @@ use super::StepFault;
 use super::path::{self, Map};
 use super::rapid;
 use crate::gcode::{
-    self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step, StepPath,
-    WorkOffset,
+    self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step,
+    StepPath, WorkOffset,
 };
 use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -191,17 +191,20 @@ impl<'a> Resolver<'a> {
         if let StepPath::ToolChange(target) = step.path {
             for k in (0..6).filter(|k| step.commanded[*k]) {
                 self.joints[k] = target[k].filter(|_| self.is_placed);
+                if self.joints[k].is_none() {
+                    self.cause = UnknownCause::ToolChange;
+                }
             }
-            self.cause = UnknownCause::ToolChange;
             return Ok(Resolved::ToolChange);
         }
         let frame = match self.frame(&step.state)? {
             Ok(frame) => frame,
             Err(cause) => {
-                // Only the machine knows what positions mean.
+                // Only the machine knows what positions mean. If it also is where nothing tells, that is the cause.
+                let is_lost = self.joints[2].is_none() && !step.commanded[2];
                 self.joints = self.joints.map(|_| None);
-                self.cause = cause;
-                return Ok(Resolved::Unknown(cause));
+                self.cause = if is_lost { self.cause } else { cause };
+                return Ok(Resolved::Unknown(self.cause));
             }
         };
         if matches!(step.path, StepPath::Align) {
@@ -275,7 +278,11 @@ impl<'a> Resolver<'a> {
     }
 
     /// Resolves rapid traverse of the axes from one joint position to another.
-    fn rapid(&self, chain: &Chain, joints @ [start, end]: [Joints; 2]) -> Result<Resolved, StepFault> {
+    fn rapid(
+        &self,
+        chain: &Chain,
+        joints @ [start, end]: [Joints; 2],
+    ) -> Result<Resolved, StepFault> {
         let moving: Vec<usize> = (0..6).filter(|k| start[*k] != end[*k]).collect();
         let rates = match &self.rapid {
             RapidPath::Rates(rates) => Some(rates),
@@ -419,10 +426,7 @@ impl<'a> Resolver<'a> {
     /// Returns the length of the tool in the spindle and the length offset; the cause if only the machine knows where the
     /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
     /// for a program that names no tool: Z of the work offset is then that of the tip.
-    fn lengths(
-        &self,
-        state: &ControlState,
-    ) -> Result<Result<Lengths, UnknownCause>, StepFault> {
+    fn lengths(&self, state: &ControlState) -> Result<Result<Lengths, UnknownCause>, StepFault> {
         let known = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {

@@ -1,0 +1,459 @@
+//! What controls do differently: a program on which they differ is clean only if it is clean on all of them, or on the one
+//! that is named.
+
+use crate::bench::{Bench, objects, stderr, stdout, touchoff};
+use nalgebra::Point3;
+use std::fs;
+use std::process::Output;
+use touchoff::gcode::{ControlRules, Rule};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Unit};
+
+/// A block of 6 × 6 × 2 below z = 0, a tool of 2 mm that ends in a ball, and what is added by a test.
+struct Scene {
+    bench: Bench,
+    job: String,
+}
+
+/// A program that states its unit and its offset, and turns the spindle.
+fn program(blocks: &str) -> String {
+    format!("G21 G90 G54 G94 S9000 M3 F100.\n{blocks}\nM30\n")
+}
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
+impl Scene {
+    fn new(blocks: &str) -> Scene {
+        Scene::of(&program(blocks))
+    }
+
+    fn of(text: &str) -> Scene {
+        let bench = Bench::new();
+        bench.write("a.nc", text);
+        let job = "part = \"block.stl\"\nunit = \"mm\"\nprogram = \"a.nc\"\n";
+        Scene { bench, job: format!("{job}TOP\n[tool.1]\ntool = \"D2Ball\"\nLENGTH\n") }
+    }
+
+    /// States a key of the job.
+    fn with(mut self, line: &str) -> Scene {
+        self.job = self.job.replace("TOP", &format!("{line}\nTOP"));
+        self
+    }
+
+    /// States the length of the tool, and where the part is on the machine.
+    fn placed(mut self) -> Scene {
+        self.job = self.job.replace("LENGTH", "length = 50");
+        self.job += "[work_offsets]\nG54 = [0, 0, -400]\n";
+        self
+    }
+
+    /// Adds an obstacle.
+    fn obstacle(mut self, low: [f64; 3], high: [f64; 3]) -> Scene {
+        self.bench.part("clamp.stl", &cuboid(low, high));
+        self.job += "[[fixture]]\nname = \"the clamp\"\nmesh = \"clamp.stl\"\n";
+        self
+    }
+
+    fn run(&self, more: &[&str]) -> Output {
+        let job = self.job.replace("TOP\n", "").replace("LENGTH\n", "");
+        let file = self.bench.write("a.toml", job);
+        touchoff(&[&["verify", &file][..], more].concat())
+    }
+
+    /// Asserts the status and words of the output with more options.
+    fn gives(&self, more: &[&str], status: i32, words: &[&str]) {
+        let output = self.run(more);
+        let all = format!("{}{}", stdout(&output), stderr(&output));
+        assert_eq!(output.status.code(), Some(status), "{more:?}: {all}");
+        for word in words {
+            assert!(all.contains(word), "{more:?}: `{word}` is missing in:\n{all}");
+        }
+    }
+}
+
+const LINUXCNC: [&str; 2] = ["--control", "linuxcnc"];
+const FANUC: [&str; 2] = ["--control", "fanuc"];
+const HAAS: [&str; 2] = ["--control", "haas"];
+
+/// The changer leaves the axes above a clamp, through which the tool then comes down.
+#[test]
+fn after_a_tool_change_only_the_machine_knows_where_the_axes_are() {
+    let blocks =
+        "G43 H1 G0 X-6. Y0. Z20.\nT1 M6\nS9000 M3\nG0 X6. Y0.\nG43 H1 Z0.5\nG1 X0.\nG0 Z20.";
+    let scene = Scene::new(blocks).placed().obstacle([2.0, -3.0, 60.0], [12.0, 3.0, 70.0]);
+    scene.gives(
+        &[],
+        2,
+        &["only the machine knows where the tool change leaves its axes", "`tool_change`"],
+    );
+    scene.gives(&FANUC, 2, &["`tool_change`"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    // The control of Haas retracts Z to its home.
+    scene.gives(&HAAS, 1, &["the clamp"]);
+    let machine = touchoff(&["machines", "3-axis"]);
+    let machine = stdout(&machine).replace("name = ", "tool_change = { Z = -300 }\nname = ");
+    scene.bench.write("mine.toml", &machine);
+    let stated = scene.with("machine = \"mine.toml\"");
+    stated.gives(&[], 1, &["the clamp"]);
+    stated.bench.write("mine.toml", machine.replace("{ Z = -300 }", "\"stays\""));
+    stated.gives(&[], 0, &[]);
+    stated.bench.write("mine.toml", machine.replace("{ Z = -300 }", "\"stay\""));
+    stated.gives(&[], 2, &["mine.toml:", "`tool_change` is \"stays\""]);
+}
+
+#[test]
+fn a_cycle_below_r_moves_sideways_or_rises_first() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1 G0 X-4. Y0. Z20.\nZ1.\nG98 G81 X20. Y0. Z1. R6.\nG80";
+    let scene = Scene::new(blocks).placed().obstacle([8.0, -3.0, -2.0], [10.0, 3.0, 3.0]);
+    let scene = scene.with("machine = \"mine.toml\"");
+    let machine = stdout(&touchoff(&["machines", "3-axis"]));
+    scene.bench.write("mine.toml", machine.replace("name = ", "tool_change = \"stays\"\nname = "));
+    scene.gives(&[], 1, &["the clamp", "under cycle_below_r = \"sideways first\""]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&HAAS, 1, &["the clamp"]);
+    let rows = objects(&scene.run(&["--json"]));
+    let under =
+        |row: &serde_json::Value| row["under"] == "under cycle_below_r = \"sideways first\"";
+    assert!(rows.iter().any(under), "{rows:?}");
+}
+
+/// An endless table turns by -330 or by +30 degrees; a post on it is at 180.
+#[test]
+fn a_rotary_axis_counts_or_turns_the_shorter_way() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 A0. C345.\nG0 X20. Y0.\nZ5.\nG1 C15.\nG0 Z50.";
+    let scene = Scene::new(blocks).placed().obstacle([-22.0, -2.0, -2.0], [-18.0, 2.0, 30.0]);
+    let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives(&[], 1, &["the clamp", "under rotary = \"counts\""]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    scene.gives(&FANUC, 0, &[]);
+    // Half a turn is as short either way.
+    let half = Scene::new(&blocks.replace("C15.", "C165.")).placed();
+    let half = half.with("machine = \"A-C trunnion\"");
+    half.gives(&FANUC, 2, &["half a turn"]);
+}
+
+/// Rapid traverse around the corner of a clamp: clear on the straight line, and not on some dog-leg.
+#[test]
+fn rapid_traverse_is_any_dog_leg_where_its_path_is_not_stated() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X-10. Y-10. Z1.\nX10. Y10. Z1.\nG1 Y12.";
+    let clamp = ([4.0, -9.0, -2.0], [9.0, -4.0, 5.0]);
+    let scene = Scene::new(blocks).placed().obstacle(clamp.0, clamp.1).with("anyway = true");
+    scene.gives(&[], 1, &["the clamp", "at some rates of its axes", "`rapid`"]);
+    scene.gives(&FANUC, 1, &["the clamp"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    // With rates the path is one dog-leg: X and Y together, or X first.
+    let machine = stdout(&touchoff(&["machines", "3-axis"]));
+    let scene = scene.with("machine = \"mine.toml\"");
+    for (x, status) in [(10_000, 0), (40_000, 1)] {
+        let rate = |machine: &str, letter: &str, rate: i32| {
+            let from = format!("letter = \"{letter}\"\n");
+            machine.replace(&from, &format!("{from}rapid = {rate}\n"))
+        };
+        let machine = rate(&rate(&rate(&machine, "X", x), "Y", 10_000), "Z", 10_000);
+        scene.bench.write("mine.toml", machine);
+        scene.gives(&[], status, &[]);
+    }
+    // Away from the clamp all dog-legs are proved clear.
+    let away = Scene::new(blocks).placed().obstacle([40.0, 40.0, 0.0], [45.0, 45.0, 9.0]);
+    away.with("anyway = true").gives(&[], 0, &[]);
+}
+
+#[test]
+fn numbers_without_a_point_are_units_or_increments() {
+    let blocks = "G0 X-6. Y0. Z20.\nG0 Z5\nX6.\nG1 X4. Z1.";
+    let scene = Scene::new(blocks).obstacle([-1.0, -3.0, 0.5], [1.0, 3.0, 3.0]);
+    scene.gives(&[], 1, &["the clamp", "under whole_numbers = \"increments\""]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&FANUC, 1, &["the clamp"]);
+}
+
+#[test]
+fn text_after_a_semicolon_is_a_comment_or_a_block() {
+    let blocks =
+        "G0 X-6. Y0. Z20.\nG0 X0. Z20.; G1 Z-1. ; G0 Z20.\nG1 X1. Z19. ; a comment, G1 Z-1.";
+    let scene = Scene::new(blocks).with("anyway = true");
+    scene.gives(&[], 1, &["ball", "under semicolon = \"end of block\""]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&HAAS, 1, &["ball"]);
+}
+
+#[test]
+fn another_program_in_the_file_is_not_passed_over() {
+    let one = program("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    let other = program("G0 X0. Y0. Z20.\nG1 Z-1.");
+    for text in [
+        format!("%\nO1\n{one}%\n%\nO2\n{other}%\n"),
+        format!("%\nO1\n{one}O2\n{other}%\n"),
+        format!("%\n{one}%\n{other}"),
+    ] {
+        let scene = Scene::of(&text);
+        scene.gives(&LINUXCNC, 2, &["another program begins here, and is not checked"]);
+    }
+    let sub = format!(
+        "%\nO1\n{}O7\nG1 X5.\nM99\n%\n(made by a post)\n",
+        one.replace("M30", "M98 P7\nM30")
+    );
+    Scene::of(&sub).gives(&LINUXCNC, 0, &[]);
+}
+
+/// Every tool with motions is in the verdict.
+#[test]
+fn a_tool_without_a_checked_motion_is_named() {
+    let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    for (tool, words) in
+        [("T2", "no motion of T2 is checked"), ("T0", "no motion of T0 is checked")]
+    {
+        let scene = Scene::new(&format!("{start}G49\n{tool} M6\nG0 X0. Y0.\nZ-5."));
+        let mut scene = scene.placed();
+        scene.job += "[tool.2]\ntool = \"D2Ball\"\n";
+        scene.gives(&LINUXCNC, 2, &[words, "moves without a tool length offset"]);
+    }
+}
+
+/// Without G43 the gauge point of the spindle goes where the program says.
+#[test]
+fn a_feed_without_a_length_offset_is_no_guess() {
+    let blocks = "T1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.";
+    let scene = Scene::new(blocks);
+    scene.gives(&LINUXCNC, 2, &["T1 moves without a tool length offset: write G43 H1"]);
+    scene.gives(&[], 2, &["T1 moves without a tool length offset"]);
+    // The length of the tool applies without a word.
+    scene.gives(&["--control", "siemens", "--anyway"], 0, &[]);
+    let named = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    named.gives(&LINUXCNC, 0, &["positions are taken as those of the tip"]);
+}
+
+#[test]
+fn a_number_that_two_tools_of_a_library_have_is_refused() {
+    let scene = Scene::new("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    let bit = |name: &str| {
+        format!(
+            "{{\"guid\": \"{name}\", \"type\": \"flat end mill\", \"unit\": \"millimeters\", \"description\": \"{name}\", \
+             \"geometry\": {{\"DC\": 6, \"LCF\": 20, \"OAL\": 60, \"LB\": 30, \"SFDM\": 6, \"shoulder-length\": 25}}, \
+             \"post-process\": {{\"number\": 1}}}}"
+        )
+    };
+    let library = format!("{{\"version\": 1, \"data\": [{}, {}]}}", bit("one"), bit("two"));
+    let library = scene.bench.write("two.json", library);
+    let place = |name: &str| scene.bench.folder.path().join(name).display().to_string();
+    let (part, program) = (place("block.stl"), place("a.nc"));
+    let common = ["verify", "--part", &part, "--unit", "mm", "--program", &program];
+    let verify = |more: &[&str]| touchoff(&[&common, &LINUXCNC[..], more].concat());
+    let output = verify(&["--tools", &library]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("has 2 tools `T1`: `one`, `two`"), "{said}");
+    // A folder keeps the numbers of the tools that were imported into it.
+    let folder = place("tools");
+    for (only, expected) in [("one", 0), ("two", 2)] {
+        let imported = touchoff(&["import", &library, "-o", &folder, "--only", only]);
+        assert!(imported.status.success(), "{}", stderr(&imported));
+        let output = verify(&["--tools", &folder]);
+        assert_eq!(output.status.code(), Some(expected), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_work_offset_far_from_the_part_is_named() {
+    let blocks =
+        "G43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\nG55 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let mut scene = Scene::new(blocks).placed();
+    scene.job += "G55 = [200, 0, -400]\n";
+    scene.gives(&LINUXCNC, 2, &["under G55 the tool never comes within its diameter of the part"]);
+    scene.job = scene.job.replace("[200, 0, -400]", "[1, 0, -400]");
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+#[test]
+fn limits_of_rotary_axes_need_no_work_offset() {
+    let blocks = "T1 M6\nS9000 M3\nG43.4 H1\nG0 X0. Y0. Z30. A0. C0.\nG1 A45.\nG1 A0.";
+    let scene = Scene::new(blocks).with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives(&LINUXCNC, 1, &["A goes to 45.0000°, beyond its limit of 30°"]);
+    let said =
+        ["the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`"];
+    scene.gives(&LINUXCNC, 1, &said);
+}
+
+#[test]
+fn a_feed_needs_a_spindle_that_turns_the_right_way() {
+    let feed = "G0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nM30\n";
+    let given = |start: &str, status: i32, words: &str| {
+        let scene = Scene::of(&format!("G21 G90 G54\n{start}\n{feed}"));
+        scene.gives(&LINUXCNC, status, &[words]);
+    };
+    given("S900 M3", 0, "");
+    given("S900 M13", 0, "");
+    given("S900 M3\nM5", 1, "feeds with the spindle off");
+    given("M3", 1, "no speed of the spindle");
+    given("S0 M3", 1, "feeds with the spindle off");
+    given("S900 M4", 1, "the wrong way round");
+    given("", 2, "never starts the spindle");
+    let mut left = Scene::of(&format!("G21 G90 G54\nT1 M6\nS900 M4\nG43 H1\n{feed}"));
+    left.gives(&LINUXCNC, 1, &["the wrong way round"]);
+    left.job = left.job.replace("LENGTH", "hand = \"left\"\nLENGTH");
+    left.gives(&LINUXCNC, 0, &[]);
+    // A stop stops the spindle of a Haas, and not that of LinuxCNC.
+    let stop = Scene::of(&format!("G21 G90 G54\nS900 M3\nM0\n{feed}"));
+    stop.gives(&LINUXCNC, 0, &[]);
+    stop.gives(&HAAS, 1, &["feeds with the spindle off"]);
+    stop.gives(&[], 1, &["feeds with the spindle off", "under stop = \"stops spindle\""]);
+    let order =
+        Scene::of(&format!("G21 G90 G54\nG0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nS900 M3\n{feed}"));
+    order.gives(&LINUXCNC, 1, &["feeds with the spindle off"]);
+}
+
+#[test]
+fn what_a_program_leaves_out_at_its_start_is_named() {
+    let blocks = "G0 X-6. Y0. Z20.\nG1 X4. Z1.";
+    let scene = Scene::of(&format!("G90 G54 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(&[], 2, &["no G20 or G21", "state `unit` of the control"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    let scene = Scene::of(&format!("G90 G21 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(&[], 2, &["no work offset before a position", "`start_offset`"]);
+    scene.gives(&["--control", "siemens"], 2, &["a work offset (G54) before"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+/// Blocks that begin with `/`: the switch is the operator's, and both positions are checked unless the job states one.
+#[test]
+fn optional_blocks_are_checked_with_and_without() {
+    let blocks = "G0 X-6. Y0. Z20.\n/G0 X20.\nG1 Z-1.\nG1 X19.\nG0 Z20.";
+    let scene = Scene::new(blocks).with("anyway = true");
+    scene.gives(&LINUXCNC, 1, &["under optional_blocks = \"left out\""]);
+    let scene = scene.with("block_delete = false");
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+/// The level to which a cycle returns without G98 or G99: R on LinuxCNC, the initial level elsewhere.
+#[test]
+fn a_cycle_without_a_return_level_returns_to_either() {
+    let blocks = "G0 X-4. Y0. Z20.\nG81 X-4. Y0. Z1. R2.\nX4.\nG80\nG0 Z20.";
+    let scene = Scene::new(blocks).obstacle([-1.0, -3.0, 0.5], [1.0, 3.0, 10.0]);
+    scene.gives(&[], 1, &["the clamp", "under cycle_return = \"plane R\""]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    let stated = Scene::new(&blocks.replace("G81", "G98 G81"));
+    let stated = stated.obstacle([-1.0, -3.0, 0.5], [1.0, 3.0, 10.0]);
+    stated.gives(&[], 0, &[]);
+}
+
+/// The length offset after G28: off on Haas, so that the spindle comes down by the length of the tool.
+#[test]
+fn a_return_can_cancel_the_length_offset() {
+    let blocks =
+        "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG91 G28 Z0.\nG90 G0 X0. Y0.\nZ49.5\nG1 X1.";
+    let scene = Scene::new(blocks).placed().with("anyway = true");
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&[], 1, &["under reference_return = \"cancels length\""]);
+    scene.gives(&HAAS, 1, &["in rapid traverse"]);
+}
+
+/// A collision is one however far it is from the part.
+#[test]
+fn a_collision_far_from_the_part_has_status_1() {
+    let blocks = "G0 X100. Y0. Z20.\nG1 Z5.\nG0 Z20.";
+    let scene = Scene::new(blocks).obstacle([95.0, -5.0, 0.0], [105.0, 5.0, 10.0]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    let free = Scene::new(blocks);
+    free.gives(&LINUXCNC, 2, &["never comes within the tool's diameter"]);
+    // The reason comes before everything else that is said of the program.
+    let said = stderr(&free.run(&LINUXCNC));
+    assert!(said.find("not verified:") < said.find("program:"), "{said}");
+}
+
+#[test]
+fn a_mesh_in_place_of_a_job_is_named() {
+    let bench = Bench::new();
+    let part = bench.folder.path().join("block.stl").display().to_string();
+    let output = touchoff(&["verify", &part]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("is a mesh, and `verify` takes a job file"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn what_was_not_checked_is_in_the_json() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nM8\nM0\nG1 X4. Z1.");
+    let rows = objects(&scene.run(&[&LINUXCNC[..], &["--json"]].concat()));
+    let reasons: Vec<&str> = rows.iter().filter_map(|row| row["reason"].as_str()).collect();
+    assert!(
+        rows.iter().all(|row| row["kind"] == "not-checked" && row["open"] == false),
+        "{rows:?}"
+    );
+    for word in
+        ["limits of X, Y and Z", "no position before", "by hand during the stop", "of the tip"]
+    {
+        assert!(reasons.iter().any(|reason| reason.contains(word)), "{word}: {reasons:?}");
+    }
+    assert!(!reasons.iter().any(|reason| reason.contains("passed over")), "{reasons:?}");
+}
+
+/// Of an unstated control, too many rules at once are no verdict.
+#[test]
+fn too_many_readings_name_the_rules() {
+    let blocks = "G0 X-6 Y0. Z2.\n/G0 X5.\nG81 X-6 Y0. Z1. R6.\nX6. ; G0 X1.\nG80\nM0\nG1 Z2.";
+    let scene = Scene::new(blocks);
+    let words = ["in more than 8 ways", "`whole_numbers` (line 2)", "`cycle_below_r`"];
+    scene.gives(&[], 2, &words);
+}
+
+#[test]
+fn a_wrong_control_is_refused_with_the_nearest_key() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    scene.gives(&["--control", "fanac"], 2, &["did you mean `fanuc`?"]);
+    let file = ControlRules::named("haas").expect("a control").to_toml();
+    let control = scene.bench.folder.path().join("c.toml").display().to_string();
+    for (from, to, word) in [
+        (
+            "whole_numbers",
+            "whole_number",
+            "`whole_number` is no rule: did you mean `whole_numbers`?",
+        ),
+        ("\nrapid =", "\n#rapid =", "the rule `rapid` is missing"),
+        ("\"each axis\"", "\"fast\"", "`rapid` is one of \"straight\", \"each axis\""),
+    ] {
+        fs::write(&control, file.replace(from, to)).expect("a file");
+        scene.gives(&["--control", &control], 2, &[word, "c.toml"]);
+    }
+    fs::write(&control, &file).expect("a file");
+    scene.gives(&["--control", &control], 0, &[]);
+}
+
+/// The commands list every rule of every control, and every axis of every machine; what they print is a file.
+#[test]
+fn controls_and_machines_are_listed() {
+    let listed = stdout(&touchoff(&["controls"]));
+    for name in ControlRules::names() {
+        let control = ControlRules::named(name).expect("a control");
+        assert!(listed.contains(&format!("{name}\n")), "{listed}");
+        assert_eq!(stdout(&touchoff(&["controls", name])), control.to_toml());
+    }
+    let rows = objects(&touchoff(&["controls", "--json"]));
+    let keys = Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).count();
+    assert!(
+        rows.iter().all(|row| row["rules"].as_object().is_some_and(|rules| rules.len() == keys))
+    );
+    let machines = stdout(&touchoff(&["machines"]));
+    let trunnion = "A moves the table, from -120 to 30°, home 0, about [1.0, 0.0, 0.0] through [0.0, 0.0, -480.0]";
+    assert!(machines.contains(trunnion), "{machines}");
+    let unknown = touchoff(&["machines", "4-axis"]);
+    assert!(!unknown.status.success() && stderr(&unknown).contains("A-C trunnion"));
+}
+
+/// The page has a row for each rule, with what each control does.
+#[test]
+fn the_page_about_controls_states_every_rule() {
+    let page = include_str!("../../../docs/controls.md");
+    for rule in Rule::all().filter(|rule| *rule != Rule::OptionalBlocks) {
+        let words = ControlRules::names().map(|name| {
+            let control = ControlRules::named(name).expect("a control");
+            rule.describe(control.get(rule).expect("a rule that is stated"))[0]
+        });
+        let row = format!("| `{}` | {} |", rule.key(), words.collect::<Vec<_>>().join(" | "));
+        assert!(page.contains(&row), "{row}");
+    }
+}
