@@ -21,6 +21,9 @@ pub(crate) struct Row<'a> {
     /// The index of the position at which it ends, from 0.
     location: usize,
     rapid: bool,
+    /// On some dog-leg of axes whose rates are not known, and not on the straight line.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    any_rates: bool,
     /// The fraction of the motion at which the tool is at `tip` and `axis`, from 0 to 1.
     fraction: f64,
     /// Unit of lengths.
@@ -121,6 +124,7 @@ impl<'a> Row<'a> {
             from_line: finding.from,
             location: finding.location,
             rapid: finding.rapid,
+            any_rates: finding.any_rates,
             fraction: finding.time,
             unit: scope.unit.symbol(),
             tip: finding.pose.tip().into(),

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::path::Path;
 use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
-use touchoff::stock::{MotionMode, Stock, StockContact};
+use touchoff::stock::{DeviationPoint, MotionMode, Stock, StockContact};
 
 /// Material that a surface touches on consecutive motions.
 #[derive(Serialize)]
@@ -41,6 +41,8 @@ pub(crate) struct StockFinding {
 pub(crate) struct CutStock {
     pub(crate) findings: Vec<StockFinding>,
     pub(crate) stock: Stock,
+    /// Depth that surfaces may have that must not touch.
+    tolerance: f64,
 }
 
 /// Runs a program through the stock of a job.
@@ -107,7 +109,7 @@ pub(super) fn cut(
         }
     }
     findings.sort_by(|one, other| other.depth.total_cmp(&one.depth));
-    Ok(CutStock { findings, stock })
+    Ok(CutStock { findings, stock, tolerance })
 }
 
 impl StockFinding {
@@ -129,27 +131,44 @@ impl StockFinding {
 }
 
 impl CutStock {
+    /// States what is found for certain.
+    pub(crate) fn resolution(&self) -> String {
+        format!(
+            "a layer is found for certain from a thickness of {}",
+            format_length(self.stock.found_layer(self.tolerance), self.stock.unit())
+        )
+    }
+
+    /// Describes a deviation from the part at its farthest point, as far as points of the stock show it.
+    pub(crate) fn farthest(&self, what: &str, point: Option<DeviationPoint>) -> String {
+        let unit = self.stock.unit();
+        match point {
+            None => {
+                let spacing = format_length(self.stock.spacing(), unit);
+                format!("{what}: none at points that are {spacing} apart")
+            }
+            Some(point) => format!(
+                "{what}: {} at {}",
+                format_length(point.distance.abs(), unit),
+                format_point(&point.point, unit)
+            ),
+        }
+    }
+
     /// Prints what remains, and writes it as an STL file and its deviations from the part as CSV or PLY if asked to.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub(super) fn report(&self, entry: &StockEntry, part: &TriangleBvh) -> Result<(), Failure> {
-        let (stock, unit) = (&self.stock, self.stock.unit());
+        let stock = &self.stock;
         let comparison = stock.compare(part)?;
-        let farthest = |point: Option<touchoff::stock::DeviationPoint>| {
-            point.map_or("none".to_owned(), |point| {
-                let at = format_point(&point.point, unit);
-                format!("{} at {at}", format_length(point.distance.abs(), unit))
-            })
-        };
         message!(
-            "stock: {} of {} points remain; pieces below {} are not resolved; most over the part: {}; most cut from the \
-             part: {}",
+            "stock: {} of {} points remain; {}; {}; {}",
             stock.len(),
             stock.initial_len(),
-            format_length(2.0 * stock.missed_ball_radius(), unit),
-            farthest(comparison.greatest_excess()),
-            farthest(comparison.deepest_gouge()),
+            self.resolution(),
+            self.farthest("most over the part", comparison.greatest_excess()),
+            self.farthest("most cut from the part", comparison.deepest_gouge()),
         );
         if let Some(output) = &entry.output {
             let mut bytes = Vec::new();

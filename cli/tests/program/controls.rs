@@ -457,3 +457,33 @@ fn the_page_about_controls_states_every_rule() {
         assert!(page.contains(&row), "{row}");
     }
 }
+
+/// Z under G53 is that of the gauge point, or of the tip on Siemens.
+#[test]
+fn under_g53_the_length_counts_or_not() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nX0.\nG53 Z-399.5\nG1 X1.";
+    let scene = Scene::new(blocks).placed().with("anyway = true");
+    scene.gives(&LINUXCNC, 1, &["right through the part"]);
+    let scene = Scene::new(&blocks.replace("-399.5", "-350.5")).placed().with("anyway = true");
+    scene.gives(&LINUXCNC, 1, &["0.5000 mm deep in the part"]);
+    let scene = Scene::new(&blocks.replace("-399.5", "-348.")).placed().with("anyway = true");
+    scene.gives(&LINUXCNC, 0, &[]);
+    let low = Scene::new(&blocks.replace("-399.5", "-300.")).placed().with("anyway = true");
+    low.gives(&LINUXCNC, 0, &[]);
+    low.gives(&["--control", "siemens"], 0, &[]);
+    let tip = Scene::new(&blocks.replace("-399.5", "-400.5")).placed().with("anyway = true");
+    tip.gives(&["--control", "siemens"], 1, &["0.5000 mm deep in the part"]);
+}
+
+#[test]
+fn words_of_heidenhain_are_not_read_as_those_of_others() {
+    let heidenhain = ["--control", "heidenhain"];
+    let own = Scene::of("G21 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
+    own.gives(&heidenhain, 2, &["G21 is another word in DIN/ISO programs of Heidenhain"]);
+    let own = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
+    own.gives(&heidenhain, 0, &[]);
+    // I and J are the pole: an arc about the origin.
+    let arc = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z1.\nG2 X6. Y0. I0. J0.\nM30\n");
+    arc.gives(&heidenhain, 0, &[]);
+    arc.gives(&LINUXCNC, 2, &["the arc has the radius zero"]);
+}

@@ -83,6 +83,12 @@ impl Block {
                     self.label = Some(o_word(&mut cursor, parameters)?);
                 }
                 _ if byte.is_ascii_alphabetic() => self.word(&mut cursor, parameters)?,
+                b',' => {
+                    let (meaning, remedy) =
+                        ("a rounded or chamfered corner", "post the program with its motions");
+                    let word = cursor.rest().chars().take(2).flat_map(char::escape_debug).collect();
+                    return Err(GcodeFault::NotRead { word, meaning, remedy });
+                }
                 b'0'..=b'9' if self.is_empty() => return Err(numbered_line(cursor)),
                 _ => return Err(unexpected(&cursor)),
             }

@@ -92,11 +92,9 @@ impl Control {
                 "a canned cycle is in force",
                 "turn the axis in a block before, with G80",
             ),
-            None if self.state.tcp != Tcp::Off => (
-                word.to_owned(),
-                "tool centre point control is on",
-                "end it with G49, or post the cycle's motions",
-            ),
+            None if self.state.tcp != Tcp::Off => {
+                (word.to_owned(), "tool centre point control is on", self.tcp_remedy())
+            }
             None if changed => (
                 word.to_owned(),
                 "coordinates or tool have changed since the series of cycles began",

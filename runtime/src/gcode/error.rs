@@ -18,7 +18,7 @@ pub struct GcodeError {
 #[non_exhaustive]
 pub enum GcodeFault {
     /// A character that begins no word.
-    #[error("the character {shown} begins no word of G-code: remove it")]
+    #[error("the character {shown} begins no word of G-code: correct the line where it was posted")]
     Character {
         /// The escaped character.
         shown: String,
@@ -117,7 +117,8 @@ pub enum GcodeFault {
     },
     /// A word that no G or M word of the block uses.
     #[error(
-        "{word} is used by no G or M word of its block: remove it, or add the word that uses it"
+        "{word} is used by no G or M word of its block, and moves the tool on some controls: post the program without it, or \
+         add the word that uses it"
     )]
     Unused {
         /// The word's letter.

@@ -288,6 +288,14 @@ impl Control {
         Ok(())
     }
 
+    /// Returns the remedy that ends tool centre point control.
+    pub(super) fn tcp_remedy(&self) -> &'static str {
+        match self.transformed {
+            true => "end it with M429 or TRAFOOF before",
+            false => "end it with G49 before",
+        }
+    }
+
     /// Checks that there is a feed rate.
     pub(super) fn check_feed(&self, word: &str) -> Result<(), GcodeFault> {
         let inverse = self.modal.feed_mode == FeedMode::InverseTime;
@@ -327,7 +335,7 @@ impl Control {
             return refused("G91 is in force", "write G90 before");
         }
         if self.state.tcp != Tcp::Off {
-            return refused("tool centre point control is on", "end it with G49 before");
+            return refused("tool centre point control is on", self.tcp_remedy());
         }
         let rapid = match self.modal.motion {
             None | Some(Motion::Rapid) => true,
@@ -364,7 +372,7 @@ impl Control {
             Err(GcodeFault::Combination { word: word.to_owned(), condition, remedy })
         };
         if self.state.tcp != Tcp::Off {
-            return refused("tool centre point control is on", "end it with G49 before");
+            return refused("tool centre point control is on", self.tcp_remedy());
         }
         if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
             return refused("a canned cycle is in force", "write G80 before");

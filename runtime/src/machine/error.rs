@@ -185,7 +185,7 @@ pub enum JointError {
     },
     /// A value of an axis that the machine lacks.
     #[error(
-        "{letter} is {value}, but the machine has no axis {letter}: choose another machine, or remove {letter}"
+        "{letter} is {value}, but the machine has no axis {letter}: name the machine for which the program was posted"
     )]
     NoAxis {
         /// The axis.

@@ -252,6 +252,13 @@ impl Stock {
         3f64.sqrt() * (0.5 * self.spacing() + node + stored)
     }
 
+    /// Returns the thickness from which a layer of material is found for certain, where a surface that must not touch it passes
+    /// through it: the diameter of the missed ball, plus the tolerance and the error of sampling by which a point has to be
+    /// deeper. It holds for a tool with a profile.
+    pub fn found_layer(&self, tolerance: f64) -> f64 {
+        2.0 * self.missed_ball_radius() + tolerance + 0.5 * self.step()
+    }
+
     /// Returns the step: no point of a tool travels farther between two samples of a motion.
     pub fn step(&self) -> f64 {
         STEP_FRACTION * self.spacing()

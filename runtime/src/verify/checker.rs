@@ -104,6 +104,9 @@ impl<'a> Checker<'a> {
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {
                 Ok(straight) => {
                     found = self.motion(true, &straight);
+                    // No pose of the box is farther from the straight line than from its middle.
+                    let spread = path.radius() * self.verifier.lipschitz();
+                    found.iter_mut().for_each(|(_, kind)| widen(kind, spread));
                     if found.is_empty() {
                         let found = self.rapid_box(path).into_iter();
                         return found.map(|(pose, kind)| finding(0.5, pose, kind, true)).collect();
@@ -145,15 +148,10 @@ impl<'a> Checker<'a> {
                 Err(error) => vec![(0.5, FindingKind::Ambiguous(error))],
             };
             if !found.is_empty() {
+                // No pose of the box is farther from the middle of a piece than the box's diagonal.
                 let spread = 2.0 * path.radius() * lipschitz;
-                let over_box = |(_, mut kind)| {
-                    match &mut kind {
-                        FindingKind::Deep { max_depth, .. } => *max_depth += spread,
-                        FindingKind::Near { min_distance, .. } => {
-                            *min_distance = (*min_distance - spread).max(0.0);
-                        }
-                        _ => (),
-                    }
+                let over_box = |(_, mut kind): (f64, FindingKind)| {
+                    widen(&mut kind, spread);
                     (middle, kind)
                 };
                 return found.into_iter().map(over_box).collect();
@@ -211,6 +209,17 @@ impl<'a> Checker<'a> {
                 self.joints(task, joints, ([from, middle], halvings - 1), found);
                 self.joints(task, joints, ([middle, to], halvings - 1), found);
             }
+        }
+    }
+}
+
+/// Extends the bound of a finding to poses at which depths and distances differ by as much.
+fn widen(kind: &mut FindingKind, spread: f64) {
+    match kind {
+        FindingKind::Deep { max_depth, .. } => *max_depth += spread,
+        FindingKind::Near { min_distance, .. } => *min_distance = (*min_distance - spread).max(0.0),
+        FindingKind::Inside { .. } | FindingKind::Undecided { .. } | FindingKind::Ambiguous(_) => {
+            ()
         }
     }
 }

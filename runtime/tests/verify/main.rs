@@ -5,6 +5,7 @@ mod cases;
 mod joints;
 mod machines;
 mod oracle;
+mod rapid;
 
 use nalgebra::Point3;
 use oracle::{Mounted, Random, SURFACES, ToolPose, Worst, interpolate, sample_points};

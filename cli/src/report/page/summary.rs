@@ -2,13 +2,12 @@
 
 use super::super::Content;
 use super::plain;
-use crate::lengths::{format_length, format_point};
+use crate::lengths::format_length;
 use crate::program::extent;
 use crate::verify::{self, CheckedPair, Severity};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
-use touchoff::stock::DeviationPoint;
 
 pub(super) fn section(content: &Content<'_>, title: &str) -> Markup {
     html! {
@@ -93,25 +92,14 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
     let checked = verification.summaries().into_iter().map(|summary| plain(&summary));
     rows.push(("Checked", checked.collect()));
     if let (Some(cut), Some(comparison)) = (verification.cut(), &content.comparison) {
-        let farthest = |what: &str, point: Option<DeviationPoint>| match point {
-            None => format!("{what}: none"),
-            Some(point) => format!(
-                "{what}: {} at {}",
-                format_length(point.distance.abs(), unit),
-                format_point(&point.point, unit)
-            ),
-        };
         let stock = &cut.stock;
         rows.push((
             "Stock",
             vec![
                 format!("{} of {} points remain", stock.len(), stock.initial_len()),
-                farthest("most material over the part", comparison.greatest_excess()),
-                farthest("most cut from the part", comparison.deepest_gouge()),
-                format!(
-                    "pieces below {} are not resolved",
-                    format_length(2.0 * stock.missed_ball_radius(), unit)
-                ),
+                cut.farthest("most material over the part", comparison.greatest_excess()),
+                cut.farthest("most cut from the part", comparison.deepest_gouge()),
+                cut.resolution(),
             ],
         ));
     }

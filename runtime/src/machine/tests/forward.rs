@@ -116,7 +116,7 @@ fn values_that_are_no_joints_are_refused() {
     }
     assert_eq!(
         message([0.0, 0.0, 0.0, 0.0, 1.5, 0.0]),
-        "B is 1.5, but the machine has no axis B: choose another machine, or remove B"
+        "B is 1.5, but the machine has no axis B: name the machine for which the program was posted"
     );
     assert_eq!(
         chain.relative_to(4).expect_err("no link").to_string(),

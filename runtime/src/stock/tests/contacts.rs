@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::id::SurfaceId;
+use crate::mesh::shapes;
+use nalgebra::Rotation3;
 
 const FLUTE: SurfaceId = SurfaceId(0);
 const SHANK: SurfaceId = SurfaceId(1);
@@ -216,4 +218,35 @@ fn what_is_no_motion_is_refused() {
     let turned = turned.expect("a pose");
     let cut = stock.advance(&Block, &|_| turned, 0.0, MotionMode::Feed, 0.0).expect("cut");
     assert_eq!((cut.len(), stock.initial_len() - stock.len()), (0, 12 * 12 * 6));
+}
+
+/// A layer is found from the thickness that is stated, however the points lie in it.
+#[test]
+fn a_layer_of_the_stated_thickness_is_found() {
+    let flat = block([-10.0, -10.0, -8.0], [10.0, 10.0, 0.0], 1.0);
+    let tolerance = flat.step();
+    assert!((flat.found_layer(tolerance) - (3f64.sqrt() + 0.25 + 0.125)).abs() < 1e-6);
+    let mesh = shapes::cuboid([-10.0, -10.0, -8.0].into(), [10.0, 10.0, 0.0].into(), UNIT);
+    let mesh = mesh.expect("a block");
+    let mut below = 0;
+    for k in 0..60 {
+        let turn = f64::from(k) * 0.37;
+        let rotation = Rotation3::from_euler_angles(turn, 0.61 * turn, 0.29 * turn);
+        let shift = Vector3::new(0.13, 0.29, 0.41) * f64::from(k);
+        let place = |point: Point3<f64>| rotation * point + shift;
+        let vertices = mesh.vertices().iter().map(|vertex| place(*vertex)).collect();
+        let turned = Mesh::new(vertices, mesh.triangles().to_vec(), UNIT).expect("a block");
+        let mut found = |depth: f64| {
+            let mut stock = Stock::from_mesh(&turned, 1.0).expect("a stock");
+            let pose = |x: f64| {
+                let tip = place(Point3::new(x, 0.0, -depth));
+                Pose::from_axis(tip, rotation * Vector3::z()).expect("a pose")
+            };
+            let poses = [pose(-6.0), pose(6.0)];
+            !advance(&mut stock, &Mill, poses, MotionMode::Rapid, tolerance).is_empty()
+        };
+        assert!(found(flat.found_layer(tolerance)), "turn {k}");
+        below += u32::from(!found(tolerance + 0.05));
+    }
+    assert!(below > 0, "thinner layers can be missed");
 }
