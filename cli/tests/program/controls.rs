@@ -487,3 +487,83 @@ fn words_of_heidenhain_are_not_read_as_those_of_others() {
     arc.gives(&heidenhain, 0, &[]);
     arc.gives(&LINUXCNC, 2, &["the arc has the radius zero"]);
 }
+
+/// With rates in the machine's file the path is that of each axis, or the straight line.
+#[test]
+fn rates_do_not_say_that_each_axis_moves_by_itself() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X-10. Y-10. Z1.\nX10. Y10. Z1.\nG1 Y12.";
+    let scene = Scene::new(blocks).placed().obstacle([3.0, 3.0, -2.0], [6.0, 6.0, 5.0]);
+    let mut machine = stdout(&touchoff(&["machines", "3-axis"]));
+    for (letter, rate) in [("X", 40_000), ("Y", 10_000), ("Z", 10_000)] {
+        let from = format!("letter = \"{letter}\"\n");
+        machine = machine.replace(&from, &format!("{from}rapid = {rate}\n"));
+    }
+    scene.bench.write("mine.toml", machine);
+    let scene = scene.with("machine = \"mine.toml\"\nanyway = true");
+    scene.gives(&[], 1, &["the clamp", "under rapid = \"straight\""]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    scene.gives(&FANUC, 0, &[]);
+}
+
+/// The shorter way holds for every stated angle: under G53, through G28, on an arc, and after a tilted plane.
+#[test]
+fn the_shorter_way_holds_for_every_stated_angle() {
+    let start = "T1 M6\nS9000 M3\nG43 H1\nG0 X20. Y0. Z50. A0. C345.\nG0 Z5.\n";
+    let post = ([18.0, -2.0, -2.0], [22.0, 2.0, 30.0]);
+    for turn in ["G53 G0 C15.", "G28 C15.", "G2 X20. Y0. I-1. J0. C15.", "G0 C15."] {
+        let scene = Scene::new(&format!("{start}{turn}\nG43 H1 G0 Z50.")).placed();
+        let scene =
+            scene.obstacle(post.0, post.1).with("machine = \"A-C trunnion\"\nanyway = true");
+        scene.gives(&FANUC, 1, &["the clamp"]);
+        scene.gives(&[], 1, &["the clamp"]);
+    }
+    let tilted = "T1 M6\nS9000 M3\nG43 H1\nG0 X20. Y0. Z50. A0. C-15.\nG68.2 X0. Y0. Z0. I165. J20. K0.\nG53.1\nG69\n\
+                  G0 A0.\nG0 C345.\nG0 X20. Y0. Z5.\nG0 C15.\nG0 Z50.";
+    let scene = Scene::new(tilted).placed().obstacle(post.0, post.1);
+    let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives(&FANUC, 1, &["the clamp"]);
+}
+
+/// Where the length counts without G43, a tool change changes it, and D0 ends it.
+#[test]
+fn the_length_that_counts_always_is_that_of_the_tool() {
+    let siemens = ["--control", "siemens"];
+    let start =
+        "G21 G90 G54 S9000 M3 F100.\nT1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    let two = format!("{start}T2 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 Z0.5\nX0.\nM30\n");
+    let mut scene = Scene::of(&two).placed().with("anyway = true");
+    scene.job += "[tool.2]\ntool = \"D2Ball\"\nlength = 30\n";
+    scene.gives(&siemens, 0, &[]);
+    scene.gives(&LINUXCNC, 1, &[]);
+    // Without a length, the spindle comes down by 50.
+    let edge =
+        Scene::of(&format!("{start}D0\nG0 Z49.\nX-3.\nM30\n")).placed().with("anyway = true");
+    edge.gives(&siemens, 1, &["in rapid traverse"]);
+    let edge = Scene::of(&format!("{start}D2\nG0 Z49.\nM30\n")).placed().with("anyway = true");
+    edge.gives(&siemens, 2, &["D1, the only cutting edge"]);
+}
+
+/// An axis that the program has not stated leaves all motions between stated positions unknown.
+#[test]
+fn an_axis_that_is_not_stated_is_named() {
+    let blocks =
+        "T1 M6\nS9000 M3\nG43 H1\nG0 X-6. Y0. Z20.\nG0 Z5.\nG0 X6.\nG0 A0. C0.\nG1 X4. Z1.";
+    let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"");
+    scene.gives(
+        &LINUXCNC,
+        2,
+        &["2 motions not checked, first at line 6: the position of another axis is not stated"],
+    );
+    let stated = Scene::new(&blocks.replace("Y0. Z20.", "Y0. Z20. A0. C0.")).placed();
+    stated.with("machine = \"A-C trunnion\"").gives(&LINUXCNC, 0, &[]);
+}
+
+#[test]
+fn a_call_that_controls_read_in_two_ways_is_refused() {
+    let text = "G21 G90 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nM98 P20100\nM30\nO0100\nG91 G0 X3.\nG90\nM99\n\
+                O20100\nG91 G0 X1.\nG90\nM99\n";
+    Scene::of(text).gives(&[], 2, &["its last four digits are the number of a program, too"]);
+    // T alone changes the tool of a Heidenhain.
+    let text = "G71 G90 S9000 M3 F100.\nT1\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nT3\nS9000 M3\nG1 X5.\nM30\n";
+    Scene::of(text).gives(&["--control", "heidenhain"], 2, &["no tool is given for T3"]);
+}

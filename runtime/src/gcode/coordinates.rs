@@ -29,25 +29,60 @@ impl Control {
     /// Reads T, M6 and D.
     pub(super) fn tool(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let expected = "a whole number from 0";
+        let has_tool = block.has('T');
         if let Some(tool) = block.take_whole('T', 0, MAX_REGISTER, expected)? {
             self.staged = Some(tool);
         }
         if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
             self.edge = Some(edge);
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
+            self.edge_length(edge)?;
         }
-        if let Some(code) = block.code_of(Group::ToolChange) {
+        let change = block.code_of(Group::ToolChange);
+        // T changes the tool at once in programs of Heidenhain, for which M6 may follow.
+        let calls = has_tool && self.stated(Rule::Dialect) == Some(Choice::Heidenhain);
+        let is_in = self.staged.is_some() && self.staged == self.state.tool;
+        if calls
+            || change.is_some()
+                && !(is_in && self.stated(Rule::Dialect) == Some(Choice::Heidenhain))
+        {
             let Some(tool) = self.staged else {
                 let needed = "the number of a tool (T) in this block or before";
-                return Err(GcodeFault::Missing { word: code.to_string(), needed });
+                return Err(GcodeFault::Missing { word: "M6".to_owned(), needed });
             };
             self.notes.add(self.line, Subject::ToolChange);
             self.stop_spindle();
             self.leave_for_change();
             self.length_cancelled = false;
             self.change(|state| state.tool = Some(tool));
+            let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
+            if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
+                self.imply_length(tool);
+            }
         }
         Ok(())
+    }
+
+    /// Executes D where it selects the length of the tool: 0 is none, and 1 the only edge whose length is known.
+    fn edge_length(&mut self, edge: u32) -> Result<(), GcodeFault> {
+        if edge == 1 || self.state.tool.is_none() || self.choice(Rule::ToolLength) != Choice::Always
+        {
+            return Ok(());
+        }
+        if edge > 1 {
+            let expected = "D1, the only cutting edge whose length is known";
+            return Err(GcodeFault::NotAllowed { word: 'D', value: f64::from(edge), expected });
+        }
+        (self.length_cancelled, self.length_implicit) = (true, false);
+        self.change(|state| state.length = LengthOffset::Off);
+        Ok(())
+    }
+
+    /// Applies the length of the tool in the spindle, of which an empty one has none.
+    fn imply_length(&mut self, tool: u32) {
+        self.length_implicit = true;
+        let length = if tool == 0 { LengthOffset::Off } else { self.registered(tool) };
+        self.change(|state| state.length = length);
     }
 
     /// Moves the axes as a tool change does.
@@ -83,8 +118,7 @@ impl Control {
             && tool != 0
             && self.choice(Rule::ToolLength) == Choice::Always
         {
-            let length = self.registered(tool);
-            self.change(|state| state.length = length);
+            self.imply_length(tool);
         }
     }
 
@@ -110,7 +144,7 @@ impl Control {
 
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-        self.returned = false;
+        (self.returned, self.length_implicit) = (false, false);
         let off = |transformed| if transformed { Tcp::Rotary } else { Tcp::Off };
         if code.tenths == 490 {
             let tcp = off(self.transformed);

@@ -64,6 +64,11 @@ impl<'a> Flow<'a> {
         Ok(Some((number, line)))
     }
 
+    /// Returns whether there is a subprogram with a label.
+    pub(super) fn has(&self, label: &Label) -> bool {
+        self.subprograms.get(label).is_some()
+    }
+
     /// Counts blocks or steps of a subprogram. Those of the main program are limited by its text.
     pub(super) fn count(&mut self, number: usize) -> Result<(), GcodeFault> {
         self.repeated += if self.calls.is_empty() { 0 } else { number };

@@ -110,6 +110,25 @@ impl<'a> Interpreter<'a> {
         }) && has_effect
     }
 
+    /// Returns the label and the repeats of M98.
+    fn called(&self, block: &mut Block) -> Result<(Label, u32), GcodeFault> {
+        let expected = "the number of a program after P";
+        let Some(number) = block.take_whole('P', 0, 99_999_999, expected)? else {
+            let needed = "P with the number of a program";
+            return Err(GcodeFault::Missing { word: "M98".to_owned(), needed });
+        };
+        // Older controls take the last four digits as the number, and those before as repeats.
+        if number > 9999 && self.flow.has(&Label::Number(number % 10_000)) {
+            return Err(GcodeFault::Combination {
+                word: format!("M98 P{number}"),
+                condition: "its last four digits are the number of a program, too",
+                remedy: "give the program another number, and write repeats after L",
+            });
+        }
+        let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
+        Ok((Label::Number(number), times.unwrap_or(1)))
+    }
+
     fn line(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
         let is_optional = text.trim_start().starts_with('/');
         if is_optional && self.control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
@@ -131,7 +150,7 @@ impl<'a> Interpreter<'a> {
         self.flow.count(self.control.pending.len())?;
         let subprogram = block.code_of(Group::Subprogram);
         let call = match subprogram {
-            Some(Code { tenths: 980, .. }) => Some(called(block)?),
+            Some(Code { tenths: 980, .. }) => Some(self.called(block)?),
             _ => None,
         };
         block.check_used()?;
@@ -209,17 +228,6 @@ fn after_semicolon(text: &str) -> Option<&str> {
     let begins =
         bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || b"/#".contains(&byte));
     (begins && bytes.next().is_some_and(|byte| !byte.is_ascii_alphabetic())).then_some(after)
-}
-
-/// Returns the label and the repeats of M98.
-fn called(block: &mut Block) -> Result<(Label, u32), GcodeFault> {
-    let expected = "the number of a program after P";
-    let Some(label) = block.take_whole('P', 0, 99_999_999, expected)? else {
-        let needed = "P with the number of a program";
-        return Err(GcodeFault::Missing { word: "M98".to_owned(), needed });
-    };
-    let times = block.take_whole('L', 1, 99_999_999, "a number of repeats from 1 after L")?;
-    Ok((Label::Number(label), times.unwrap_or(1)))
 }
 
 impl Control {

@@ -110,8 +110,6 @@ pub struct ControlSetup {
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
-    /// The rotary axes A, B, C that turn without a limit.
-    pub endless: [bool; 3],
     /// Where M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
@@ -128,7 +126,6 @@ impl Default for ControlSetup {
             second_home: None,
             rules: ControlRules::default(),
             axes: [true; 6],
-            endless: [true; 3],
             tool_change: None,
         }
     }
@@ -154,6 +151,8 @@ pub struct Step {
     /// Under G43.5, the unit vector from the tip to the spindle at the end, in the workpiece's frame; `None`
     /// until the program gives one.
     pub tool_vector: Option<[f64; 3]>,
+    /// Set if the end is stated, in G90 or in machine coordinates, and not by increments.
+    pub absolute: bool,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.
@@ -181,8 +180,7 @@ pub enum StepPath {
     /// A rotation of A, B and C that aligns the tool with z of a tilted plane (G53.1). The angles are the
     /// machine's.
     Align,
-    /// A path between known ends that only the control knows: an arc whose start is unknown in its plane, or half a turn
-    /// the shorter way.
+    /// An arc whose start is unknown in its plane.
     Undetermined,
     /// The motion of a tool change to a position in machine coordinates, on a path that only the machine knows.
     /// [Commanded](Step::commanded) axes move.

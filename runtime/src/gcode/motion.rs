@@ -17,9 +17,6 @@ use std::sync::Arc;
 /// Letters of the axes.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
-/// The increment of angles, in degrees: nearer to half a turn a control may take either way.
-const ANGLE_INCREMENT: f64 = 1e-3;
-
 /// A control: everything that blocks change and motions depend on.
 #[derive(Debug)]
 pub(super) struct Control {
@@ -53,14 +50,17 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     pub(super) axes: [bool; 6],
-    endless: [bool; 3],
     /// Where M6 leaves the axes, if the machine states it.
     pub(super) change_position: Option<Position>,
+    /// Set while a step to machine coordinates is added.
+    is_machine_target: bool,
     /// Set once a work offset was selected.
     pub(super) offset_stated: bool,
     /// Set by a return to a reference position under a length offset, until the next word or motion to which the offset
     /// matters.
     pub(super) returned: bool,
+    /// Set if the length offset is that of the tool in the spindle without a word.
+    pub(super) length_implicit: bool,
     /// Set by G49, until the next tool change.
     pub(super) length_cancelled: bool,
     pub(super) spindle: SpindleWords,
@@ -106,14 +106,20 @@ impl Control {
             rules: setup.rules.clone(),
             asked: BTreeMap::new(),
             axes: setup.axes,
-            endless: setup.endless,
             change_position: setup.tool_change,
+            is_machine_target: false,
             offset_stated: false,
             returned: false,
+            length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::default(),
             pending: VecDeque::new(),
         }
+    }
+
+    /// Returns what the control does under a rule, if that is stated.
+    pub(super) fn stated(&self, rule: Rule) -> Option<Choice> {
+        self.rules.get(rule)
     }
 
     /// Returns what the control does under a rule, and notes that the program depends on it.
@@ -199,35 +205,12 @@ impl Control {
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
         let (mut end, _, mut commanded) = self.take_end(block);
-        let mut path = StepPath::Line;
         if turns {
             end[3..].fill(None);
             commanded[3..].fill(true);
-        } else if self.turn_shorter(&end) {
-            path = StepPath::Undetermined;
         }
-        self.push(rapid, end, commanded, path);
+        self.push(rapid, end, commanded, StepPath::Line);
         Ok(())
-    }
-
-    /// Counts the present angles of endless axes so that the way to absolute ones is the shorter, if the control goes that
-    /// way. Returns whether one of them is half a turn away, where both ways are as short.
-    fn turn_shorter(&mut self, end: &Position) -> bool {
-        let mut is_half = false;
-        for axis in 3..6 {
-            let (Some(from), Some(to)) = (self.position[axis], end[axis]) else { continue };
-            let turn = to - from;
-            let is_long = turn.abs() >= 180.0 - ANGLE_INCREMENT;
-            if self.modal.incremental || !self.endless[axis - 3] || !is_long {
-                continue;
-            }
-            if self.choice(Rule::Rotary) == Choice::Shortest {
-                let shorter = turn - 360.0 * (turn / 360.0).round();
-                self.position[axis] = Some(to - shorter);
-                is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
-            }
-        }
-        is_half
     }
 
     /// Takes the tool vector under G43.5, and returns whether the block has one.
@@ -350,13 +333,14 @@ impl Control {
             return Err(GcodeFault::Missing { word: "G53".to_owned(), needed: "an axis word" });
         }
         let mut target = axes;
-        // The choice matters where both are known and differ.
-        let height = self.state.to_machine(self.position)[2].zip(self.state.length.length());
-        if let (Some(z), Some((_, length))) = (axes[2], height)
-            && length != 0.0
+        // Without the place of the part on the machine its coordinates lead nowhere that is known.
+        let length = self.state.length.length();
+        if let Some(z) = axes[2]
+            && length != Some(0.0)
+            && self.state.origin[2].is_some()
             && self.choice(Rule::MachineCoordinates) == Choice::WithLength
         {
-            target[2] = Some(z + length);
+            target[2] = length.map(|length| z + length);
         }
         self.move_machine(axes.map(|value| value.is_some()), target, (rapid, StepPath::Line));
         Ok(())
@@ -422,7 +406,9 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
+        self.is_machine_target = true;
         self.push(rapid, end, commanded, path);
+        self.is_machine_target = false;
     }
 
     /// Adds a step from the present position, and moves there.
@@ -449,6 +435,8 @@ impl Control {
             path,
             tool_vector,
             spindle,
+            // Reference positions are stated in G91, too.
+            absolute: !self.modal.incremental || self.is_machine_target,
             state,
         });
     }

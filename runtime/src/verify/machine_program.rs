@@ -209,8 +209,6 @@ impl MachineProgram {
             setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
         }
         setup.axes = Letter::ALL.map(|letter| machine.axis(letter).is_some());
-        setup.endless = [Letter::A, Letter::B, Letter::C]
-            .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none()));
         setup.tool_change = machine.tool_change();
         let is_placed = setup.work_offsets[0].is_some();
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
@@ -358,6 +356,7 @@ impl MachineProgram {
         }
         summary.notes = interpreter.notes();
         summary.open_rules.clone_from(interpreter.asked());
+        summary.open_rules.extend(resolver.asked);
         let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
         summary.unchecked_tools =
             unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
@@ -369,7 +368,7 @@ impl MachineProgram {
 
 /// Returns whether each choice of a rule is a reading of its own. The others are judged by the choice that includes all.
 fn is_branched(rule: Rule) -> bool {
-    !matches!(rule, Rule::ToolChange | Rule::Rapid | Rule::Unit | Rule::StartOffset | Rule::Dialect)
+    !matches!(rule, Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect)
 }
 
 impl MachineSummary {

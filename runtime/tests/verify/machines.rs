@@ -52,7 +52,7 @@ fn a_shift_at_an_unknown_position_leaves_positions_unknown() {
     let program = program("3-axis", None, &[], "G92 X50. Y0. Z5.\nG0 X50. Y0. Z5.\nG1 X32.");
     let program = program.expect("a program");
     let [unknown] = &program.summary().unknown[..] else { panic!("{:?}", program.summary()) };
-    assert_eq!((unknown.count, unknown.open_line), (2, Some(4)));
+    assert_eq!((unknown.count, unknown.open_line), (2, Some(3)));
 }
 
 #[test]

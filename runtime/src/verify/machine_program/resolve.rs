@@ -12,6 +12,9 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 use std::fmt;
 
+/// The increment of angles, in degrees: nearer to half a turn a control may take either way.
+const ANGLE_INCREMENT: f64 = 1e-3;
+
 /// Tolerance of tool lengths, in mm: registers are set to 0.001 mm.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
@@ -44,6 +47,8 @@ pub(super) struct AnyRapid {
 pub enum UnknownCause {
     /// The program has not stated a position before.
     Start,
+    /// The program has not stated the position of another axis before.
+    Axis,
     /// A tool change moved the axes.
     ToolChange,
     /// A return to a reference position that is not known.
@@ -74,6 +79,9 @@ impl fmt::Display for UnknownCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             UnknownCause::Start => f.write_str("the program states no position before"),
+            UnknownCause::Axis => f.write_str(
+                "the position of another axis is not stated before: write all axes of the machine in the first blocks",
+            ),
             UnknownCause::ToolChange => f.write_str(
                 "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
                  the control",
@@ -99,7 +107,7 @@ impl fmt::Display for UnknownCause {
                 "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
             ),
             UnknownCause::HalfTurn => {
-                f.write_str("an axis turns by half a turn, for which both ways are as short, or an arc begins there")
+                f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
             }
         }
     }
@@ -112,6 +120,12 @@ pub(super) struct Resolver<'a> {
     /// Origin of the part in machine coordinates.
     origin: [f64; 6],
     rapid: RapidPath,
+    /// The rotary axes A, B, C without limits.
+    endless: [bool; 3],
+    /// Set if these go the shorter way to a stated angle.
+    turns_shorter: bool,
+    /// The rules of the control on which the steps depend, each with the first line.
+    pub(super) asked: BTreeMap<Rule, usize>,
     /// Set if a rotary axis carries the tool.
     has_head: bool,
     /// Set if the origin of the part on the machine is given.
@@ -174,6 +188,10 @@ impl<'a> Resolver<'a> {
                 (_, Some(rates)) => RapidPath::Rates(rates),
                 (_, None) => RapidPath::Any,
             },
+            endless: [Letter::A, Letter::B, Letter::C]
+                .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
+            turns_shorter: setup.rules.get(Rule::Rotary) == Some(Choice::Shortest),
+            asked: BTreeMap::new(),
             has_head: has_rotary(Side::Tool),
             is_placed: setup.work_offsets[0].is_some(),
             part_position_unknown: setup.work_offsets[0].is_none() && has_rotary(Side::Table),
@@ -210,7 +228,6 @@ impl<'a> Resolver<'a> {
         if matches!(step.path, StepPath::Align) {
             return self.align(&frame, &step.state);
         }
-        self.count_turns(&frame, &step.start);
         let current = self.current_position(&frame);
         let mut ends = [step.start, step.end];
         for k in 0..6 {
@@ -227,11 +244,16 @@ impl<'a> Resolver<'a> {
             let found = chain.inverse(&tip, &Vector3::from(axis), &near)?;
             (3..6).for_each(|k| ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]));
         }
+        let is_half = self.turn_shorter(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
-            if (0..6).any(|k| step.commanded[k] && step.end[k].is_none()) {
+            let goes_home = (0..6).any(|k| step.commanded[k] && step.end[k].is_none());
+            let is_new = (0..6).any(|k| step.commanded[k] && current[k].is_none());
+            if goes_home {
                 self.cause = UnknownCause::Return;
+            } else if self.cause == UnknownCause::Start && !is_new {
+                return Ok(Resolved::Unknown(UnknownCause::Axis));
             }
             return Ok(Resolved::Unknown(self.cause));
         };
@@ -247,17 +269,22 @@ impl<'a> Resolver<'a> {
         if !frame.is_tip && frame.has_unknown_lever && turns(Side::Tool) {
             return Err(StepFault::NoLength);
         }
-        let is_determined = !matches!(step.path, StepPath::Undetermined);
+        let is_determined = !matches!(step.path, StepPath::Undetermined) && !is_half;
         let resolved = match start.filter(|_| is_determined) {
             Some(start) if step.rapid && !frame.is_tip => {
                 let joints = [start, end].map(|position| frame.joints(position));
-                self.rapid(&frame.chain, joints)?
+                let resolved = self.rapid(&frame.chain, joints)?;
+                if matches!((&self.rapid, &resolved), (RapidPath::Rates(_), Resolved::Motions(all)) if all.len() > 1)
+                {
+                    self.asked.entry(Rule::Rapid).or_insert(step.line);
+                }
+                resolved
             }
             Some(start) => Resolved::Motions(frame.motions(&step.path, [start, end])?),
             None => {
                 let mut motions = frame.motions(&StepPath::Line, [end, end])?;
                 let (rest, _) = motions.swap_remove(0);
-                let cause = if is_determined { self.cause } else { UnknownCause::HalfTurn };
+                let cause = if is_half { UnknownCause::HalfTurn } else { self.cause };
                 Resolved::Arrival(Box::new(rest), cause)
             }
         };
@@ -303,16 +330,24 @@ impl<'a> Resolver<'a> {
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
-    /// Adds whole turns to the rotary joints, if the step starts at an angle that differs by them.
-    fn count_turns(&mut self, frame: &Frame, start: &Position) {
-        for k in 3..6 {
-            if let (Some(joint), Some(start)) = (&mut self.joints[k], start[k]) {
-                let turns = (start + frame.rotary[k - 3] - *joint) / 360.0;
-                if turns.round() != 0.0 && (turns - turns.round()).abs() < 1e-9 {
-                    *joint += 360.0 * turns.round();
-                }
+    /// Counts the angles at the start so that the ways of endless axes to stated angles are the shorter, if the control goes
+    /// that way. Returns whether one is half a turn, for which both ways are as short.
+    fn turn_shorter(&mut self, step: &Step, [start, end]: &mut [Position; 2]) -> bool {
+        let mut is_half = false;
+        for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && self.endless[k - 3]) {
+            let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
+            let turn = to - from;
+            if turn.abs() < 180.0 - ANGLE_INCREMENT {
+                continue;
+            }
+            self.asked.entry(Rule::Rotary).or_insert(step.line);
+            if self.turns_shorter {
+                let shorter = turn - 360.0 * (turn / 360.0).round();
+                start[k] = Some(to - shorter);
+                is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
             }
         }
+        is_half
     }
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
