@@ -21,6 +21,7 @@ impl Control {
         let mut new = (*self.state).clone();
         edit(&mut new);
         if new != *self.state {
+            self.length_changed |= new.length != self.state.length;
             self.position = self.state.carry_over(&new, self.position);
             self.state = Arc::new(new);
         }
@@ -105,14 +106,36 @@ impl Control {
         }
     }
 
-    /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
-    pub(super) fn length_without_word(&mut self) {
-        if std::mem::take(&mut self.returned)
-            && self.choice(Rule::ReferenceReturn) == Choice::CancelsLength
-        {
+    /// Ends the length offset that a return has cancelled, before a block to which it matters.
+    pub(super) fn returned_length(&mut self, block: &Block) {
+        let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
+        let matters = match one_shot {
+            // By increments of 0 the intermediate position is where the machine stands.
+            Some(280 | 300) => block.is_nonzero("Z") || block.has('Z') && !self.modal.incremental,
+            Some(920) => block.has('Z'),
+            Some(_) => false,
+            None if block.code_of(Group::Machine).is_some() => false,
+            None => {
+                let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
+                block.has('Z')
+                    || block.has_any("XYABC") && (is_cycle || self.state.rotation != Rotation::Off)
+            }
+        };
+        let Some(by_g53) = self.returned.filter(|_| matters) else { return };
+        self.returned = None;
+        let cancels = match self.choice(Rule::ReferenceReturn) {
+            Choice::CancelsLength => !by_g53,
+            Choice::CancelsLengthByG53 => true,
+            _ => false,
+        };
+        if cancels {
             self.length_cancelled = true;
             self.change(|state| state.length = LengthOffset::Off);
         }
+    }
+
+    /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
+    pub(super) fn length_without_word(&mut self) {
         if let (LengthOffset::Off, false, Some(tool)) =
             (self.state.length, self.length_cancelled, self.state.tool)
             && tool != 0
@@ -144,7 +167,7 @@ impl Control {
 
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-        (self.returned, self.length_implicit) = (false, false);
+        (self.returned, self.length_implicit) = (None, false);
         let off = |transformed| if transformed { Tcp::Rotary } else { Tcp::Off };
         if code.tenths == 490 {
             let tcp = off(self.transformed);
@@ -164,7 +187,16 @@ impl Control {
         if tcp == Tcp::Vector && self.state.rotation != Rotation::Off {
             return Err(combination(code, "a plane is rotated", "end it with G69 before"));
         }
-        let given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
+        let mut given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
+        if given.is_none()
+            && code.tenths == 430
+            && self.last_register != self.state.tool
+            && self.choice(Rule::LengthRegister) == Choice::LastH
+        {
+            given = Some(self.last_register.unwrap_or(0));
+        }
+        self.last_register = given.or(self.last_register);
+        self.length_cancelled = given == Some(0);
         let length = match (given, self.state.length, self.state.tool) {
             (Some(0), ..) => LengthOffset::Off,
             (Some(register), ..) => self.registered(register),
@@ -358,6 +390,9 @@ impl Control {
     /// Executes G92.1, G92.2 and G92.3.
     fn end_preset(&mut self, code: Code, tenths: u32) -> Result<(), GcodeFault> {
         self.check_local(code)?;
+        if self.preset != [Some(0.0); 6] && self.choice(Rule::PresetEnd) == Choice::KeepsPreset {
+            return Ok(());
+        }
         match tenths {
             921 => (self.preset, self.suspended) = ([Some(0.0); 6], None),
             922 => {

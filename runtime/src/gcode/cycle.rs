@@ -1,8 +1,7 @@
 //! Canned cycles: drilling, tapping and boring along the normal of the plane.
 //!
 //! A cycle moves in rapid traverse over its hole, in rapid traverse to the plane R, at feed rate to its
-//! depth, and back: to R (G99), or to the level at which the first cycle of the series began, if that is
-//! above R (G98). Under G91, R is relative to that level and the depth to R. Whether a tool that begins below R
+//! depth, and back: to R (G99), or to the level at which the first cycle of the series began (G98). Under G91, R is relative to that level and the depth to R. Whether a tool that begins below R
 //! rises to it before it moves sideways is a [rule](Rule::CycleBelowR) of the control.
 //!
 //! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
@@ -14,6 +13,7 @@ use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{ControlState, Position, Tcp};
 use super::{GcodeFault, MAX_CYCLE_STEPS, StepPath};
+use crate::unit::Unit;
 use std::sync::Arc;
 
 /// Words that stay in force from one cycle to the next, lengths in millimetres as given.
@@ -26,7 +26,13 @@ pub(super) struct Cycle {
     incremental: bool,
     /// Level at the start of the series.
     initial: Option<f64>,
+    unit: Unit,
     state: Arc<ControlState>,
+}
+
+/// Returns whether a level is below another.
+fn is_below(level: Option<f64>, other: Option<f64>) -> bool {
+    level.zip(other).is_some_and(|(level, other)| level < other)
 }
 
 /// The levels of a cycle along the normal. Unknown if they depend on an unknown position.
@@ -65,12 +71,13 @@ impl Control {
             return Err(GcodeFault::CycleTooLong);
         }
         let axes = self.take_axes(block);
-        if repeats > 0 && cycle.initial.zip(levels.retract).is_some_and(|(initial, r)| initial < r)
+        // LinuxCNC compares the initial level, and not the present one, with R.
+        if repeats > 0
+            && is_below(cycle.initial, levels.retract)
+            && self.position[normal] != levels.retract
+            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
         {
-            let is_below = self.position[normal].zip(levels.retract).is_some_and(|(z, r)| z < r);
-            if is_below && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst {
-                self.move_along(normal, true, levels.retract);
-            }
+            self.move_along(normal, true, levels.retract);
         }
         for _ in 0..repeats {
             self.move_over(axes);
@@ -85,7 +92,8 @@ impl Control {
 
     fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
         let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
-        let changed = self.cycle.as_ref().is_some_and(|cycle| *cycle.state != *self.state);
+        let is_other = |cycle: &Cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit;
+        let changed = self.cycle.as_ref().is_some_and(is_other);
         let (word, condition, remedy) = match rotary {
             Some(letter) => (
                 letter.to_string(),
@@ -97,7 +105,7 @@ impl Control {
             }
             None if changed => (
                 word.to_owned(),
-                "coordinates or tool have changed since the series of cycles began",
+                "coordinates, unit or tool have changed since the series of cycles began",
                 "write G80 before, and all words of the cycle again",
             ),
             None => return Ok(()),
@@ -127,7 +135,8 @@ impl Control {
             return Err(missing("a positive depth of peck Q"));
         }
         let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
-        Ok(Cycle { retract, depth, peck, incremental, initial, state: Arc::clone(&self.state) })
+        let (unit, state) = (self.modal.unit, Arc::clone(&self.state));
+        Ok(Cycle { retract, depth, peck, incremental, initial, unit, state })
     }
 
     fn levels(&mut self, cycle: &Cycle) -> Result<Levels, GcodeFault> {
@@ -138,11 +147,11 @@ impl Control {
                 (retract, retract.map(|retract| retract + cycle.depth))
             }
         };
-        let is_below = match cycle.incremental {
+        let is_inverted = match cycle.incremental {
             false => cycle.retract < cycle.depth,
             true => cycle.depth > 0.0,
         };
-        if is_below {
+        if is_inverted {
             let (retract, depth) = (cycle.retract, cycle.depth);
             return Err(GcodeFault::CycleBelow { retract, depth });
         }
@@ -154,7 +163,14 @@ impl Control {
         };
         let clear = match to_r {
             true => retract,
-            false => retract.zip(cycle.initial).map(|(retract, initial)| retract.max(initial)),
+            // A level below R is left for R by a control that rises first.
+            false
+                if is_below(cycle.initial, retract)
+                    && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst =>
+            {
+                retract
+            }
+            false => retract.and(cycle.initial),
         };
         Ok(Levels { retract, depth, clear })
     }

@@ -23,6 +23,11 @@ pub enum GcodeFault {
         /// The escaped character.
         shown: String,
     },
+    /// A carriage return that ends a line on some controls only.
+    #[error(
+        "a carriage return without a line feed ends the line on some controls only: save the file with line feeds"
+    )]
+    LoneReturn,
     /// A comment without its end.
     #[error("the comment has no `)`, or another `(` in it: close it on its line")]
     OpenComment,

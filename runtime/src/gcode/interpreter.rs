@@ -26,6 +26,8 @@ pub struct Interpreter<'a> {
     parameters: Parameters,
     block: Block,
     control: Control,
+    /// The number of the first switch for optional blocks.
+    switch: Option<String>,
     finished: bool,
 }
 
@@ -35,6 +37,9 @@ impl<'a> Interpreter<'a> {
     /// # Errors
     /// If two subprograms have one label, or a `sub` and its `endsub` do not match.
     pub fn new(text: &'a str, setup: &ControlSetup) -> Result<Interpreter<'a>, GcodeError> {
+        if let Some(line) = text::lone_return(text) {
+            return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
+        }
         let extent = text::extent(text);
         let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
         let mut control = Control::new(setup);
@@ -47,6 +52,7 @@ impl<'a> Interpreter<'a> {
             parameters: Parameters::default(),
             block: Block::default(),
             control,
+            switch: None,
             finished: false,
         })
     }
@@ -77,13 +83,13 @@ impl<'a> Interpreter<'a> {
     /// Executes the block of a line, and those after semicolons if they end a block.
     fn blocks(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
         self.control.line = line;
-        let after = after_semicolon(text).filter(|after| self.are_blocks(after));
+        let after = after_semicolon(text).filter(|after| after.split(';').any(could_be_block));
         self.line(line, text, block)?;
         let Some(after) = after else { return Ok(()) };
         if self.control.choice(Rule::Semicolon) == Choice::Comment {
             return Ok(());
         }
-        for text in after.split(';') {
+        for text in after.split(';').filter(|text| could_be_block(text)) {
             if self.finished {
                 break;
             }
@@ -97,17 +103,6 @@ impl<'a> Interpreter<'a> {
             self.line(line, text, block)?;
         }
         Ok(())
-    }
-
-    /// Returns whether a text behind a semicolon can be read as blocks that do something.
-    fn are_blocks(&self, text: &str) -> bool {
-        let mut block = Block::default();
-        let mut has_effect = false;
-        text.split(';').all(|text| {
-            let is_read = block.parse(text, &mut self.parameters.clone()).is_ok();
-            has_effect |= is_read && block.has_effect();
-            is_read
-        }) && has_effect
     }
 
     /// Returns the label and the repeats of M98.
@@ -130,7 +125,15 @@ impl<'a> Interpreter<'a> {
     }
 
     fn line(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
-        let is_optional = text.trim_start().starts_with('/');
+        let switch = text.trim_start().strip_prefix('/');
+        let is_optional = switch.is_some();
+        if let Some(text) = switch {
+            let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+            let first = self.switch.get_or_insert_with(|| text[..digits].to_owned());
+            if *first != text[..digits] {
+                self.control.notes.add(line, Subject::OptionalSwitches);
+            }
+        }
         if is_optional && self.control.choice(Rule::OptionalBlocks) == Choice::LeftOut {
             self.control.notes.add(line, Subject::OmittedOptionalBlock);
             return Ok(());
@@ -216,18 +219,34 @@ fn is_other_word(code: Code) -> bool {
     }
 }
 
-/// Returns the text after the first semicolon outside comments in brackets, if a word could begin there.
+/// Returns the text after the first semicolon outside comments in brackets.
 fn after_semicolon(text: &str) -> Option<&str> {
     let mut depth = 0;
     let position = text.bytes().position(|byte| {
         depth += i32::from(byte == b'(') - i32::from(byte == b')');
         byte == b';' && depth == 0
     })?;
-    let after = &text[position + 1..];
-    let mut bytes = after.bytes().filter(|byte| !byte.is_ascii_whitespace());
-    let begins =
-        bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || b"/#".contains(&byte));
-    (begins && bytes.next().is_some_and(|byte| !byte.is_ascii_alphabetic())).then_some(after)
+    Some(&text[position + 1..])
+}
+
+/// Returns whether a text begins as a block does, and not as prose: with a word, an assignment or a statement.
+fn could_be_block(text: &str) -> bool {
+    let mut rest = text.trim_start();
+    while let Some(comment) = rest.strip_prefix('(') {
+        rest = comment.split_once(')').map_or("", |(_, rest)| rest).trim_start();
+    }
+    let rest =
+        rest.trim_start_matches(|c: char| c == '/' || c.is_ascii_digit() || c.is_whitespace());
+    let mut letters = rest.chars().filter(|c| !c.is_whitespace());
+    let is_word = match letters.next() {
+        Some('#') => true,
+        Some(letter) if letter.is_ascii_alphabetic() => {
+            letters.next().is_some_and(|next| next.is_ascii_digit() || "+-.[#".contains(next))
+        }
+        _ => false,
+    };
+    let name = rest.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
+    is_word || ["GOTO", "IF", "WHILE", "TRAORI", "TRAFOOF"].contains(&&*name.to_ascii_uppercase())
 }
 
 impl Control {
@@ -246,6 +265,7 @@ impl Control {
         self.coordinates(block)?;
         let is_one_shot = block.code_of(Group::OneShot).is_some();
         let is_machine = block.code_of(Group::Machine).is_some();
+        self.returned_length(block);
         if block.has_any("XYZABC") && !is_one_shot && !is_machine {
             // The offset moves Z alone, but in a rotated plane.
             let normal = matches!(self.modal.motion, Some(Motion::Cycle(_))) || block.has('Z');
@@ -283,9 +303,11 @@ impl Control {
         }
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
-            let length = if self.modal.unit == Unit::Inch { 1e-4 } else { 1e-3 };
+            let (length, motion) = (self.modal.increment(), self.modal.motion);
             block.scale_whole(|letter| match letter {
                 'A' | 'B' | 'C' => 1e-3,
+                // The number of repeats of a cycle.
+                'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
                 'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
                 _ => length,
             });

@@ -153,6 +153,8 @@ pub struct Step {
     pub tool_vector: Option<[f64; 3]>,
     /// Set if the end is stated, in G90 or in machine coordinates, and not by increments.
     pub absolute: bool,
+    /// Set if the end is stated in machine coordinates: under G53, and to a reference position.
+    pub in_machine: bool,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.

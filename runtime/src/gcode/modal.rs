@@ -67,6 +67,11 @@ impl Modal {
         }
     }
 
+    /// Returns the least increment of a length, in the unit of the program.
+    pub(super) fn increment(&self) -> f64 {
+        if self.unit == Unit::Inch { 1e-4 } else { 1e-3 }
+    }
+
     /// Converts a length of the program to millimetres.
     pub(super) fn millimetres(&self, length: f64) -> f64 {
         length * self.unit.millimetres()

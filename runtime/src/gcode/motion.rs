@@ -6,7 +6,7 @@ use super::block::Block;
 use super::code::Group;
 use super::cycle::Cycle;
 use super::modal::{FeedMode, Modal, Motion};
-use super::note::Notes;
+use super::note::{Notes, Subject};
 use super::rules::{Choice, ControlRules, Rule};
 use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -16,6 +16,14 @@ use std::sync::Arc;
 
 /// Letters of the axes.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// Difference of the radii of an arc, in mm, up to which it is rounding: I and J with three decimals, or four in inches.
+const RADII_TOLERANCE: f64 = 5e-3;
+
+/// Returns two coordinates of a position, if both are known.
+fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
+    Some([position[axes[0]]?, position[axes[1]]?])
+}
 
 /// A control: everything that blocks change and motions depend on.
 #[derive(Debug)]
@@ -56,9 +64,13 @@ pub(super) struct Control {
     is_machine_target: bool,
     /// Set once a work offset was selected.
     pub(super) offset_stated: bool,
-    /// Set by a return to a reference position under a length offset, until the next word or motion to which the offset
-    /// matters.
-    pub(super) returned: bool,
+    /// Set by a return to a reference position (`false`) or by G53 along Z (`true`) under a length offset, until the next word or
+    /// motion to which the offset matters.
+    pub(super) returned: Option<bool>,
+    /// The last H.
+    pub(super) last_register: Option<u32>,
+    /// Set by a change of the length offset, until Z is stated.
+    pub(super) length_changed: bool,
     /// Set if the length offset is that of the tool in the spindle without a word.
     pub(super) length_implicit: bool,
     /// Set by G49, until the next tool change.
@@ -109,7 +121,9 @@ impl Control {
             change_position: setup.tool_change,
             is_machine_target: false,
             offset_stated: false,
-            returned: false,
+            returned: None,
+            last_register: None,
+            length_changed: false,
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::default(),
@@ -204,6 +218,7 @@ impl Control {
         }
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
+        self.check_increment(block)?;
         let (mut end, _, mut commanded) = self.take_end(block);
         if turns {
             end[3..].fill(None);
@@ -257,7 +272,7 @@ impl Control {
             offsets: ['I', 'J', 'K'].map(|letter| block.take(letter).map(length)),
             absolute: match self.modal.absolute_centres {
                 Some(absolute) => absolute,
-                None => self.choice(Rule::Dialect) == Choice::Heidenhain,
+                None => self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental,
             },
             radius: block.take('R').map(length),
             turns: block
@@ -265,9 +280,44 @@ impl Control {
                 .unwrap_or(1),
             unit: self.modal.unit,
         };
+        self.check_increment(block)?;
         let (end, _, commanded) = self.take_end(block);
         let path = arc::path(&words, self.position, end)?;
+        self.check_radii(&path, &end)?;
         self.push(false, end, commanded, path);
+        Ok(())
+    }
+
+    /// Refuses an increment of Z on which a change of the length offset acts on some controls.
+    fn check_increment(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        if !block.has('Z') || !std::mem::take(&mut self.length_changed) || !self.modal.incremental {
+            return Ok(());
+        }
+        let condition = "G91 is in force and the length offset has changed";
+        Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy: "write it in G90" })
+    }
+
+    /// Refuses an arc that is a full circle where coordinates are rounded, and notes one that is no circle.
+    fn check_radii(&mut self, path: &StepPath, end: &Position) -> Result<(), GcodeFault> {
+        let StepPath::Arc { plane, centre, .. } = path else { return Ok(()) };
+        let [first, second] = plane.axes();
+        let (Some([x, y]), Some([u, v])) =
+            (in_plane(&self.position, [first, second]), in_plane(end, [first, second]))
+        else {
+            return Ok(());
+        };
+        let chord = (u - x).hypot(v - y);
+        if chord > 0.0 && chord < self.modal.millimetres(self.modal.increment()) {
+            return Err(GcodeFault::Combination {
+                word: "an arc".to_owned(),
+                condition: "its end is less than an increment from its start, and so the same where coordinates are rounded",
+                remedy: "leave the end out for a full circle, or leave out the arc",
+            });
+        }
+        let radius = |x: f64, y: f64| (x - centre[0]).hypot(y - centre[1]);
+        if (radius(x, y) - radius(u, v)).abs() > RADII_TOLERANCE {
+            self.notes.add(self.line, Subject::TwoRadii);
+        }
         Ok(())
     }
 
@@ -343,6 +393,9 @@ impl Control {
             target[2] = length.map(|length| z + length);
         }
         self.move_machine(axes.map(|value| value.is_some()), target, (rapid, StepPath::Line));
+        if axes[2].is_some() && self.state.length != LengthOffset::Off {
+            self.returned = self.returned.or(Some(true));
+        }
         Ok(())
     }
 
@@ -374,7 +427,7 @@ impl Control {
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, (true, StepPath::Line));
-        self.returned = self.state.length != LengthOffset::Off;
+        self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }
 
@@ -437,6 +490,7 @@ impl Control {
             spindle,
             // Reference positions are stated in G91, too.
             absolute: !self.modal.incremental || self.is_machine_target,
+            in_machine: self.is_machine_target,
             state,
         });
     }

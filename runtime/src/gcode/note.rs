@@ -42,6 +42,10 @@ pub enum NoteKind {
     TextAfterEnd,
     /// Another program in the file, which is not read.
     OtherProgram,
+    /// A block whose switch is not that of other optional blocks. They are executed or left out together.
+    OptionalSwitches,
+    /// An arc whose radii at its start and end differ by more than rounding. It is read as a spiral.
+    TwoRadii,
 }
 
 impl fmt::Display for ProgramNote {
@@ -69,6 +73,12 @@ impl fmt::Display for NoteKind {
             NoteKind::TextAfterEnd => {
                 f.write_str("the text after the end of the program is not read")
             }
+            NoteKind::OptionalSwitches => f.write_str(
+                "optional blocks have several switches (/1, /2), of which all on and all off are checked",
+            ),
+            NoteKind::TwoRadii => f.write_str(
+                "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc",
+            ),
             NoteKind::OtherProgram => f.write_str(
                 "another program begins here, and is not checked: give a file per program",
             ),
@@ -87,6 +97,8 @@ pub(super) enum Subject {
     OmittedOptionalBlock,
     TextAfterEnd,
     OtherProgram,
+    OptionalSwitches,
+    TwoRadii,
 }
 
 /// The notes of a program.
@@ -129,6 +141,8 @@ impl Subject {
             Subject::OmittedOptionalBlock => NoteKind::OmittedOptionalBlock,
             Subject::TextAfterEnd => NoteKind::TextAfterEnd,
             Subject::OtherProgram => NoteKind::OtherProgram,
+            Subject::OptionalSwitches => NoteKind::OptionalSwitches,
+            Subject::TwoRadii => NoteKind::TwoRadii,
         }
     }
 }

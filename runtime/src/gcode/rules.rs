@@ -40,6 +40,10 @@ pub enum Rule {
     StartOffset,
     /// The meaning of words.
     Dialect,
+    /// The register of a G43 without H.
+    LengthRegister,
+    /// The shift by G92 after a G92.1 without axis words.
+    PresetEnd,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -66,6 +70,7 @@ pub enum Choice {
     Inch,
     KeepsLength,
     CancelsLength,
+    CancelsLengthByG53,
     WithG43,
     Always,
     KeepsSpindle,
@@ -78,6 +83,10 @@ pub enum Choice {
     NoOffset,
     Iso,
     Heidenhain,
+    OfTool,
+    LastH,
+    EndsPreset,
+    KeepsPreset,
     Executed,
     LeftOut,
 }
@@ -91,7 +100,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 15] = [
+const RULES: [Entry; 17] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -163,6 +172,7 @@ const RULES: [Entry; 15] = [
         choices: &[
             (Choice::KeepsLength, "keeps length", "stays in force"),
             (Choice::CancelsLength, "cancels length", "is off, as after G49"),
+            (Choice::CancelsLengthByG53, "cancels length, as G53", "is off, also after G53"),
         ],
     },
     Entry {
@@ -225,6 +235,24 @@ const RULES: [Entry; 15] = [
         ],
     },
     Entry {
+        rule: Rule::LengthRegister,
+        key: "length_register",
+        about: "G43 without H",
+        choices: &[
+            (Choice::OfTool, "of the tool", "takes the register of the tool in the spindle"),
+            (Choice::LastH, "last H", "takes the H before, or none"),
+        ],
+    },
+    Entry {
+        rule: Rule::PresetEnd,
+        key: "preset_end",
+        about: "the shift by G92 after G92.1 without axis words",
+        choices: &[
+            (Choice::EndsPreset, "ends", "is off"),
+            (Choice::KeepsPreset, "stays", "stays in force"),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -237,7 +265,7 @@ const RULES: [Entry; 15] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 14]); 5] = {
+const CONTROLS: [(&str, [Choice; 16]); 5] = {
     use Choice::*;
     [
         (
@@ -257,6 +285,8 @@ const CONTROLS: [(&str, [Choice; 14]); 5] = {
                 WithoutLength,
                 FirstOffset,
                 Iso,
+                LastH,
+                KeepsPreset,
             ],
         ),
         (
@@ -276,6 +306,8 @@ const CONTROLS: [(&str, [Choice; 14]); 5] = {
                 WithoutLength,
                 FirstOffset,
                 Iso,
+                LastH,
+                KeepsPreset,
             ],
         ),
         (
@@ -295,6 +327,8 @@ const CONTROLS: [(&str, [Choice; 14]); 5] = {
                 WithoutLength,
                 FirstOffset,
                 Iso,
+                OfTool,
+                EndsPreset,
             ],
         ),
         (
@@ -314,6 +348,8 @@ const CONTROLS: [(&str, [Choice; 14]); 5] = {
                 WithLength,
                 NoOffset,
                 Iso,
+                OfTool,
+                EndsPreset,
             ],
         ),
         (
@@ -333,10 +369,15 @@ const CONTROLS: [(&str, [Choice; 14]); 5] = {
                 WithoutLength,
                 FirstOffset,
                 Heidenhain,
+                OfTool,
+                EndsPreset,
             ],
         ),
     ]
 };
+
+/// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
+const OPEN: [(&str, Rule); 1] = [("fanuc", Rule::ReferenceReturn)];
 
 impl Rule {
     /// Returns all rules.
@@ -387,7 +428,7 @@ impl ControlRules {
     }
 
     /// Returns a control that is known by name: it states every rule but the operator's switch for
-    /// [optional blocks](Rule::OptionalBlocks).
+    /// [optional blocks](Rule::OptionalBlocks), and what depends on a parameter that is set either way.
     ///
     /// # Errors
     /// [`ControlError::UnknownName`] for another name.
@@ -396,7 +437,9 @@ impl ControlRules {
         let Some((_, choices)) = known else {
             return Err(ControlError::UnknownName { name: shown(name), nearest: nearest(name) });
         };
-        Ok(ControlRules { stated: Rule::all().zip(choices.iter().copied()).collect() })
+        let stated = Rule::all().zip(choices.iter().copied());
+        let is_open = |rule: Rule| OPEN.contains(&(name, rule));
+        Ok(ControlRules { stated: stated.filter(|(rule, _)| !is_open(*rule)).collect() })
     }
 
     /// Parses a control from TOML: every rule by its key, but for the operator's switch. `file` is the file's name in errors.
@@ -476,13 +519,24 @@ impl ControlRules {
         self
     }
 
-    /// Writes the rules that are stated as a control's file.
+    /// Writes the rules as a control's file. One that is not stated is a comment with its choices.
     pub fn to_toml(&self) -> String {
-        let line = |(rule, choice): (&Rule, &Choice)| {
-            let ([word, meaning], about) = (rule.describe(*choice), rule.about());
-            format!("# {about}: {meaning}\n{} = \"{word}\"\n", rule.key())
+        let line = |rule: Rule| {
+            let (key, about) = (rule.key(), rule.about());
+            match self.get(rule) {
+                Some(choice) => {
+                    let [word, meaning] = rule.describe(choice);
+                    format!("# {about}: {meaning}\n{key} = \"{word}\"\n")
+                }
+                None => {
+                    let words =
+                        rule.choices().map(|choice| format!("\"{}\"", rule.describe(choice)[0]));
+                    let words = words.collect::<Vec<_>>().join(" or ");
+                    format!("# {about}: state {key} = {words}\n")
+                }
+            }
         };
-        self.stated.iter().map(line).collect()
+        Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).map(line).collect()
     }
 }
 
@@ -555,7 +609,13 @@ mod tests {
             assert_eq!(rule as usize, index, "{rule:?}");
         }
         for name in ControlRules::names() {
-            let control = ControlRules::named(name).expect("a control");
+            let mut control = ControlRules::named(name).expect("a control");
+            for (_, rule) in OPEN.iter().filter(|(open, _)| *open == name) {
+                let error = ControlRules::parse(&control.to_toml(), name).expect_err("it is open");
+                assert!(error.to_string().contains(rule.key()), "{error}");
+                let first = rule.choices().next().expect("a choice");
+                control = control.with(*rule, first);
+            }
             let file = control.to_toml();
             assert_eq!(ControlRules::parse(&file, name), Ok(control), "{file}");
         }

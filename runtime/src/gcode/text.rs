@@ -57,6 +57,14 @@ pub(super) struct Extent<'a> {
     pub(super) left_out: Option<(usize, bool)>,
 }
 
+/// Returns the line of the first carriage return without a line feed.
+pub(super) fn lone_return(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let is_lone = |index: &usize| bytes[*index] == b'\r' && bytes.get(index + 1) != Some(&b'\n');
+    let index = (0..bytes.len()).find(is_lone)?;
+    Some(1 + bytes[..index].iter().filter(|byte| **byte == b'\n').count())
+}
+
 /// Finds the first line and the end of a program.
 pub(super) fn extent(text: &str) -> Extent<'_> {
     let mut extent =

@@ -401,9 +401,8 @@ impl MachineSummary {
         });
         let unknown = &mut self.unknown[position];
         unknown.count += 1;
-        let is_first = cause == UnknownCause::Start;
-        let goes_home = (0..6).any(|k| step.commanded[k] && step.end[k].is_none());
-        if !step.rapid || !is_first && !goes_home {
+        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
+        if !step.rapid || !is_said {
             unknown.open_line.get_or_insert(step.line);
         }
     }

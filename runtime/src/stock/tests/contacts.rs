@@ -236,7 +236,7 @@ fn a_layer_of_the_stated_thickness_is_found() {
         let place = |point: Point3<f64>| rotation * point + shift;
         let vertices = mesh.vertices().iter().map(|vertex| place(*vertex)).collect();
         let turned = Mesh::new(vertices, mesh.triangles().to_vec(), UNIT).expect("a block");
-        let mut found = |depth: f64| {
+        let found = |depth: f64| {
             let mut stock = Stock::from_mesh(&turned, 1.0).expect("a stock");
             let pose = |x: f64| {
                 let tip = place(Point3::new(x, 0.0, -depth));

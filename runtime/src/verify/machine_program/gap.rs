@@ -67,6 +67,10 @@ impl MachineProgram {
         }
         match common == ControlRules::default() {
             false => Some(format!("under {common}")),
+            true if holds.len() <= 3 => {
+                let each: Vec<String> = holds.iter().map(|rules| rules.to_string()).collect();
+                Some(format!("under {}", each.join(", or ")))
+            }
             true => Some(format!("under {} of {} readings", holds.len(), readings.len())),
         }
     }
@@ -117,7 +121,10 @@ impl MachineSummary {
             add(0, false, reason.to_owned());
         }
         for note in &self.notes {
-            let is_open = note.kind == NoteKind::OtherProgram;
+            let is_open = matches!(
+                note.kind,
+                NoteKind::OtherProgram | NoteKind::OptionalSwitches | NoteKind::TwoRadii
+            );
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
             if !matches!(note.kind, NoteKind::PassedOver { .. }) {

@@ -51,8 +51,10 @@ pub enum UnknownCause {
     Axis,
     /// A tool change moved the axes.
     ToolChange,
-    /// A return to a reference position that is not known.
+    /// A motion to machine coordinates that are not known.
     Return,
+    /// The way of axes from known positions to machine coordinates that are not known.
+    Home,
     /// A shift by G92 at an unknown position.
     Shift,
     /// No tool length offset is in force, and the length of the tool is not stated.
@@ -86,9 +88,9 @@ impl fmt::Display for UnknownCause {
                 "only the machine knows where the tool change leaves its axes: state `tool_change` in the machine's file, or \
                  the control",
             ),
-            UnknownCause::Return => f.write_str(
-                "only the machine knows its reference position: state `home` of its axes and the origin of G54 in \
-                 `work_offsets`",
+            UnknownCause::Return | UnknownCause::Home => f.write_str(
+                "only the machine knows where its coordinates and its reference position are: state the origin of G54 in \
+                 `work_offsets`, and `home` of its axes",
             ),
             UnknownCause::Shift => f.write_str("G92 shifts a position that is not known"),
             UnknownCause::NoOffset { tool } => write!(
@@ -248,12 +250,25 @@ impl<'a> Resolver<'a> {
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
-            let goes_home = (0..6).any(|k| step.commanded[k] && step.end[k].is_none());
+            let is_lost = |k: &usize| step.commanded[*k] && step.end[*k].is_none();
             let is_new = (0..6).any(|k| step.commanded[k] && current[k].is_none());
-            if goes_home {
+            if self.cause == UnknownCause::Start {
+                // The way to a reference position before the first position is the operator's, too.
+                let knows = (0..6).any(|k| {
+                    current[k].is_some()
+                        && self.machine.axes().iter().any(|axis| axis.letter.index() == k)
+                });
+                if (0..6).any(|k| is_lost(&k)) && knows {
+                    self.cause = UnknownCause::Return;
+                } else if !is_new {
+                    return Ok(Resolved::Unknown(UnknownCause::Axis));
+                }
+            } else if (0..6).any(|k| is_lost(&k)) {
                 self.cause = UnknownCause::Return;
-            } else if self.cause == UnknownCause::Start && !is_new {
-                return Ok(Resolved::Unknown(UnknownCause::Axis));
+            }
+            // An axis leaves a known position for one in machine coordinates: that is its way home.
+            if step.in_machine && (0..6).filter(is_lost).all(|k| current[k].is_some()) {
+                return Ok(Resolved::Unknown(UnknownCause::Home));
             }
             return Ok(Resolved::Unknown(self.cause));
         };
