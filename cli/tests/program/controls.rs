@@ -217,8 +217,13 @@ fn a_tool_without_a_checked_motion_is_named() {
 fn a_feed_without_a_length_offset_is_no_guess() {
     let blocks = "T1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.";
     let scene = Scene::new(blocks);
-    scene.gives(&LINUXCNC, 2, &["T1 moves without a tool length offset: write G43 H1"]);
-    scene.gives(&[], 2, &["T1 moves without a tool length offset"]);
+    scene.gives(&LINUXCNC, 2, &["no tool length offset (G43) is in force", "write G43"]);
+    scene.gives(&[], 2, &["no tool length offset (G43) is in force"]);
+    // Of two tools only one has G43.
+    let one = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG49\nT3 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4.";
+    let mut one = Scene::new(one);
+    one.job += "[tool.3]\ntool = \"D2Ball\"\n";
+    one.gives(&LINUXCNC, 2, &["T3 moves without a tool length offset: write G43 H3"]);
     // The length of the tool applies without a word.
     scene.gives(&["--control", "siemens", "--anyway"], 0, &[]);
     let named = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");

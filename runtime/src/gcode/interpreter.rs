@@ -358,12 +358,10 @@ impl Control {
     /// Reads the settings that convert and interpret the other words.
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
-        match tenths(Group::Units) {
-            Some(200 | 700 | 7000) => {
-                (self.modal.unit, self.modal.unit_stated) = (Unit::Inch, true)
-            }
-            Some(_) => (self.modal.unit, self.modal.unit_stated) = (Unit::Millimetre, true),
-            None => {}
+        if let Some(unit) = tenths(Group::Units) {
+            let is_inch = matches!(unit, 200 | 700 | 7000);
+            self.modal.unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
+            self.modal.unit_stated = true;
         }
         if let Some(distance) = tenths(Group::Distance) {
             self.modal.incremental = distance == 910;

@@ -218,9 +218,7 @@ fn widen(kind: &mut FindingKind, spread: f64) {
     match kind {
         FindingKind::Deep { max_depth, .. } => *max_depth += spread,
         FindingKind::Near { min_distance, .. } => *min_distance = (*min_distance - spread).max(0.0),
-        FindingKind::Inside { .. } | FindingKind::Undecided { .. } | FindingKind::Ambiguous(_) => {
-            ()
-        }
+        FindingKind::Inside { .. } | FindingKind::Undecided { .. } | FindingKind::Ambiguous(_) => {}
     }
 }
 

@@ -43,6 +43,8 @@ pub struct MachineProgram {
     machine: Arc<Machine>,
     setup: ControlSetup,
     assumed: ControlRules,
+    /// Set if the program has no length offset at all, and a tool whose length is not stated.
+    off_is_tip: bool,
     summary: MachineSummary,
 }
 
@@ -63,7 +65,8 @@ pub struct MachineSummary {
     pub any_rotary_rapid: Option<usize>,
     /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
     pub spindle: Vec<(usize, Option<u32>, Spindle)>,
-    /// The line of the first feed without a tool length offset in a program that names no tool.
+    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
+    /// positions are taken as those of the tip.
     pub no_offset: Option<usize>,
     /// The work offsets of motions at feed rate, each with the line of the first.
     pub work_offsets: Vec<(WorkOffset, usize)>,
@@ -218,8 +221,20 @@ impl MachineProgram {
         }
         let file = name.to_owned();
         let summary = MachineSummary::default();
-        let mut program = MachineProgram { file, text, machine, setup, assumed, summary };
-        program.summary = program.run(is_placed).map_err(|error| match program.assumed {
+        let off_is_tip = false;
+        let mut program =
+            MachineProgram { file, text, machine, setup, assumed, off_is_tip, summary };
+        let mut result = program.run(is_placed);
+        if let Ok((summary, false)) = &result {
+            let is_off =
+                |unknown: &UnknownMotions| matches!(unknown.cause, UnknownCause::NoOffset { .. });
+            program.off_is_tip = summary.unknown.iter().any(is_off);
+            if program.off_is_tip {
+                result = program.run(is_placed);
+            }
+        }
+        let result = result.map(|(summary, _)| summary);
+        program.summary = result.map_err(|error| match program.assumed {
             ref assumed if *assumed == ControlRules::default() => error,
             ref assumed => {
                 MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
@@ -266,7 +281,7 @@ impl MachineProgram {
         let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
         let frame = MoveFrame { link, origin: Vector3::new(x, y, z), unit };
         let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
-        let mut resolver = Resolver::new(&self.machine, &self.setup);
+        let mut resolver = Resolver::new(&self.machine, &self.setup, self.off_is_tip);
         let mut from = None;
         // The first run has read and resolved every step.
         let steps = steps.map(|step| step.expect("a step that was read before"));
@@ -289,15 +304,17 @@ impl MachineProgram {
         MachineProgramError::Gcode { file: self.file.clone(), line, fault }
     }
 
-    /// Runs the program once. `is_placed` is set if the origin of the part is known.
-    fn run(&self, is_placed: bool) -> Result<MachineSummary, MachineProgramError> {
+    /// Runs the program once, and returns whether it has a length offset. `is_placed` is set if the origin of the part is
+    /// known.
+    fn run(&self, is_placed: bool) -> Result<(MachineSummary, bool), MachineProgramError> {
+        let mut has_offset = false;
         let mut summary = MachineSummary::default();
         let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
         let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
         let mut is_last_singular = false;
         let mut interpreter =
             Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
-        let mut resolver = Resolver::new(&self.machine, &self.setup);
+        let mut resolver = Resolver::new(&self.machine, &self.setup, self.off_is_tip);
         for step in interpreter.by_ref() {
             let step = step.map_err(|error| self.error(error))?;
             let resolved = resolver.resolve(&step).map_err(|fault| MachineProgramError::Step {
@@ -311,8 +328,9 @@ impl MachineProgram {
             {
                 seen.push((number, step.line));
             }
+            has_offset |= step.state.length != LengthOffset::Off;
             if !step.rapid {
-                summary.add_feed(&step);
+                summary.add_feed(&step, self.off_is_tip);
             }
             let motions = match resolved {
                 Resolved::ToolChange => continue,
@@ -321,7 +339,8 @@ impl MachineProgram {
                     continue;
                 }
                 Resolved::Motions(motions) => motions,
-                Resolved::AnyRapid(AnyRapid { straight, edges }) => {
+                Resolved::AnyRapid(any) => {
+                    let AnyRapid { straight, edges } = *any;
                     let found = match edges {
                         Some(_) => &mut summary.any_rapid,
                         None => &mut summary.any_rotary_rapid,
@@ -362,7 +381,7 @@ impl MachineProgram {
             unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
-        Ok(summary)
+        Ok((summary, has_offset))
     }
 }
 
@@ -373,7 +392,7 @@ fn is_branched(rule: Rule) -> bool {
 
 impl MachineSummary {
     /// Notes what a motion at feed rate needs.
-    fn add_feed(&mut self, step: &Step) {
+    fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
         let tool = step.state.tool;
         if step.spindle != Spindle::Tapping
             && !self
@@ -383,7 +402,7 @@ impl MachineSummary {
         {
             self.spindle.push((step.line, tool, step.spindle));
         }
-        if tool.is_none() && step.state.length == LengthOffset::Off {
+        if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
             self.no_offset.get_or_insert(step.line);
         }
         let offset = step.state.work_offset;
@@ -454,11 +473,12 @@ fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usiz
     };
     match resolved {
         Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
-        Resolved::AnyRapid(AnyRapid { straight, edges: None }) => {
-            moves_of(step, Resolved::Motions(vec![(straight, 0.0)]), frame, from)
-        }
-        Resolved::AnyRapid(AnyRapid { straight, edges: Some(edges) }) => {
-            let start = from.is_none().then(|| rest(straight.clone(), 0.0)).flatten();
+        Resolved::AnyRapid(any) => {
+            let AnyRapid { straight, edges } = *any;
+            let Some(edges) = edges else {
+                return moves_of(step, Resolved::Motions(vec![(straight, 0.0)]), frame, from);
+            };
+            let start = from.is_none().then(|| rest(straight, 0.0)).flatten();
             let start = start.map(|path| as_move(None, path));
             let corner = path(straight, 0.0).pose(0.0);
             let way = |edge: JointMotion| path(edge, 0.0).pose(1.0).tip() - corner.tip();

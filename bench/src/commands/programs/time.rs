@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::time::Instant;
 use tools_library::BallEr16;
 use touchoff::certify::TriangleBvh;
-use touchoff::gcode::ControlSetup;
+use touchoff::gcode::{ControlRules, ControlSetup};
 use touchoff::machine::Machine;
 use touchoff::mesh::shapes;
 use touchoff::verify::{MachineProgram, ToolSelection, Verifier};
@@ -108,7 +108,8 @@ fn introduction(part: &Mesh) -> String {
 }
 
 fn row(bvh: &TriangleBvh, scene: Scene, blocks: usize) -> Result<String, Box<dyn Error>> {
-    let mut setup = ControlSetup::default();
+    let rules = ControlRules::named("linuxcnc")?;
+    let mut setup = ControlSetup { rules, ..ControlSetup::default() };
     setup.work_offsets[0] = Some([0.0, 0.0, -480.0, 0.0, 0.0, 0.0]);
     setup.lengths.insert(1, 120.0);
     let text = scene.program(blocks)?;

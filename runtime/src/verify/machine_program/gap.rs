@@ -112,9 +112,18 @@ impl MachineSummary {
             add(*line, true, reason.to_owned());
         }
         if let Some(line) = self.no_offset {
-            let reason = "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work \
-                          offset were set with the tool";
-            add(line, self.tools.iter().any(|tool| tool.number.is_some()), reason.to_owned());
+            let names_tool = self.tools.iter().any(|tool| tool.number.is_some());
+            let remedy = match names_tool {
+                true => {
+                    ": write G43, or state the lengths of the tools in the job (0 if Z of the work offset is that of the tip)"
+                }
+                false => "",
+            };
+            let reason = format!(
+                "no tool length offset (G43) is in force: positions are taken as those of the tip, as if the work offset were \
+                 set with the tool{remedy}"
+            );
+            add(line, names_tool, reason);
         }
         if self.limits_unchecked {
             let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";

@@ -23,7 +23,7 @@ pub(super) enum Resolved {
     /// The motions, in order, each with a bound on its distance from that of the control, in mm.
     Motions(Vec<(JointMotion, f64)>),
     /// Rapid traverse of several axes whose rates are unknown.
-    AnyRapid(AnyRapid),
+    AnyRapid(Box<AnyRapid>),
     /// Only the end is known: a motion that rests there.
     Arrival(Box<JointMotion>, UnknownCause),
     /// The end is unknown.
@@ -119,6 +119,7 @@ impl fmt::Display for UnknownCause {
 pub(super) struct Resolver<'a> {
     machine: &'a Machine,
     lengths: &'a BTreeMap<u32, f64>,
+    off_is_tip: bool,
     /// Origin of the part in machine coordinates.
     origin: [f64; 6],
     rapid: RapidPath,
@@ -172,7 +173,12 @@ struct Lengths {
 }
 
 impl<'a> Resolver<'a> {
-    pub(super) fn new(machine: &'a Machine, setup: &'a ControlSetup) -> Resolver<'a> {
+    /// Creates a resolver. `off_is_tip` is set for programs without length offsets: positions are then those of the tip.
+    pub(super) fn new(
+        machine: &'a Machine,
+        setup: &'a ControlSetup,
+        off_is_tip: bool,
+    ) -> Resolver<'a> {
         let origin = setup.work_offsets[0].unwrap_or_default();
         let mut joints = [None; 6];
         for (joint, (start, origin)) in joints.iter_mut().zip(setup.start.iter().zip(origin)) {
@@ -184,6 +190,7 @@ impl<'a> Resolver<'a> {
         Resolver {
             machine,
             lengths: &setup.lengths,
+            off_is_tip,
             origin,
             rapid: match (setup.rules.get(Rule::Rapid), rapid::rates(machine)) {
                 (Some(Choice::Straight), _) => RapidPath::Straight,
@@ -305,7 +312,7 @@ impl<'a> Resolver<'a> {
         };
         let last = match &resolved {
             Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
-            Resolved::AnyRapid(AnyRapid { straight, .. }) => Some(straight),
+            Resolved::AnyRapid(any) => Some(&any.straight),
             Resolved::Arrival(rest, _) => Some(&**rest),
             Resolved::Unknown(_) | Resolved::ToolChange => None,
         };
@@ -337,7 +344,8 @@ impl<'a> Resolver<'a> {
                 };
                 let is_linear = moving.iter().all(|k| *k < 3);
                 let edges = is_linear.then(|| moving.iter().map(edge).collect());
-                return Ok(Resolved::AnyRapid(AnyRapid { straight, edges: edges.transpose()? }));
+                let edges = edges.transpose()?;
+                return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, edges })));
             }
             RapidPath::Any | RapidPath::Straight => None,
         };
@@ -482,8 +490,10 @@ impl<'a> Resolver<'a> {
         let lengths = match (state.length, known) {
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
             (LengthOffset::Off, None) => match state.tool {
-                Some(tool) => return Ok(Err(UnknownCause::NoOffset { tool })),
-                None => of(0.0, 0.0, false),
+                Some(tool) if !self.off_is_tip => {
+                    return Ok(Err(UnknownCause::NoOffset { tool }));
+                }
+                _ => of(0.0, 0.0, false),
             },
             (LengthOffset::On { length: Some(offset), .. }, Some(length)) => {
                 of(length, offset, true)
