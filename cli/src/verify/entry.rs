@@ -127,7 +127,9 @@ pub(super) fn entries<'a>(verification: &'a Verification<'a>) -> Vec<Entry<'a>> 
         let is_same = |(known, _): &&mut (Entry<'a>, Vec<usize>)| {
             (known.line, &known.text) == (entry.line, &entry.text)
         };
-        match entries.iter_mut().find(is_same) {
+        // Only other readings can have the same finding.
+        let known = if reading == 0 { None } else { entries.iter_mut().find(is_same) };
+        match known {
             Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
             _ => entries.push((entry, vec![reading])),
         }

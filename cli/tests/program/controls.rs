@@ -410,7 +410,7 @@ fn too_many_readings_name_the_rules() {
 fn a_wrong_control_is_refused_with_the_nearest_key() {
     let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
     scene.gives(&["--control", "fanac"], 2, &["did you mean `fanuc`?"]);
-    let file = ControlRules::named("haas").expect("a control").to_toml();
+    let file = ControlRules::named("linuxcnc").expect("a control").to_toml();
     let control = scene.bench.folder.path().join("c.toml").display().to_string();
     for (from, to, word) in [
         (
@@ -419,7 +419,7 @@ fn a_wrong_control_is_refused_with_the_nearest_key() {
             "`whole_number` is no rule: did you mean `whole_numbers`?",
         ),
         ("\nrapid =", "\n#rapid =", "the rule `rapid` is missing"),
-        ("\"each axis\"", "\"fast\"", "`rapid` is one of \"straight\", \"each axis\""),
+        ("\"straight\"", "\"fast\"", "`rapid` is one of \"straight\", \"each axis\""),
     ] {
         fs::write(&control, file.replace(from, to)).expect("a file");
         scene.gives(&["--control", &control], 2, &[word, "c.toml"]);
@@ -441,7 +441,12 @@ fn controls_and_machines_are_listed() {
     let keys = Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).count();
     for row in &rows {
         let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
-        assert_eq!(stated, keys - usize::from(row["name"] == "fanuc"), "{row}");
+        let open = match row["name"].as_str() {
+            Some("fanuc") => 2,
+            Some("haas") => 1,
+            _ => 0,
+        };
+        assert_eq!(stated, keys - open, "{row}");
     }
     let machines = stdout(&touchoff(&["machines"]));
     let trunnion = "A moves the table, from -120 to 30°, home 0, about [1.0, 0.0, 0.0] through [0.0, 0.0, -480.0]";
@@ -488,6 +493,11 @@ fn words_of_heidenhain_are_not_read_as_those_of_others() {
     own.gives(&heidenhain, 2, &["G21 is another word in DIN/ISO programs of Heidenhain"]);
     let own = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
     own.gives(&heidenhain, 0, &[]);
+    // The head states the unit, and the last line repeats it.
+    let own = "%PLATE G71 *\nN10 G90 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\nN30 G1 X4. Z1.\nN99999999 %PLATE G71 *\n";
+    Scene::of(own).gives(&heidenhain, 0, &[]);
+    let fault = own.replace("N20 G0", "N20 G0 M91");
+    Scene::of(&fault).gives(&heidenhain, 2, &["a.nc:3: M91 is not understood"]);
     // I and J are the pole: an arc about the origin.
     let arc = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z1.\nG2 X6. Y0. I0. J0.\nM30\n");
     arc.gives(&heidenhain, 0, &[]);
@@ -639,4 +649,32 @@ fn other_words_on_which_controls_differ_are_refused() {
     // The number of repeats is no length.
     let repeats = Scene::new(&format!("{begin}G99 G91 G81 X0.1 Z-0.2 R-0.1 K2\nG80 G90"));
     repeats.with("anyway = true").gives(&FANUC, 0, &[]);
+}
+
+/// A change of the length offset without Z moves nothing, or Z by the change: down by the length after G49.
+#[test]
+fn a_change_of_the_length_offset_moves_z_or_not() {
+    let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z45.\nX5.\n";
+    for change in ["G49\nX6.", "G43 H0\nX6."] {
+        let scene = Scene::new(&format!("{start}{change}\nG43 H1 Z45.\nG1 X5.")).placed();
+        let scene = scene.obstacle([4.0, -2.0, -60.0], [8.0, 2.0, -1.0]).with("anyway = true");
+        scene.gives(&LINUXCNC, 0, &[]);
+        scene.gives(&FANUC, 1, &["the clamp", "under length_change = \"moves Z\""]);
+        scene.gives(&[], 1, &["the clamp", "length_change = \"moves Z\""]);
+    }
+    let together = Scene::new(&format!("{start}G49 X6.\nG43 H1 Z45.\nG1 X5.")).placed();
+    together.gives(&FANUC, 2, &["G49 while the length offset changes", "length_change"]);
+    // Without an offset, and at the reference position, nothing changes.
+    for blocks in [
+        "G49\nT1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z45.",
+        "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z45.\nG91 G28 Z0.\nG49\nG90",
+    ] {
+        let scene = Scene::new(blocks).placed().with("anyway = true");
+        scene.gives(&FANUC, 0, &[]);
+    }
+    let pallet = Scene::new("G0 X-6. Y0. Z20.\nM50");
+    pallet.gives(&HAAS, 2, &["M50 is a pallet change on Haas"]);
+    let one_block =
+        Scene::of("G21 G90 G54 F100.\nT1 M6 S900 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
+    one_block.with("anyway = true").gives(&LINUXCNC, 0, &[]);
 }

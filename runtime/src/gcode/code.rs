@@ -108,7 +108,7 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
         // Clamps of rotary axes, spindle with coolant, chip conveyor, gears, LinuxCNC's overrides and outputs, coolant
         // through the spindle.
         100 | 110 | 120 | 130 | 140 | 310 | 330 | 410 | 420 | 430 | 440 => Group::PassedOver,
-        500 | 510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 | 880 => Group::PassedOver,
+        510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 | 880 => Group::PassedOver,
         tenths => return Err(refused_m(code, tenths)),
     })
 }
@@ -149,6 +149,10 @@ fn refused_m(code: Code, tenths: u32) -> GcodeFault {
             ("tool centre point control of Heidenhain", "write G43.4 H, and G49 to end it")
         }
         170 => ("a return of Sinumerik", "write M99"),
+        500 => (
+            "a pallet change on Haas, and a switch of the override on LinuxCNC",
+            "check the program without it",
+        ),
         600 => ("a pallet change, which moves the part", "give one program per setup"),
         970 => ("a call of a block number", "write M98 with an O-number"),
         _ => return GcodeFault::UnknownCode { word: code.to_string() },

@@ -39,29 +39,34 @@ impl Control {
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
             self.edge_length(edge)?;
         }
-        let change = block.code_of(Group::ToolChange);
-        // T changes the tool at once in programs of Heidenhain, for which M6 may follow.
-        let calls = has_tool && self.stated(Rule::Dialect) == Some(Choice::Heidenhain);
-        let is_in = self.staged.is_some() && self.staged == self.state.tool;
-        if calls
-            || change.is_some()
-                && !(is_in && self.stated(Rule::Dialect) == Some(Choice::Heidenhain))
-        {
-            let Some(tool) = self.staged else {
+        let has_change = block.code_of(Group::ToolChange).is_some();
+        let changes = match self.stated(Rule::Dialect) {
+            // T changes the tool at once, and an M6 after it finds it in the spindle.
+            Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
+            _ => has_change,
+        };
+        match self.staged {
+            Some(tool) if changes => self.change_tool(tool),
+            None if changes => {
                 let needed = "the number of a tool (T) in this block or before";
                 return Err(GcodeFault::Missing { word: "M6".to_owned(), needed });
-            };
-            self.notes.add(self.line, Subject::ToolChange);
-            self.stop_spindle();
-            self.leave_for_change();
-            self.length_cancelled = false;
-            self.change(|state| state.tool = Some(tool));
-            let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
-            if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
-                self.imply_length(tool);
             }
+            _ => {}
         }
         Ok(())
+    }
+
+    /// Changes the tool.
+    fn change_tool(&mut self, tool: u32) {
+        self.notes.add(self.line, Subject::ToolChange);
+        self.stop_spindle();
+        self.leave_for_change();
+        self.length_cancelled = false;
+        self.change(|state| state.tool = Some(tool));
+        let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
+        if self.length_implicit || is_always && self.state.length == LengthOffset::Off {
+            self.imply_length(tool);
+        }
     }
 
     /// Executes D where it selects the length of the tool: 0 is none, and 1 the only edge whose length is known.
@@ -152,7 +157,16 @@ impl Control {
             self.change(|state| state.rotation = Rotation::Off);
         }
         if let Some(code) = block.code_of(Group::Length) {
+            let (before, height) = (Arc::clone(&self.state), self.position[2]);
+            let has_returned = self.returned.is_some();
             self.length(block, code)?;
+            if !block.has('Z') && !has_returned && self.moves_by_length(&before, height) {
+                if block.has_any("XYABC") {
+                    let condition = "the length offset changes, and moves Z";
+                    return Err(combination(code, condition, "write it in a block of its own"));
+                }
+                self.move_along_z(height);
+            }
         }
         self.transformation(block)?;
         if let Some(code) = block.code_of(Group::WorkOffset) {
@@ -211,6 +225,28 @@ impl Control {
         self.vector = None;
         self.change(|state| (state.length, state.tcp) = (length, tcp));
         Ok(())
+    }
+
+    /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0. At a
+    /// reference position the offset is suspended, and its change moves nothing.
+    fn moves_by_length(&mut self, before: &ControlState, height: Option<f64>) -> bool {
+        let is_plain =
+            |state: &ControlState| state.tcp == Tcp::Off && state.rotation == Rotation::Off;
+        height.is_some()
+            && before.length != self.state.length
+            && is_plain(before)
+            && is_plain(&self.state)
+            && self.choice(Rule::LengthChange) == Choice::MovesZ
+    }
+
+    /// Moves Z to the coordinate that it had before.
+    fn move_along_z(&mut self, height: Option<f64>) {
+        let mut end = self.position;
+        end[2] = height;
+        let commanded = [false, false, true, false, false, false];
+        let rapid = matches!(self.modal.motion, None | Some(Motion::Rapid));
+        self.length_changed = false;
+        self.push(rapid, end, commanded, StepPath::Line);
     }
 
     fn registered(&self, register: u32) -> LengthOffset {

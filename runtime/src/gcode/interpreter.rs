@@ -43,6 +43,9 @@ impl<'a> Interpreter<'a> {
         let extent = text::extent(text);
         let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
         let mut control = Control::new(setup);
+        if let Some(unit) = extent.unit {
+            (control.modal.unit, control.modal.unit_stated) = (unit, true);
+        }
         if let Some((line, has_blocks)) = extent.left_out {
             let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
             control.notes.add(line, subject);
@@ -258,6 +261,7 @@ impl Control {
         check_axis_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
+        self.spindle_words(block);
         dwell(block)?;
         self.motion_mode(block);
         self.settings(block)?;
@@ -315,14 +319,13 @@ impl Control {
     }
 
     /// Notes the words that are passed over.
-    fn note_words(&mut self, block: &mut Block) {
+    fn note_words(&mut self, block: &Block) {
         for code in &block.passed_over {
             self.notes.add(self.line, Subject::PassedOver(*code));
         }
         if block.has('S') {
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'S', tenths: 0 }));
         }
-        self.spindle_words(block);
     }
 
     /// Reads the feed mode and F.

@@ -44,6 +44,8 @@ pub enum Rule {
     LengthRegister,
     /// The shift by G92 after a G92.1 without axis words.
     PresetEnd,
+    /// A change of the tool length offset in a block without Z.
+    LengthChange,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -87,6 +89,8 @@ pub enum Choice {
     LastH,
     EndsPreset,
     KeepsPreset,
+    WithNextZ,
+    MovesZ,
     Executed,
     LeftOut,
 }
@@ -100,7 +104,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 17] = [
+const RULES: [Entry; 18] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -253,6 +257,19 @@ const RULES: [Entry; 17] = [
         ],
     },
     Entry {
+        rule: Rule::LengthChange,
+        key: "length_change",
+        about: "G43 or G49 in a block without Z",
+        choices: &[
+            (
+                Choice::WithNextZ,
+                "with the next Z",
+                "moves nothing: the next Z is to the new length",
+            ),
+            (Choice::MovesZ, "moves Z", "moves Z by the change of the length"),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -265,7 +282,7 @@ const RULES: [Entry; 17] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 16]); 5] = {
+const CONTROLS: [(&str, [Choice; 17]); 5] = {
     use Choice::*;
     [
         (
@@ -287,6 +304,7 @@ const CONTROLS: [(&str, [Choice; 16]); 5] = {
                 Iso,
                 LastH,
                 KeepsPreset,
+                MovesZ,
             ],
         ),
         (
@@ -308,6 +326,7 @@ const CONTROLS: [(&str, [Choice; 16]); 5] = {
                 Iso,
                 LastH,
                 KeepsPreset,
+                MovesZ,
             ],
         ),
         (
@@ -329,6 +348,7 @@ const CONTROLS: [(&str, [Choice; 16]); 5] = {
                 Iso,
                 OfTool,
                 EndsPreset,
+                WithNextZ,
             ],
         ),
         (
@@ -350,6 +370,7 @@ const CONTROLS: [(&str, [Choice; 16]); 5] = {
                 Iso,
                 OfTool,
                 EndsPreset,
+                WithNextZ,
             ],
         ),
         (
@@ -371,13 +392,15 @@ const CONTROLS: [(&str, [Choice; 16]); 5] = {
                 Heidenhain,
                 OfTool,
                 EndsPreset,
+                WithNextZ,
             ],
         ),
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 1] = [("fanuc", Rule::ReferenceReturn)];
+const OPEN: [(&str, Rule); 3] =
+    [("fanuc", Rule::ReferenceReturn), ("fanuc", Rule::LengthChange), ("haas", Rule::LengthChange)];
 
 impl Rule {
     /// Returns all rules.
@@ -450,9 +473,9 @@ impl ControlRules {
     /// ```
     /// use touchoff::gcode::{Choice, ControlRules, Rule};
     ///
-    /// let text = ControlRules::named("haas")?.to_toml();
+    /// let text = ControlRules::named("linuxcnc")?.to_toml();
     /// let control = ControlRules::parse(&text, "mine.toml")?;
-    /// assert_eq!(control.get(Rule::Rapid), Some(Choice::EachAxis));
+    /// assert_eq!(control.get(Rule::Rapid), Some(Choice::Straight));
     /// let error = ControlRules::parse(&text.replace("rapid", "rapids"), "mine.toml").expect_err("a key");
     /// assert!(error.to_string().contains("`rapids` is no rule: did you mean `rapid`?"), "{error}");
     /// # Ok::<(), touchoff::gcode::ControlError>(())
@@ -612,7 +635,7 @@ mod tests {
             let mut control = ControlRules::named(name).expect("a control");
             for (_, rule) in OPEN.iter().filter(|(open, _)| *open == name) {
                 let error = ControlRules::parse(&control.to_toml(), name).expect_err("it is open");
-                assert!(error.to_string().contains(rule.key()), "{error}");
+                assert!(error.to_string().contains("is missing"), "{error}");
                 let first = rule.choices().next().expect("a choice");
                 control = control.with(*rule, first);
             }

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::expression::Parameters;
 use super::label::Place;
+use crate::unit::Unit;
 
 /// Returns the line at a place, and the place after it. Lines may end in LF, CRLF or a lone CR.
 pub(super) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
@@ -27,6 +28,24 @@ pub(super) fn is_percent(line: &str, is_first: bool) -> bool {
             rest.starts_with(['(', ';']) || is_first && rest.chars().all(is_name)
         }
         None => false,
+    }
+}
+
+/// Returns the unit of the head of a DIN/ISO program of Heidenhain, `%NAME G71 *`, or of its last line, which a block number
+/// may precede.
+fn head(line: &str) -> Option<Unit> {
+    let line = line.trim().trim_end_matches('*').trim_end();
+    let line = match line.strip_prefix(['N', 'n']) {
+        Some(rest) => rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start(),
+        None => line,
+    };
+    let (name, unit) = line.strip_prefix('%')?.trim_end().rsplit_once(char::is_whitespace)?;
+    let is_name = |c: char| c.is_ascii_alphanumeric() || "_-. ".contains(c);
+    match unit.to_ascii_uppercase().as_str() {
+        _ if !name.chars().all(is_name) => None,
+        "G70" => Some(Unit::Inch),
+        "G71" => Some(Unit::Millimetre),
+        _ => None,
     }
 }
 
@@ -55,6 +74,8 @@ pub(super) struct Extent<'a> {
     pub(super) closed: bool,
     /// The line of the first text after it, and whether there are blocks in that text.
     pub(super) left_out: Option<(usize, bool)>,
+    /// The unit that the head states.
+    pub(super) unit: Option<Unit>,
 }
 
 /// Returns the line of the first carriage return without a line feed.
@@ -67,8 +88,13 @@ pub(super) fn lone_return(text: &str) -> Option<usize> {
 
 /// Finds the first line and the end of a program.
 pub(super) fn extent(text: &str) -> Extent<'_> {
-    let mut extent =
-        Extent { text, start: Place { offset: 0, line: 1 }, closed: false, left_out: None };
+    let mut extent = Extent {
+        text,
+        start: Place { offset: 0, line: 1 },
+        closed: false,
+        left_out: None,
+        unit: None,
+    };
     let mut place = extent.start;
     let mut is_first = true;
     while let Some((found, after)) = line(text, place) {
@@ -77,9 +103,9 @@ pub(super) fn extent(text: &str) -> Extent<'_> {
                 let (_, has_blocks) = extent.left_out.get_or_insert((place.line, false));
                 *has_blocks |= block(found).is_some_and(|block| block.has_effect());
             }
-        } else if is_percent(found, is_first) {
+        } else if is_percent(found, is_first) || head(found).is_some() {
             if is_first {
-                extent.start = after;
+                (extent.start, extent.unit) = (after, head(found));
             } else {
                 extent.text = &text[..place.offset];
                 extent.closed = true;
