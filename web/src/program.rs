@@ -119,9 +119,15 @@ impl OpenProgram {
                         Spindle::WithoutSpeed => {
                             Some(format!("line {line}: feeds without a speed S of the spindle"))
                         }
+                        Spindle::CounterClockwise => Some(format!(
+                            "line {line}: feeds with the spindle turning counter-clockwise"
+                        )),
                         _ => None,
                     });
                 }
+                faults.extend(summary.limits.iter().map(|(line, found)| {
+                    format!("line {line}: {} leaves its limit of {}", found.letter, found.limit)
+                }));
                 notes.extend(summary.singular.iter().map(|(line, pass)| {
                     format!(
                         "line {line}: {} turns by {:.0}° while the tool axis hardly moves: a singular pass",
