@@ -678,3 +678,32 @@ fn a_change_of_the_length_offset_moves_z_or_not() {
         Scene::of("G21 G90 G54 F100.\nT1 M6 S900 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n");
     one_block.with("anyway = true").gives(&LINUXCNC, 0, &[]);
 }
+
+/// A program that begins with a return along one axis is followed from its first position on.
+#[test]
+fn a_program_begins_with_a_return_along_one_axis() {
+    for first in ["G91 G28 Z0.\nG90", "G91 G28 X0. Y0. Z0.\nG90", "G53 G0 Z0."] {
+        let blocks = format!(
+            "{first}\nT1 M6\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 X4. Z1.\nG0 Z20.\nG91 G28 Z0."
+        );
+        Scene::new(&blocks).placed().gives(&LINUXCNC, 0, &[]);
+        Scene::new(&blocks).gives(&LINUXCNC, 0, &[]);
+    }
+}
+
+#[test]
+fn a_length_that_counts_always_is_along_z_and_returns_with_d1() {
+    let siemens = ["--control", "siemens"];
+    let start = "G21 G90 G54 S9000 M3 F100.\nT1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\n";
+    let edge = Scene::of(&format!("{start}D0\nX-5.\nD1 Z20.\nG1 X4. Z1.\nM30\n")).placed();
+    edge.with("anyway = true").gives(&siemens, 0, &[]);
+    let plane = Scene::of(&format!("{start}G18\nG0 Z21.\nM30\n")).placed();
+    plane.gives(&siemens, 2, &["G18 while the length of the tool counts without G43"]);
+    // An end near the start turns the arc of a control that moves its centre.
+    let arc = Scene::of(&format!("{start}G0 X30.\nG3 X30.001 Y-0.1 I-30. J0.\nM30\n")).placed();
+    arc.gives(&siemens, 2, &["the radii of an arc differ"]);
+    // The head of a program is that of one control.
+    let head =
+        "%PLATE G71 *\nN10 G90 G54 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\nN99999999 %PLATE G71 *\n";
+    Scene::of(head).gives(&[], 2, &["G54 is another word in DIN/ISO programs of Heidenhain"]);
+}

@@ -71,8 +71,14 @@ impl Control {
 
     /// Executes D where it selects the length of the tool: 0 is none, and 1 the only edge whose length is known.
     fn edge_length(&mut self, edge: u32) -> Result<(), GcodeFault> {
-        if edge == 1 || self.state.tool.is_none() || self.choice(Rule::ToolLength) != Choice::Always
-        {
+        let Some(tool) = self.state.tool else { return Ok(()) };
+        let is_first = edge == 1 && !self.length_cancelled;
+        if is_first || self.choice(Rule::ToolLength) != Choice::Always {
+            return Ok(());
+        }
+        if edge == 1 {
+            self.length_cancelled = false;
+            self.imply_length(tool);
             return Ok(());
         }
         if edge > 1 {

@@ -45,6 +45,7 @@ impl<'a> Interpreter<'a> {
         let mut control = Control::new(setup);
         if let Some(unit) = extent.unit {
             (control.modal.unit, control.modal.unit_stated) = (unit, true);
+            control.read_heidenhain();
         }
         if let Some((line, has_blocks)) = extent.left_out {
             let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
@@ -376,6 +377,13 @@ impl Control {
             self.modal.retract_to_r = Some(retract == 990);
         }
         if let Some(plane) = tenths(Group::Plane) {
+            if plane != 170 && self.stated(Rule::ToolLength) == Some(Choice::Always) {
+                return Err(GcodeFault::Combination {
+                    word: format!("G{}", plane / 10),
+                    condition: "the length of the tool counts without G43, along the axis across the plane",
+                    remedy: "post the program in G17",
+                });
+            }
             self.select(match plane {
                 170 => Plane::Xy,
                 180 => Plane::Zx,

@@ -17,7 +17,8 @@ use std::sync::Arc;
 /// Letters of the axes.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
-/// Difference of the radii of an arc, in mm, up to which it is rounding: I and J with three decimals, or four in inches.
+/// Distance between the paths of controls on an arc with two radii, in mm, up to which it is rounding: of I and J with three
+/// decimals, or four in inches.
 const RADII_TOLERANCE: f64 = 5e-3;
 
 /// Returns two coordinates of a position, if both are known.
@@ -128,6 +129,14 @@ impl Control {
             length_cancelled: false,
             spindle: SpindleWords::default(),
             pending: VecDeque::new(),
+        }
+    }
+
+    /// States the dialect of a program with the head of Heidenhain, which no other control reads, if no other is stated.
+    pub(super) fn read_heidenhain(&mut self) {
+        if self.stated(Rule::Dialect).is_none() {
+            let rules = std::mem::take(&mut self.rules);
+            self.rules = rules.with(Rule::Dialect, Choice::Heidenhain);
         }
     }
 
@@ -314,8 +323,10 @@ impl Control {
                 remedy: "leave the end out for a full circle, or leave out the arc",
             });
         }
-        let radius = |x: f64, y: f64| (x - centre[0]).hypot(y - centre[1]);
-        if (radius(x, y) - radius(u, v)).abs() > RADII_TOLERANCE {
+        // A control that moves the centre across the chord turns the arc about its start by the difference over the chord.
+        let [from, to] = [[x, y], [u, v]].map(|[x, y]| (x - centre[0]).hypot(y - centre[1]));
+        let turn = if chord > 0.0 { from.max(to) / chord } else { 0.0 };
+        if (from - to).abs() * turn.max(1.0) > RADII_TOLERANCE {
             self.notes.add(self.line, Subject::TwoRadii);
         }
         Ok(())

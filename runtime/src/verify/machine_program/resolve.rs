@@ -267,7 +267,7 @@ impl<'a> Resolver<'a> {
                 });
                 if (0..6).any(|k| is_lost(&k)) && knows {
                     self.cause = UnknownCause::Return;
-                } else if !is_new {
+                } else if !is_new && step.commanded.contains(&true) {
                     return Ok(Resolved::Unknown(UnknownCause::Axis));
                 }
             } else if (0..6).any(|k| is_lost(&k)) {
