@@ -1,4 +1,4 @@
-//! `touchoff controls` and `touchoff machines`: what is known by name, with every rule and every axis.
+//! `touchoff controls` and `touchoff machines`: the known controls and machines, with every rule and every axis.
 
 use crate::failure::Failure;
 use crate::output::Output;
@@ -47,11 +47,7 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
         write!(out, "{}", ControlRules::named(name)?.to_toml())?;
         return Ok(out.flush()?);
     }
-    let names: Vec<&str> =
-        ControlRules::names().filter(|known| name.is_none_or(|name| name == *known)).collect();
-    if let (Some(name), []) = (name, &names[..]) {
-        ControlRules::named(name)?;
-    }
+    let names = name.map_or_else(|| ControlRules::names().collect(), |name| vec![name]);
     for name in names {
         let control = ControlRules::named(name)?;
         let rules = Rule::all().filter_map(|rule| Some((rule, control.get(rule)?)));
@@ -80,14 +76,12 @@ pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
         write!(out, "{}", Machine::file(name).unwrap_or_default())?;
         return Ok(out.flush()?);
     }
-    if let Some(name) = name {
-        Machine::named(name)?;
-    }
-    for known in Machine::names().filter(|known| name.is_none_or(|name| name == *known)) {
-        let machine = Machine::named(known)?;
+    let names = name.map_or_else(|| Machine::names().collect(), |name| vec![name]);
+    for name in names {
+        let machine = Machine::named(name)?;
         let axes: Vec<AxisRow> = machine.axes().iter().map(AxisRow::of).collect();
         if json {
-            let row = MachineRow { name: known, tool_change: machine.tool_change(), axes };
+            let row = MachineRow { name, tool_change: machine.tool_change(), axes };
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
             continue;
@@ -97,7 +91,7 @@ pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
             Some(joints) if joints == [None; 6] => "the axes stay".to_owned(),
             Some(joints) => format!("{joints:?}"),
         };
-        writeln!(out, "{known} (tool change: {change})")?;
+        writeln!(out, "{name} (tool change: {change})")?;
         for axis in axes {
             writeln!(out, "  {}", axis.describe())?;
         }

@@ -103,19 +103,10 @@ pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
 /// # Errors
 /// If there is no such control, or its file is refused.
 pub(crate) fn read_control(name: &Path) -> Result<ControlRules, Failure> {
-    if !is_toml(name) {
-        return Ok(ControlRules::named(&name.to_string_lossy())?);
-    }
-    let file = name.display().to_string();
-    match std::fs::read_to_string(name) {
-        Ok(text) => Ok(ControlRules::parse(&text, &file)?),
-        Err(source) => Err(Failure::Unreadable { file, source }),
-    }
-}
-
-/// Returns whether a machine or a control is given by its file, and not by its name.
-pub(crate) fn is_toml(name: &Path) -> bool {
-    name.extension().is_some_and(|extension| extension == "toml")
+    Ok(match toml_text(name)? {
+        Some((text, file)) => ControlRules::parse(&text, &file)?,
+        None => ControlRules::named(&name.to_string_lossy())?,
+    })
 }
 
 /// Reads a machine by its name, or from a file.
@@ -123,11 +114,28 @@ pub(crate) fn is_toml(name: &Path) -> bool {
 /// # Errors
 /// If there is no such machine, or its file is refused.
 pub(crate) fn read_machine(name: &Path) -> Result<Machine, Failure> {
+    Ok(match toml_text(name)? {
+        Some((text, file)) => Machine::parse(&text, &file)?,
+        None => Machine::named(&name.to_string_lossy())?,
+    })
+}
+
+/// Returns whether a machine or a control is given by its file, and not by its name.
+pub(crate) fn is_toml(name: &Path) -> bool {
+    name.extension().is_some_and(|extension| extension == "toml")
+}
+
+/// Returns the text of a file that is named, and its name for messages; `None` for another name.
+///
+/// # Errors
+/// If the file cannot be read.
+fn toml_text(name: &Path) -> Result<Option<(String, String)>, Failure> {
     if !is_toml(name) {
-        return Ok(Machine::named(&name.to_string_lossy())?);
+        return Ok(None);
     }
     let file = name.display().to_string();
-    let text = std::fs::read_to_string(name)
-        .map_err(|source| Failure::Unreadable { file: file.clone(), source })?;
-    Ok(Machine::parse(&text, &file)?)
+    match std::fs::read_to_string(name) {
+        Ok(text) => Ok(Some((text, file))),
+        Err(source) => Err(Failure::Unreadable { file, source }),
+    }
 }

@@ -106,8 +106,7 @@ impl OpenProgram {
                 faults.extend(summary.other_lengths.iter().map(|(line, register, tool)| {
                     format!("line {line}: T{tool} feeds with the length offset H{register}, which has another length")
                 }));
-                let starts =
-                    summary.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated);
+                let starts = summary.states_spindle();
                 for (line, _, spindle) in &summary.spindle {
                     faults.extend(match spindle {
                         Spindle::NotStated if starts => {

@@ -4,7 +4,7 @@ use super::json::Row;
 use super::machine::MachineFinding;
 use super::stock::StockFinding;
 use super::text::describe;
-use super::{CheckedPair, Verification, rule};
+use super::{CheckedPair, Verification, by_reading, rule};
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 use touchoff::verify::{Finding, FindingKind};
@@ -122,18 +122,9 @@ pub(super) fn entries<'a>(verification: &'a Verification<'a>) -> Vec<Entry<'a>> 
         };
         cut.findings.iter().map(move |finding| (reading, entry(finding)))
     });
-    let mut entries: Vec<(Entry<'a>, Vec<usize>)> = Vec::new();
-    for (reading, entry) in surfaces.chain(machine).chain(stock) {
-        let is_same = |(known, _): &&mut (Entry<'a>, Vec<usize>)| {
-            (known.line, &known.text) == (entry.line, &entry.text)
-        };
-        // Only other readings can have the same finding.
-        let known = if reading == 0 { None } else { entries.iter_mut().find(is_same) };
-        match known {
-            Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
-            _ => entries.push((entry, vec![reading])),
-        }
-    }
+    let found = surfaces.chain(machine).chain(stock);
+    let is_same =
+        |one: &Entry<'a>, other: &Entry<'a>| (one.line, &one.text) == (other.line, &other.text);
     let named = |(mut entry, readings): (Entry<'a>, Vec<usize>)| {
         if let Some(under) = inputs.program.under(&readings) {
             entry.text = format!("{}; {under}", entry.text);
@@ -141,5 +132,5 @@ pub(super) fn entries<'a>(verification: &'a Verification<'a>) -> Vec<Entry<'a>> 
         }
         entry
     };
-    entries.into_iter().map(named).collect()
+    by_reading(found, is_same).into_iter().map(named).collect()
 }

@@ -20,7 +20,7 @@ pub(crate) struct Job {
     pub(crate) control: Option<OsString>,
     /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
     pub(crate) work_offsets: [Option<[f64; 6]>; 9],
-    /// Whether optional blocks are left out, if it is stated.
+    /// `true` if optional blocks are left out; `None` for both ways.
     pub(crate) block_delete: Option<bool>,
     pub(crate) tools: Tools,
     pub(crate) tolerance: f64,

@@ -52,8 +52,8 @@ impl<'a> MachineFinding<'a> {
         tools: &[ProgramTool],
     ) -> Vec<MachineFinding<'a>> {
         let summary = program.summary();
-        // A program that never starts the spindle leaves that to the operator, which is said elsewhere.
-        let starts = summary.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated);
+        // A program that never starts the spindle has a gap instead.
+        let starts = summary.states_spindle();
         let spindle = summary.spindle.iter().filter_map(|(line, number, spindle)| {
             let tool = tools.iter().find(|tool| tool.number.is_none() || tool.number == *number);
             let hand = tool.map_or(Hand::Right, |tool| tool.hand);

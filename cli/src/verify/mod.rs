@@ -255,7 +255,7 @@ pub(crate) struct Verification<'a> {
     machine: Vec<(usize, MachineFinding<'a>)>,
     /// The stock after each reading.
     cuts: Vec<CutStock>,
-    /// What the program leaves open.
+    /// Everything that the program leaves open.
     pub(crate) gaps: Vec<Gap>,
 }
 
@@ -267,20 +267,13 @@ impl Verification<'_> {
 
     /// Summarises the findings of each tool at each body, those of several readings in one line if they are alike.
     pub(crate) fn summaries(&self) -> Vec<String> {
-        let mut summaries: Vec<(String, Vec<usize>)> = Vec::new();
-        for pair in &self.pairs {
-            let text = summary(pair);
-            match summaries.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, readings)) => readings.push(pair.reading),
-                None => summaries.push((text, vec![pair.reading])),
-            }
-        }
+        let texts = self.pairs.iter().map(|pair| (pair.reading, summary(pair)));
         let named =
             |(text, readings): (String, Vec<usize>)| match self.inputs.program.under(&readings) {
                 Some(under) => format!("{under}: {text}"),
                 None => text,
             };
-        summaries.into_iter().map(named).collect()
+        by_reading(texts, |known, text| known == text).into_iter().map(named).collect()
     }
 
     /// Returns the stock after the first reading, if the job has one.
@@ -340,30 +333,44 @@ impl Verification<'_> {
         let Inputs { job, program, .. } = self.inputs;
         let open = self.gaps.iter().filter(|gap| gap.is_open && !job.anyway);
         let mut reasons: Vec<String> = open.map(described).collect();
-        let mut count = self.pairs.len();
+        let mut is_checked = true;
         for reading in 0..program.reading_count() {
             let pairs: Vec<&CheckedPair<'_>> =
                 self.pairs.iter().filter(|pair| pair.reading == reading).collect();
             if pairs.iter().all(|pair| pair.report.moves == 0) {
-                count = 0;
+                is_checked = false;
             } else {
                 let touches_stock =
                     self.cuts.get(reading).is_some_and(|cut| !cut.findings.is_empty());
-                reasons.extend(implausibilities(&pairs, job, touches_stock));
+                for reason in implausibilities(&pairs, job, touches_stock) {
+                    if !reasons.contains(&reason) {
+                        reasons.push(reason);
+                    }
+                }
             }
         }
-        if count == 0 {
+        if !is_checked {
             reasons.push("no motion could be checked".to_owned());
         }
-        let mut seen = Vec::new();
-        reasons.retain(|reason| {
-            !seen.contains(reason) && {
-                seen.push(reason.clone());
-                true
-            }
-        });
         reasons
     }
+}
+
+/// Joins what several readings have alike: each with the readings that have it, in the order of the first.
+fn by_reading<T>(
+    found: impl Iterator<Item = (usize, T)>,
+    is_same: impl Fn(&T, &T) -> bool,
+) -> Vec<(T, Vec<usize>)> {
+    let mut joined: Vec<(T, Vec<usize>)> = Vec::new();
+    for (reading, item) in found {
+        // The first reading has nothing to be joined with.
+        let mut known = joined.iter_mut().filter(|_| reading > 0);
+        match known.find(|(known, _)| is_same(known, &item)) {
+            Some((_, readings)) if !readings.contains(&reading) => readings.push(reading),
+            _ => joined.push((item, vec![reading])),
+        }
+    }
+    joined
 }
 
 /// Returns the reason of a gap with its line.

@@ -1,5 +1,4 @@
-//! What controls do differently: a program on which they differ is clean only if it is clean on all of them, or on the one
-//! that is named.
+//! Controls differ: a program on which they do is clean only if it is clean on all of them, or on the one that is named.
 
 use crate::bench::{Bench, objects, stderr, stdout, touchoff};
 use nalgebra::Point3;
@@ -212,14 +211,14 @@ fn a_tool_without_a_checked_motion_is_named() {
     }
 }
 
-/// Without G43 the gauge point of the spindle goes where the program says.
+/// The gauge point of the spindle goes where the program says without G43.
 #[test]
 fn a_feed_without_a_length_offset_is_no_guess() {
     let blocks = "T1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.";
     let scene = Scene::new(blocks);
     scene.gives(&LINUXCNC, 2, &["no tool length offset (G43) is in force", "write G43"]);
     scene.gives(&[], 2, &["no tool length offset (G43) is in force"]);
-    // Of two tools only one has G43.
+    // One of two tools has G43.
     let one = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG49\nT3 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4.";
     let mut one = Scene::new(one);
     one.job += "[tool.3]\ntool = \"D2Ball\"\n";
@@ -397,7 +396,7 @@ fn what_was_not_checked_is_in_the_json() {
     assert!(!reasons.iter().any(|reason| reason.contains("passed over")), "{reasons:?}");
 }
 
-/// Of an unstated control, too many rules at once are no verdict.
+/// Too many rules at once that are not stated are no verdict.
 #[test]
 fn too_many_readings_name_the_rules() {
     let blocks = "G0 X-6 Y0. Z2.\n/G0 X5.\nG81 X-6 Y0. Z1. R6.\nX6. ; G0 X1.\nG80\nM0\nG1 Z2.";
@@ -504,7 +503,7 @@ fn words_of_heidenhain_are_not_read_as_those_of_others() {
     arc.gives(&LINUXCNC, 2, &["the arc has the radius zero"]);
 }
 
-/// With rates in the machine's file the path is that of each axis, or the straight line.
+/// The path is that of each axis, or the straight line, where the machine's file has rates.
 #[test]
 fn rates_do_not_say_that_each_axis_moves_by_itself() {
     let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X-10. Y-10. Z1.\nX10. Y10. Z1.\nG1 Y12.";
@@ -540,7 +539,7 @@ fn the_shorter_way_holds_for_every_stated_angle() {
     scene.gives(&FANUC, 1, &["the clamp"]);
 }
 
-/// Where the length counts without G43, a tool change changes it, and D0 ends it.
+/// A tool change changes the length that counts without G43, and D0 ends it.
 #[test]
 fn the_length_that_counts_always_is_that_of_the_tool() {
     let siemens = ["--control", "siemens"];
@@ -584,7 +583,7 @@ fn a_call_that_controls_read_in_two_ways_is_refused() {
     Scene::of(text).gives(&["--control", "heidenhain"], 2, &["no tool is given for T3"]);
 }
 
-/// Of a cycle whose initial level is below R, G98 returns to that level, or to R.
+/// G98 returns to the initial level of a cycle, or to R where that level is below it.
 #[test]
 fn g98_returns_to_the_initial_level_wherever_it_is() {
     let blocks = "G0 X-4. Y0. Z20.\nZ1.\nG98 G81 X-4. Y0. Z0.5 R9.\nX4.\nG80\nG0 Z20.";
@@ -620,7 +619,7 @@ fn a_shift_that_ends_without_axes_ends_or_stays() {
     scene.gives(&[], 1, &["under preset_end = \"stays\""]);
 }
 
-/// What controls read in ways that are not followed is refused, or allows no verdict.
+/// Words that controls read in ways that are not followed are refused, or allow no verdict.
 #[test]
 fn other_words_on_which_controls_differ_are_refused() {
     let begin = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";

@@ -113,7 +113,7 @@ impl Control {
             },
         };
         if moved.contains(&true) {
-            self.move_machine(moved, target, (true, StepPath::ToolChange(target)));
+            self.move_machine(moved, target, true, StepPath::ToolChange(target));
         }
     }
 
@@ -125,12 +125,7 @@ impl Control {
             Some(280 | 300) => block.is_nonzero("Z") || block.has('Z') && !self.modal.incremental,
             Some(920) => block.has('Z'),
             Some(_) => false,
-            None if block.code_of(Group::Machine).is_some() => false,
-            None => {
-                let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
-                block.has('Z')
-                    || block.has_any("XYABC") && (is_cycle || self.state.rotation != Rotation::Off)
-            }
+            None => self.depends_on_length(block),
         };
         let Some(by_g53) = self.returned.filter(|_| matters) else { return };
         self.returned = None;
@@ -143,6 +138,13 @@ impl Control {
             self.length_cancelled = true;
             self.change(|state| state.length = LengthOffset::Off);
         }
+    }
+
+    /// Returns whether the length offset matters to the motion of a block in program coordinates. It moves Z alone, but in a
+    /// rotated plane.
+    pub(super) fn depends_on_length(&self, block: &Block) -> bool {
+        let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
+        is_programmed(block) && (block.has('Z') || is_cycle || self.state.rotation != Rotation::Off)
     }
 
     /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
@@ -531,6 +533,13 @@ impl Control {
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
         Ok(())
     }
+}
+
+/// Returns whether a block has a position in program coordinates for a motion.
+pub(super) fn is_programmed(block: &Block) -> bool {
+    block.has_any("XYZABC")
+        && block.code_of(Group::OneShot).is_none()
+        && block.code_of(Group::Machine).is_none()
 }
 
 fn combination(code: Code, condition: &'static str, remedy: &'static str) -> GcodeFault {

@@ -1,8 +1,9 @@
 //! Canned cycles: drilling, tapping and boring along the normal of the plane.
 //!
 //! A cycle moves in rapid traverse over its hole, in rapid traverse to the plane R, at feed rate to its
-//! depth, and back: to R (G99), or to the level at which the first cycle of the series began (G98). Under G91, R is relative to that level and the depth to R. Whether a tool that begins below R
-//! rises to it before it moves sideways is a [rule](Rule::CycleBelowR) of the control.
+//! depth, and back: to R (G99), or to the level at which the first cycle of the series began (G98). Under
+//! G91, R is relative to that level and the depth to R. A [rule](Rule::CycleBelowR) of the control decides
+//! whether a tool that begins below R rises to it before it moves sideways.
 //!
 //! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken

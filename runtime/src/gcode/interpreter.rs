@@ -3,6 +3,7 @@
 use super::Plane;
 use super::block::Block;
 use super::code::{Code, Group};
+use super::coordinates::is_programmed;
 use super::expression::Parameters;
 use super::flow::Flow;
 use super::label::{Label, Role};
@@ -10,7 +11,6 @@ use super::modal::{FeedMode, Motion};
 use super::motion::Control;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
-use super::state::Rotation;
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
@@ -268,19 +268,16 @@ impl Control {
         self.settings(block)?;
         self.numbers(block);
         self.coordinates(block)?;
-        let is_one_shot = block.code_of(Group::OneShot).is_some();
-        let is_machine = block.code_of(Group::Machine).is_some();
         self.returned_length(block);
-        if block.has_any("XYZABC") && !is_one_shot && !is_machine {
-            // The offset moves Z alone, but in a rotated plane.
-            let normal = matches!(self.modal.motion, Some(Motion::Cycle(_))) || block.has('Z');
-            if normal || self.state.rotation != Rotation::Off {
-                self.length_without_word();
-            }
-            if !self.offset_stated && self.choice(Rule::StartOffset) == Choice::NoOffset {
-                let needed = "a work offset (G54) before, since this control starts without one";
-                return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
-            }
+        if self.depends_on_length(block) {
+            self.length_without_word();
+        }
+        if is_programmed(block)
+            && !self.offset_stated
+            && self.choice(Rule::StartOffset) == Choice::NoOffset
+        {
+            let needed = "a work offset (G54) before, since this control starts without one";
+            return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
         }
         self.motion(block)
     }

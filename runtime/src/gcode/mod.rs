@@ -106,11 +106,11 @@ pub struct ControlSetup {
     pub home: Option<[f64; 6]>,
     /// Position of G30 in machine coordinates.
     pub second_home: Option<[f64; 6]>,
-    /// What the control does where controls differ.
+    /// The choices of the control where controls differ.
     pub rules: ControlRules,
     /// The axes that the machine has.
     pub axes: [bool; 6],
-    /// Where M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
+    /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
     /// [rules](Rule::ToolChange) say.
     pub tool_change: Option<Position>,
 }

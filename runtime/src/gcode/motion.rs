@@ -59,10 +59,8 @@ pub(super) struct Control {
     /// The rules that the program depends on, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     pub(super) axes: [bool; 6],
-    /// Where M6 leaves the axes, if the machine states it.
+    /// Position in which M6 leaves the axes, if the machine states it.
     pub(super) change_position: Option<Position>,
-    /// Set while a step to machine coordinates is added.
-    is_machine_target: bool,
     /// Set once a work offset was selected.
     pub(super) offset_stated: bool,
     /// Set by a return to a reference position (`false`) or by G53 along Z (`true`) under a length offset, until the next word or
@@ -120,14 +118,13 @@ impl Control {
             asked: BTreeMap::new(),
             axes: setup.axes,
             change_position: setup.tool_change,
-            is_machine_target: false,
             offset_stated: false,
             returned: None,
             last_register: None,
             length_changed: false,
             length_implicit: false,
             length_cancelled: false,
-            spindle: SpindleWords::default(),
+            spindle: SpindleWords::new(),
             pending: VecDeque::new(),
         }
     }
@@ -403,7 +400,7 @@ impl Control {
         {
             target[2] = length.map(|length| z + length);
         }
-        self.move_machine(axes.map(|value| value.is_some()), target, (rapid, StepPath::Line));
+        self.move_machine(axes.map(|value| value.is_some()), target, rapid, StepPath::Line);
         if axes[2].is_some() && self.state.length != LengthOffset::Off {
             self.returned = self.returned.or(Some(true));
         }
@@ -437,7 +434,7 @@ impl Control {
         }
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
-        self.move_machine(named, target, (true, StepPath::Line));
+        self.move_machine(named, target, true, StepPath::Line);
         self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }
@@ -447,7 +444,8 @@ impl Control {
         &mut self,
         mut commanded: [bool; 6],
         target: Position,
-        (rapid, path): (bool, StepPath),
+        rapid: bool,
+        path: StepPath,
     ) {
         let mut machine = self.state.to_machine(self.position);
         for axis in 0..6 {
@@ -470,9 +468,10 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
-        self.is_machine_target = true;
         self.push(rapid, end, commanded, path);
-        self.is_machine_target = false;
+        // Machine coordinates are stated in G91, too.
+        let step = self.pending.back_mut().expect("the step that was added");
+        (step.absolute, step.in_machine) = (true, true);
     }
 
     /// Adds a step from the present position, and moves there.
@@ -499,9 +498,8 @@ impl Control {
             path,
             tool_vector,
             spindle,
-            // Reference positions are stated in G91, too.
-            absolute: !self.modal.incremental || self.is_machine_target,
-            in_machine: self.is_machine_target,
+            absolute: !self.modal.incremental,
+            in_machine: false,
             state,
         });
     }

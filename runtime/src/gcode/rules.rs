@@ -12,7 +12,7 @@ use toml::Spanned;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Rule {
-    /// Where the axes are after a tool change (M6).
+    /// The axes after a tool change (M6).
     ToolChange,
     /// The order of motions of a canned cycle that begins below its plane R.
     CycleBelowR,
@@ -50,7 +50,7 @@ pub enum Rule {
     OptionalBlocks,
 }
 
-/// What a control does under a [`Rule`].
+/// An action of a control under a [`Rule`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 #[allow(missing_docs)]
@@ -458,7 +458,10 @@ impl ControlRules {
     pub fn named(name: &str) -> Result<ControlRules, ControlError> {
         let known = CONTROLS.iter().find(|(known, _)| *known == name);
         let Some((_, choices)) = known else {
-            return Err(ControlError::UnknownName { name: shown(name), nearest: nearest(name) });
+            return Err(ControlError::UnknownName {
+                name: shown(name),
+                nearest: closest(name, ControlRules::names()),
+            });
         };
         let stated = Rule::all().zip(choices.iter().copied());
         let is_open = |rule: Rule| OPEN.contains(&(name, rule));
@@ -608,13 +611,9 @@ pub enum ControlError {
         file: String,
         /// The key.
         key: &'static str,
-        /// What the rule is about.
+        /// The subject of the rule.
         about: &'static str,
     },
-}
-
-fn nearest(name: &str) -> &'static str {
-    closest(name, ControlRules::names())
 }
 
 /// Returns the known word with the fewest changes of letters.

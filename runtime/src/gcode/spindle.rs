@@ -21,14 +21,20 @@ pub enum Spindle {
     Tapping,
 }
 
-/// What the program has said about the spindle.
-#[derive(Clone, Copy, Debug, Default)]
+/// The words of the program about the spindle.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct SpindleWords {
-    /// M3 (`false`) or M4 (`true`), if the spindle is on; `None` before any word.
-    on: Option<Option<bool>>,
+    /// The last word, without regard to the speed.
+    turn: Spindle,
     speed: Option<f64>,
     /// Set from a stop on, until the next word about the spindle.
     paused: bool,
+}
+
+impl SpindleWords {
+    pub(super) fn new() -> SpindleWords {
+        SpindleWords { turn: Spindle::NotStated, speed: None, paused: false }
+    }
 }
 
 impl Control {
@@ -38,13 +44,13 @@ impl Control {
             self.spindle.speed = Some(speed);
         }
         for code in &block.passed_over {
-            let on = match (code.letter, code.tenths) {
-                ('M', 30 | 130) => Some(false),
-                ('M', 40 | 140) => Some(true),
-                ('M', 50 | 190) => None,
+            let turn = match (code.letter, code.tenths) {
+                ('M', 30 | 130) => Spindle::Clockwise,
+                ('M', 40 | 140) => Spindle::CounterClockwise,
+                ('M', 50 | 190) => Spindle::Stopped,
                 _ => continue,
             };
-            (self.spindle.on, self.spindle.paused) = (Some(on), false);
+            (self.spindle.turn, self.spindle.paused) = (turn, false);
         }
     }
 
@@ -55,25 +61,27 @@ impl Control {
 
     /// Stops the spindle for a tool change. It stays unstated if it was.
     pub(super) fn stop_spindle(&mut self) {
-        self.spindle.on = self.spindle.on.map(|_| None);
+        if self.spindle.turn != Spindle::NotStated {
+            self.spindle.turn = Spindle::Stopped;
+        }
     }
 
     /// Returns the spindle for a motion at feed rate or in rapid traverse.
     pub(super) fn spindle(&mut self, rapid: bool) -> Spindle {
-        let Some(on) = self.spindle.on else { return Spindle::NotStated };
-        let Some(reverse) = on else { return Spindle::Stopped };
+        if matches!(self.spindle.turn, Spindle::NotStated | Spindle::Stopped) {
+            return self.spindle.turn;
+        }
         if self.spindle.paused && !rapid {
             self.spindle.paused = false;
             if self.choice(Rule::Stop) == Choice::StopsSpindle {
-                self.spindle.on = Some(None);
+                self.spindle.turn = Spindle::Stopped;
                 return Spindle::Stopped;
             }
         }
-        match (self.spindle.speed, reverse) {
-            (None, _) => Spindle::WithoutSpeed,
-            (Some(0.0), _) => Spindle::Stopped,
-            (Some(_), false) => Spindle::Clockwise,
-            (Some(_), true) => Spindle::CounterClockwise,
+        match self.spindle.speed {
+            None => Spindle::WithoutSpeed,
+            Some(0.0) => Spindle::Stopped,
+            Some(_) => self.spindle.turn,
         }
     }
 }

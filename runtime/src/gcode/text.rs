@@ -5,17 +5,15 @@ use super::expression::Parameters;
 use super::label::Place;
 use crate::unit::Unit;
 
-/// Returns the line at a place, and the place after it. Lines may end in LF, CRLF or a lone CR.
+/// Returns the line at a place, and the place after it. Lines end in LF or CRLF.
 pub(super) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
     let rest = text.get(place.offset..).filter(|rest| !rest.is_empty())?;
-    let length = rest.bytes().position(|byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
-    let ending = match &rest.as_bytes()[length..] {
-        [b'\r', b'\n', ..] => 2,
-        [] => 0,
-        _ => 1,
+    let (found, length) = match rest.split_once('\n') {
+        Some((found, _)) => (found, found.len() + 1),
+        None => (rest, rest.len()),
     };
-    let after = Place { offset: place.offset + length + ending, line: place.line + 1 };
-    Some((&rest[..length], after))
+    let after = Place { offset: place.offset + length, line: place.line + 1 };
+    Some((found.strip_suffix('\r').unwrap_or(found), after))
 }
 
 /// Returns whether a line is the `%` that encloses a program. A name may follow the first one.

@@ -21,7 +21,7 @@ struct MachineFile {
     axis: Vec<Spanned<AxisEntry>>,
 }
 
-/// Where M6 leaves the axes: `"stays"`, or joint values by letter.
+/// Position in which M6 leaves the axes: `"stays"`, or joint values by letter.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum ToolChangeEntry {

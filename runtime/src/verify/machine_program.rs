@@ -361,9 +361,7 @@ impl MachineProgram {
                 summary.other_lengths.push((step.line, register, tool));
             }
             for (motion, _) in &motions {
-                // Without a work offset, linear joints are known up to a displacement only.
-                let is_known = |found: &LimitViolation| is_placed || found.letter.is_rotary();
-                for violation in motion.check_limits().into_iter().filter(is_known) {
+                for violation in motion.check_limits() {
                     add_violation(&mut summary.limits, step.line, violation);
                 }
                 let pass = motion.singular_pass();

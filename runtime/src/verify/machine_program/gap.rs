@@ -1,4 +1,4 @@
-//! What a verdict about a program leaves open.
+//! Gaps: everything that a verdict about a program leaves open.
 
 use super::{MachineProgram, MachineSummary, UnknownMotions};
 use crate::gcode::{ControlRules, NoteKind, Rule, Spindle};
@@ -11,7 +11,7 @@ pub struct Gap {
     pub line: usize,
     /// Set if there is no verdict with it: a collision could be missed that the program alone makes.
     pub is_open: bool,
-    /// What was not checked, why, and what to state or write. A sentence without a full stop.
+    /// The subject that was not checked, the cause, and the remedy. A sentence without a full stop.
     pub reason: String,
 }
 
@@ -107,7 +107,7 @@ impl MachineSummary {
             add(*line, true, reason.to_owned());
         }
         let not_stated = self.spindle.iter().find(|(.., spindle)| *spindle == Spindle::NotStated);
-        if let (Some((line, ..)), false) = (not_stated, self.starts_spindle()) {
+        if let (Some((line, ..)), false) = (not_stated, self.states_spindle()) {
             let reason = "the program feeds and never starts the spindle: write M3 with S before";
             add(*line, true, reason.to_owned());
         }
@@ -143,8 +143,9 @@ impl MachineSummary {
         gaps
     }
 
-    /// Returns whether the program says something about the spindle before some feed.
-    fn starts_spindle(&self) -> bool {
+    /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
+    /// operator.
+    pub fn states_spindle(&self) -> bool {
         self.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated)
     }
 }

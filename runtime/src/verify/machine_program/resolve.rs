@@ -249,35 +249,14 @@ impl<'a> Resolver<'a> {
         if let (Some(axis), Some(end)) = (step.tool_vector, linear_only(&ends[1])) {
             let near = self.joints.map(Option::unwrap_or_default);
             let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
-            let chain = self.limited(&frame.chain);
-            let found = chain.inverse(&tip, &Vector3::from(axis), &near)?;
+            let found = frame.chain.inverse(&tip, &Vector3::from(axis), &near)?;
             (3..6).for_each(|k| ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]));
         }
         let is_half = self.turn_shorter(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
-            let is_lost = |k: &usize| step.commanded[*k] && step.end[*k].is_none();
-            let is_new = (0..6).any(|k| step.commanded[k] && current[k].is_none());
-            if self.cause == UnknownCause::Start {
-                // The way to a reference position before the first position is the operator's, too.
-                let knows = (0..6).any(|k| {
-                    current[k].is_some()
-                        && self.machine.axes().iter().any(|axis| axis.letter.index() == k)
-                });
-                if (0..6).any(|k| is_lost(&k)) && knows {
-                    self.cause = UnknownCause::Return;
-                } else if !is_new && step.commanded.contains(&true) {
-                    return Ok(Resolved::Unknown(UnknownCause::Axis));
-                }
-            } else if (0..6).any(|k| is_lost(&k)) {
-                self.cause = UnknownCause::Return;
-            }
-            // An axis leaves a known position for one in machine coordinates: that is its way home.
-            if step.in_machine && (0..6).filter(is_lost).all(|k| current[k].is_some()) {
-                return Ok(Resolved::Unknown(UnknownCause::Home));
-            }
-            return Ok(Resolved::Unknown(self.cause));
+            return Ok(Resolved::Unknown(self.unknown_end(step, &current)));
         };
         let turns = |side: Side| {
             let is_turned = |position: [f64; 6]| {
@@ -324,6 +303,28 @@ impl<'a> Resolver<'a> {
             self.cause = UnknownCause::NoLever;
         }
         Ok(resolved)
+    }
+
+    /// Returns the cause for which the end of a step is unknown that starts at `current`, and keeps that of later ones.
+    fn unknown_end(&mut self, step: &Step, current: &Position) -> UnknownCause {
+        let lost = || (0..6).filter(|k| step.commanded[*k] && step.end[*k].is_none());
+        let mut known = (0..6).filter(|k| current[*k].is_some());
+        let knows_axis = known.any(|k| self.machine.axis(Letter::ALL[k]).is_some());
+        let is_start = self.cause == UnknownCause::Start;
+        // The way to a reference position before the first position is the operator's, too.
+        if lost().next().is_some() && (!is_start || knows_axis) {
+            self.cause = UnknownCause::Return;
+        } else if is_start {
+            let mut commanded = (0..6).filter(|k| step.commanded[*k]).peekable();
+            if commanded.peek().is_some() && commanded.all(|k| current[k].is_some()) {
+                return UnknownCause::Axis;
+            }
+        }
+        // An axis leaves a known position for one in machine coordinates: that is its way home.
+        match step.in_machine && lost().all(|k| current[k].is_some()) {
+            true => UnknownCause::Home,
+            false => self.cause,
+        }
     }
 
     /// Resolves rapid traverse of the axes from one joint position to another.
@@ -404,11 +405,6 @@ impl<'a> Resolver<'a> {
             .map(|axis| axis.letter.index())
     }
 
-    /// Returns a chain without the limits of linear axes if the position of the part on the machine is unknown.
-    fn limited(&self, chain: &Chain) -> Chain {
-        if self.is_placed { *chain } else { chain.without_linear_limits() }
-    }
-
     /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
     fn frame(&mut self, state: &ControlState) -> Result<Result<Frame, UnknownCause>, StepFault> {
         let is_tip = state.turns_with_workpiece();
@@ -424,6 +420,8 @@ impl<'a> Resolver<'a> {
             _ => {
                 let setup = Setup { work_offset: self.origin, tool_length: length };
                 let chain = self.machine.chain(&setup)?;
+                // Without a work offset, linear joints are known up to a displacement only.
+                let chain = if self.is_placed { chain } else { chain.without_linear_limits() };
                 self.chain = Some((length, chain));
                 chain
             }
