@@ -4,7 +4,7 @@ use crate::bench::{Bench, objects, stderr, stdout, touchoff};
 use nalgebra::Point3;
 use std::fs;
 use std::process::Output;
-use touchoff::gcode::{ControlRules, Rule};
+use touchoff::gcode::{Choice, ControlRules, Rule};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
 
@@ -61,6 +61,19 @@ impl Scene {
         touchoff(&[&["verify", &file][..], more].concat())
     }
 
+    /// Writes the control of a Sinumerik that reads native programs, and returns the option that names it.
+    fn native(&self) -> [String; 2] {
+        let siemens = ControlRules::named("siemens").expect("a control");
+        let native = siemens.with(Rule::ToolLength, Choice::Always).to_toml();
+        ["--control".to_owned(), self.bench.write("native.toml", native)]
+    }
+
+    /// As [`Scene::gives`], on a Sinumerik that reads native programs.
+    fn gives_natively(&self, status: i32, words: &[&str]) {
+        let [option, control] = self.native();
+        self.gives(&[&option, &control], status, words);
+    }
+
     /// Asserts the status and words of the output with more options.
     fn gives(&self, more: &[&str], status: i32, words: &[&str]) {
         let output = self.run(more);
@@ -75,6 +88,7 @@ impl Scene {
 const LINUXCNC: [&str; 2] = ["--control", "linuxcnc"];
 const FANUC: [&str; 2] = ["--control", "fanuc"];
 const HAAS: [&str; 2] = ["--control", "haas"];
+const SIEMENS: [&str; 2] = ["--control", "siemens"];
 
 /// The changer leaves the axes above a clamp, through which the tool then comes down.
 #[test]
@@ -223,8 +237,13 @@ fn a_feed_without_a_length_offset_is_no_guess() {
     let mut one = Scene::new(one);
     one.job += "[tool.3]\ntool = \"D2Ball\"\n";
     one.gives(&LINUXCNC, 2, &["T3 moves without a tool length offset: write G43 H3"]);
-    // The length of the tool applies without a word.
-    scene.gives(&["--control", "siemens", "--anyway"], 0, &[]);
+    // The length of the tool applies without a word in native programs of Sinumerik, and not in ISO mode.
+    scene.gives(
+        &SIEMENS,
+        2,
+        &["no tool length offset (G43) is in force", "tool_length = \"with G43\""],
+    );
+    scene.with("anyway = true").gives_natively(0, &[]);
     let named = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
     named.gives(&LINUXCNC, 0, &["positions are taken as those of the tip"]);
 }
@@ -316,7 +335,7 @@ fn what_a_program_leaves_out_at_its_start_is_named() {
     scene.gives(&LINUXCNC, 0, &[]);
     let scene = Scene::of(&format!("G90 G21 S900 M3 F100.\n{blocks}\nM30\n"));
     scene.gives(&[], 2, &["no work offset before a position", "`start_offset`"]);
-    scene.gives(&["--control", "siemens"], 2, &["a work offset (G54) before"]);
+    scene.gives(&SIEMENS, 2, &["a work offset (G54) before"]);
     scene.gives(&LINUXCNC, 0, &[]);
 }
 
@@ -442,7 +461,7 @@ fn controls_and_machines_are_listed() {
         let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
         let open = match row["name"].as_str() {
             Some("fanuc") => 2,
-            Some("haas") => 1,
+            Some("haas" | "siemens") => 1,
             _ => 0,
         };
         assert_eq!(stated, keys - open, "{row}");
@@ -480,9 +499,9 @@ fn under_g53_the_length_counts_or_not() {
     scene.gives(&LINUXCNC, 0, &[]);
     let low = Scene::new(&blocks.replace("-399.5", "-300.")).placed().with("anyway = true");
     low.gives(&LINUXCNC, 0, &[]);
-    low.gives(&["--control", "siemens"], 0, &[]);
+    low.gives(&SIEMENS, 0, &[]);
     let tip = Scene::new(&blocks.replace("-399.5", "-400.5")).placed().with("anyway = true");
-    tip.gives(&["--control", "siemens"], 1, &["0.5000 mm deep in the part"]);
+    tip.gives(&SIEMENS, 1, &["0.5000 mm deep in the part"]);
 }
 
 #[test]
@@ -542,20 +561,19 @@ fn the_shorter_way_holds_for_every_stated_angle() {
 /// A tool change changes the length that counts without G43, and D0 ends it.
 #[test]
 fn the_length_that_counts_always_is_that_of_the_tool() {
-    let siemens = ["--control", "siemens"];
     let start =
         "G21 G90 G54 S9000 M3 F100.\nT1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
     let two = format!("{start}T2 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nG1 Z0.5\nX0.\nM30\n");
     let mut scene = Scene::of(&two).placed().with("anyway = true");
     scene.job += "[tool.2]\ntool = \"D2Ball\"\nlength = 30\n";
-    scene.gives(&siemens, 0, &[]);
+    scene.gives_natively(0, &[]);
     scene.gives(&LINUXCNC, 1, &[]);
     // Without a length, the spindle comes down by 50.
     let edge =
         Scene::of(&format!("{start}D0\nG0 Z49.\nX-3.\nM30\n")).placed().with("anyway = true");
-    edge.gives(&siemens, 1, &["in rapid traverse"]);
+    edge.gives_natively(1, &["in rapid traverse"]);
     let edge = Scene::of(&format!("{start}D2\nG0 Z49.\nM30\n")).placed().with("anyway = true");
-    edge.gives(&siemens, 2, &["D1, the only cutting edge"]);
+    edge.gives_natively(2, &["D1, the only cutting edge"]);
 }
 
 /// An axis that the program has not stated leaves all motions between stated positions unknown.
@@ -692,17 +710,66 @@ fn a_program_begins_with_a_return_along_one_axis() {
 
 #[test]
 fn a_length_that_counts_always_is_along_z_and_returns_with_d1() {
-    let siemens = ["--control", "siemens"];
     let start = "G21 G90 G54 S9000 M3 F100.\nT1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\n";
     let edge = Scene::of(&format!("{start}D0\nX-5.\nD1 Z20.\nG1 X4. Z1.\nM30\n")).placed();
-    edge.with("anyway = true").gives(&siemens, 0, &[]);
+    edge.with("anyway = true").gives_natively(0, &[]);
     let plane = Scene::of(&format!("{start}G18\nG0 Z21.\nM30\n")).placed();
-    plane.gives(&siemens, 2, &["G18 while the length of the tool counts without G43"]);
+    plane.gives_natively(2, &["G18 while the length of the tool counts without G43"]);
     // An end near the start turns the arc of a control that moves its centre.
     let arc = Scene::of(&format!("{start}G0 X30.\nG3 X30.001 Y-0.1 I-30. J0.\nM30\n")).placed();
-    arc.gives(&siemens, 2, &["the radii of an arc differ"]);
+    arc.gives_natively(2, &["the radii of an arc differ"]);
     // The head of a program is that of one control.
     let head =
         "%PLATE G71 *\nN10 G90 G54 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\nN99999999 %PLATE G71 *\n";
     Scene::of(head).gives(&[], 2, &["G54 is another word in DIN/ISO programs of Heidenhain"]);
+}
+
+/// Words on which controls differ: each ends without a verdict, with the word that decides it.
+#[test]
+fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
+    let begin = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";
+    for (blocks, word) in [
+        // Fanuc moves in rapid traverse, and by a dog-leg.
+        ("G53 Z0.", "G53 while G1 is in force differs between controls: write G0 in the block"),
+        ("G0 Z20.\nT2\nT3 M6", "another tool is staged"),
+        // Rigid tapping leaves the spindle standing.
+        ("G0 Z20.\nG84 X4. Z1. R2.\nG80\nG1 X5.", "write M3 after G80"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(&LINUXCNC, 2, &[word]);
+    }
+    let tap = format!("{begin}G0 Z20.\nG84 X4. Z1. R2.\nG80\nS9000 M3\nG1 X5.");
+    Scene::new(&tap).gives(&LINUXCNC, 0, &[]);
+    // Native programs of Sinumerik shift by G58 and G59.
+    let text = "G21 G90 G59 S9000 M3 F100.\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n";
+    let mut shift = Scene::of(text).placed();
+    shift.job += "G59 = [1, 0, -400]\n";
+    shift.gives(&[], 2, &["shifts on native Sinumerik: state `start_offset`"]);
+    shift.gives(&SIEMENS, 2, &["G59 is a shift in native programs of Sinumerik"]);
+    // Words that move nothing, and the end of a block of Heidenhain.
+    Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n")).gives(&HAAS, 0, &[]);
+}
+
+/// The repeats of a cycle are those after L, or after K; the other word says nothing.
+#[test]
+fn the_repeats_of_a_cycle_are_after_l_or_k() {
+    let blocks = "G0 X-6. Y0. Z20.\nG99 G91 G81 X4. Z-0.2 R-18. L2\nG80 G90\nG0 Z20.";
+    let scene = Scene::new(blocks).obstacle([1.0, -2.0, -1.0], [3.0, 2.0, 9.0]);
+    scene.gives(&HAAS, 1, &["the clamp"]);
+    scene.gives(&FANUC, 0, &[]);
+    scene.gives(&[], 1, &["under cycle_repeats = \"L\""]);
+    let scene =
+        Scene::new(&blocks.replace("L2", "K2")).obstacle([1.0, -2.0, -1.0], [3.0, 2.0, 9.0]);
+    scene.gives(&FANUC, 1, &["the clamp"]);
+    scene.gives(&HAAS, 0, &[]);
+}
+
+/// No control goes exactly through corners, unless the program says so.
+#[test]
+fn that_corners_are_rounded_is_said() {
+    let blocks = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let word = "may round corners without G61";
+    Scene::new(blocks).gives(&LINUXCNC, 0, &[word]);
+    Scene::new(&format!("G61\n{blocks}\nG64 P0.1\nX0.")).gives(&LINUXCNC, 0, &[word]);
+    let exact = Scene::new(&format!("G61\n{blocks}")).run(&LINUXCNC);
+    assert!(!stderr(&exact).contains(word), "{}", stderr(&exact));
 }

@@ -311,6 +311,8 @@ pub(super) fn next(cursor: &mut Cursor) -> Result<Option<u8>, GcodeFault> {
                 }
             }
             Some(b';') | None => return Ok(None),
+            // The end of a block in DIN/ISO programs of Heidenhain.
+            Some(b'*') if cursor.rest()[1..].trim().is_empty() => return Ok(None),
             Some(byte) => return Ok(Some(byte)),
         }
     }

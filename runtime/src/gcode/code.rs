@@ -84,15 +84,16 @@ fn g_group(code: Code) -> Result<Group, GcodeFault> {
         400 => Group::CutterCompensation,
         430 | 434 | 435 | 490 | 2340 => Group::Length,
         540 | 541 | 550 | 560 | 570 | 580 | 590 | 591 | 592 | 593 => Group::WorkOffset,
-        50 | 51 | 80 | 610 | 611 | 640 => Group::PathControl,
+        // G187 is Haas'.
+        50 | 51 | 80 | 610 | 611 | 640 | 1870 => Group::PathControl,
         980 | 990 => Group::Retract,
         680 | 682 | 690 => Group::Rotation,
         100 | 280 | 300 | 520 | 531 | 920 | 921 | 922 | 923 => Group::OneShot,
         530 => Group::Machine,
         40 => Group::Dwell,
         // Exact stop; polar coordinates, stored stroke check, scaling, mirroring and macro calls off; spindle
-        // speed.
-        90 | 150 | 230 | 500 | 501 | 670 | 960 | 970 => Group::PassedOver,
+        // speed; blocks read ahead on Haas.
+        90 | 150 | 230 | 500 | 501 | 670 | 960 | 970 | 1030 => Group::PassedOver,
         tenths => return Err(refused_g(code, tenths)),
     })
 }
@@ -106,9 +107,10 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
         // Spindle and coolant, orientation of the spindle, rigid tapping, overrides.
         30 | 40 | 50 | 70 | 80 | 90 | 190 | 290 | 480 | 490 => Group::PassedOver,
         // Clamps of rotary axes, spindle with coolant, chip conveyor, gears, LinuxCNC's overrides and outputs, coolant
-        // through the spindle.
+        // through the spindle, air jets.
         100 | 110 | 120 | 130 | 140 | 310 | 330 | 410 | 420 | 430 | 440 => Group::PassedOver,
-        510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 | 880 => Group::PassedOver,
+        510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 => Group::PassedOver,
+        830 | 840 | 880 | 890 => Group::PassedOver,
         tenths => return Err(refused_m(code, tenths)),
     })
 }

@@ -30,7 +30,7 @@ impl Control {
     /// Reads T, M6 and D.
     pub(super) fn tool(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let expected = "a whole number from 0";
-        let has_tool = block.has('T');
+        let (has_tool, before) = (block.has('T'), self.staged);
         if let Some(tool) = block.take_whole('T', 0, MAX_REGISTER, expected)? {
             self.staged = Some(tool);
         }
@@ -45,6 +45,17 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
+        if has_change
+            && let (Some(before), Some(tool)) = (before, self.staged)
+            && before != tool
+            && self.state.tool != Some(before)
+        {
+            return Err(GcodeFault::Combination {
+                word: format!("T{tool} M6"),
+                condition: "another tool is staged",
+                remedy: "write T in a block before M6",
+            });
+        }
         match self.staged {
             Some(tool) if changes => self.change_tool(tool),
             None if changes => {
@@ -113,7 +124,7 @@ impl Control {
             },
         };
         if moved.contains(&true) {
-            self.move_machine(moved, target, true, StepPath::ToolChange(target));
+            self.move_machine(moved, target, StepPath::ToolChange(target));
         }
     }
 
@@ -327,6 +338,17 @@ impl Control {
             tenths @ 540..=590 => WorkOffset::Standard((tenths / 10 - 53) as u8),
             tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
         };
+        if matches!(code.tenths, 580 | 590) {
+            match self.stated(Rule::StartOffset) {
+                None => self.notes.add(self.line, Subject::OffsetOrShift),
+                Some(Choice::NoOffset) => {
+                    let meaning = "a shift in native programs of Sinumerik";
+                    let remedy = "write G54 to G57, or state `start_offset` of the control";
+                    return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+                }
+                Some(_) => {}
+            }
+        }
         self.offset_stated = true;
         if offset != self.state.work_offset {
             self.check_unrotated(code)?;

@@ -58,12 +58,7 @@ impl Control {
         let normal = self.modal.plane.normal();
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
-        let repeats = match block.take_whole('L', 0, 1_000_000, "a number of repeats after L")? {
-            Some(repeats) => repeats,
-            None => {
-                block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1)
-            }
-        };
+        let repeats = self.repeats(block)?;
         let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
             (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
             _ => 1.0,
@@ -89,6 +84,19 @@ impl Control {
         }
         self.cycle = Some(cycle);
         Ok(())
+    }
+
+    /// Returns how often the cycle is executed. The word that is not that of the control says nothing.
+    fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
+        let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
+        let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
+        if by_l == by_k {
+            return Ok(by_l);
+        }
+        Ok(match self.choice(Rule::CycleRepeats) {
+            Choice::RepeatsByK => by_k,
+            _ => by_l,
+        })
     }
 
     fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
@@ -228,6 +236,9 @@ impl Control {
                 }
             }
             _ => self.move_along(axis, true, clear),
+        }
+        if matches!(number, 74 | 84) {
+            self.end_tapping();
         }
     }
 }

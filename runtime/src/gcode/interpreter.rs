@@ -218,7 +218,7 @@ fn is_other_word(code: Code) -> bool {
             100 | 200 | 210 | 280 | 300 | 430..=449 | 490 | 520..=599 | 680..=699 | 730 | 740 | 810..=869 | 890 | 920..=929
                 | 980 | 990
         ),
-        ('M', tenths) => matches!(tenths, 980 | 990),
+        ('M', tenths) => matches!(tenths, 890 | 980 | 990),
         _ => false,
     }
 }
@@ -358,6 +358,9 @@ impl Control {
 
     /// Reads the settings that convert and interpret the other words.
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
+        if block.passed_over.contains(&READ_AHEAD) {
+            block.take('P');
+        }
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
         if let Some(unit) = tenths(Group::Units) {
             let is_inch = matches!(unit, 200 | 700 | 7000);
@@ -388,34 +391,36 @@ impl Control {
             })?;
         }
         if let Some(code) = block.code_of(Group::PathControl) {
-            let is_rounding = path_control(block, code)?;
-            self.notes.add(
-                self.line,
-                match is_rounding {
-                    true => Subject::RoundedCorners(code),
-                    false => Subject::PassedOver(code),
-                },
-            );
+            path_control(block, code)?;
+            self.modal.exact_path = matches!(code.tenths, 610 | 611);
+            self.notes.add(self.line, Subject::PassedOver(code));
         }
         Ok(())
     }
 }
 
-/// Takes the words of a path mode, and returns whether the control may round corners under it.
-fn path_control(block: &mut Block, code: Code) -> Result<bool, GcodeFault> {
+/// The number of blocks that a Haas reads ahead (G103 P).
+const READ_AHEAD: Code = Code { letter: 'G', tenths: 1030 };
+
+/// Takes the words of a path mode.
+fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
     let switch = match code.tenths {
         640 => {
             block.take('P');
             block.take('Q');
-            return Ok(true);
+            return Ok(());
         }
-        610 | 611 => return Ok(false),
+        1870 => {
+            block.take('P');
+            return Ok(());
+        }
+        610 | 611 => return Ok(()),
         51 => 'Q',
         _ => 'P',
     };
     // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
     match block.take(switch) {
-        Some(value) if !block.has_any("XYZIJK") => Ok(value != 0.0),
+        Some(_) if !block.has_any("XYZIJK") => Ok(()),
         _ => {
             let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
             let remedy = "post the program with lines and arcs";

@@ -48,6 +48,8 @@ pub(super) struct Modal {
     pub(super) absolute_centres: Option<bool>,
     pub(super) feed_mode: FeedMode,
     pub(super) feed: Option<f64>,
+    /// Set where the path goes through the corners (G61).
+    pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
     pub(super) retract_to_r: Option<bool>,
 }
@@ -63,6 +65,7 @@ impl Modal {
             absolute_centres: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            exact_path: false,
             retract_to_r: None,
         }
     }

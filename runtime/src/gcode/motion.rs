@@ -378,14 +378,12 @@ impl Control {
         if self.state.tcp != Tcp::Off {
             return refused("tool centre point control is on", self.tcp_remedy());
         }
-        let rapid = match self.modal.motion {
-            None | Some(Motion::Rapid) => true,
-            Some(Motion::Feed) => {
-                self.check_feed("G1")?;
-                false
-            }
+        match self.modal.motion {
+            None | Some(Motion::Rapid) => {}
+            // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
+            Some(Motion::Feed) => return refused("G1 is in force", "write G0 in the block"),
             _ => return refused("an arc or a canned cycle is in force", "write G0 in the block"),
-        };
+        }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: "G53".to_owned(), needed: "an axis word" });
@@ -400,7 +398,7 @@ impl Control {
         {
             target[2] = length.map(|length| z + length);
         }
-        self.move_machine(axes.map(|value| value.is_some()), target, rapid, StepPath::Line);
+        self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
         if axes[2].is_some() && self.state.length != LengthOffset::Off {
             self.returned = self.returned.or(Some(true));
         }
@@ -434,17 +432,16 @@ impl Control {
         }
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
-        self.move_machine(named, target, true, StepPath::Line);
+        self.move_machine(named, target, StepPath::Line);
         self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }
 
-    /// Moves axes to machine coordinates. An unknown coordinate leads where only the machine knows.
+    /// Moves axes to machine coordinates in rapid traverse. An unknown coordinate leads where only the machine knows.
     pub(super) fn move_machine(
         &mut self,
         mut commanded: [bool; 6],
         target: Position,
-        rapid: bool,
         path: StepPath,
     ) {
         let mut machine = self.state.to_machine(self.position);
@@ -468,7 +465,7 @@ impl Control {
                 end[axis] = self.position[axis];
             }
         }
-        self.push(rapid, end, commanded, path);
+        self.push(true, end, commanded, path);
         // Machine coordinates are stated in G91, too.
         let step = self.pending.back_mut().expect("the step that was added");
         (step.absolute, step.in_machine) = (true, true);
@@ -482,6 +479,9 @@ impl Control {
         commanded: [bool; 6],
         path: StepPath,
     ) {
+        if !self.modal.exact_path && !matches!(path, StepPath::ToolChange(_)) {
+            self.notes.add(self.line, Subject::RoundedCorners);
+        }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {
             Some(Motion::Cycle(74 | 84)) => Spindle::Tapping,

@@ -25,11 +25,10 @@ pub enum NoteKind {
         /// The word.
         word: String,
     },
-    /// A path mode that lets the control round corners, by a tolerance that may be its own.
-    RoundedCorners {
-        /// The word.
-        word: String,
-    },
+    /// A motion without G61: the control may round its corners, by a tolerance of its own.
+    RoundedCorners,
+    /// A work offset (G58, G59) that native Sinumerik programs read as a shift.
+    OffsetOrShift,
     /// A tool change, whose motion only the machine knows.
     ToolChange,
     /// A stop, at which an operator can move the tool.
@@ -60,12 +59,12 @@ impl fmt::Display for NoteKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             NoteKind::PassedOver { word } => write!(f, "{word} is passed over"),
-            NoteKind::RoundedCorners { word } => {
-                write!(
-                    f,
-                    "{word} lets the control round corners, so its path differs from the programmed one"
-                )
-            }
+            NoteKind::RoundedCorners => f.write_str(
+                "the control may round corners without G61, by a tolerance of its own: its path is checked as programmed",
+            ),
+            NoteKind::OffsetOrShift => f.write_str(
+                "G58 and G59 are work offsets, but shifts on native Sinumerik: state `start_offset` of the control",
+            ),
             NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
             NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),
             NoteKind::ExecutedOptionalBlock => f.write_str("an optional block (/) is executed"),
@@ -90,7 +89,8 @@ impl fmt::Display for NoteKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Subject {
     PassedOver(Code),
-    RoundedCorners(Code),
+    RoundedCorners,
+    OffsetOrShift,
     ToolChange,
     Stop,
     ExecutedOptionalBlock,
@@ -134,7 +134,8 @@ impl Subject {
                 NoteKind::PassedOver { word: letter.to_string() }
             }
             Subject::PassedOver(code) => NoteKind::PassedOver { word: code.to_string() },
-            Subject::RoundedCorners(code) => NoteKind::RoundedCorners { word: code.to_string() },
+            Subject::RoundedCorners => NoteKind::RoundedCorners,
+            Subject::OffsetOrShift => NoteKind::OffsetOrShift,
             Subject::ToolChange => NoteKind::ToolChange,
             Subject::Stop => NoteKind::Stop,
             Subject::ExecutedOptionalBlock => NoteKind::ExecutedOptionalBlock,

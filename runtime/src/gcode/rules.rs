@@ -46,6 +46,8 @@ pub enum Rule {
     PresetEnd,
     /// A change of the tool length offset in a block without Z.
     LengthChange,
+    /// The word for the repeats of a canned cycle.
+    CycleRepeats,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -91,6 +93,8 @@ pub enum Choice {
     KeepsPreset,
     WithNextZ,
     MovesZ,
+    RepeatsByL,
+    RepeatsByK,
     Executed,
     LeftOut,
 }
@@ -104,7 +108,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 18] = [
+const RULES: [Entry; 19] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -270,6 +274,15 @@ const RULES: [Entry; 18] = [
         ],
     },
     Entry {
+        rule: Rule::CycleRepeats,
+        key: "cycle_repeats",
+        about: "the repeats of a canned cycle",
+        choices: &[
+            (Choice::RepeatsByL, "L", "are the number after L"),
+            (Choice::RepeatsByK, "K", "are the number after K"),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -282,7 +295,7 @@ const RULES: [Entry; 18] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 17]); 5] = {
+const CONTROLS: [(&str, [Choice; 18]); 5] = {
     use Choice::*;
     [
         (
@@ -305,6 +318,7 @@ const CONTROLS: [(&str, [Choice; 17]); 5] = {
                 LastH,
                 KeepsPreset,
                 MovesZ,
+                RepeatsByK,
             ],
         ),
         (
@@ -327,6 +341,7 @@ const CONTROLS: [(&str, [Choice; 17]); 5] = {
                 LastH,
                 KeepsPreset,
                 MovesZ,
+                RepeatsByL,
             ],
         ),
         (
@@ -349,6 +364,7 @@ const CONTROLS: [(&str, [Choice; 17]); 5] = {
                 OfTool,
                 EndsPreset,
                 WithNextZ,
+                RepeatsByL,
             ],
         ),
         (
@@ -371,6 +387,7 @@ const CONTROLS: [(&str, [Choice; 17]); 5] = {
                 OfTool,
                 EndsPreset,
                 WithNextZ,
+                RepeatsByK,
             ],
         ),
         (
@@ -393,14 +410,20 @@ const CONTROLS: [(&str, [Choice; 17]); 5] = {
                 OfTool,
                 EndsPreset,
                 WithNextZ,
+                RepeatsByL,
             ],
         ),
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 3] =
-    [("fanuc", Rule::ReferenceReturn), ("fanuc", Rule::LengthChange), ("haas", Rule::LengthChange)];
+const OPEN: [(&str, Rule); 4] = [
+    ("fanuc", Rule::ReferenceReturn),
+    ("fanuc", Rule::LengthChange),
+    ("haas", Rule::LengthChange),
+    // Native programs have no G43, and those in ISO mode need it.
+    ("siemens", Rule::ToolLength),
+];
 
 impl Rule {
     /// Returns all rules.

@@ -19,6 +19,8 @@ pub enum Spindle {
     CounterClockwise,
     /// A tapping cycle turns it.
     Tapping,
+    /// A tapping cycle has ended, which leaves it standing or turning, by the control and by rigid tapping.
+    AfterTapping,
 }
 
 /// The words of the program about the spindle.
@@ -59,6 +61,11 @@ impl Control {
         self.spindle.paused = true;
     }
 
+    /// Notes the end of a tapping cycle.
+    pub(super) fn end_tapping(&mut self) {
+        self.spindle.turn = Spindle::AfterTapping;
+    }
+
     /// Stops the spindle for a tool change. It stays unstated if it was.
     pub(super) fn stop_spindle(&mut self) {
         if self.spindle.turn != Spindle::NotStated {
@@ -68,7 +75,10 @@ impl Control {
 
     /// Returns the spindle for a motion at feed rate or in rapid traverse.
     pub(super) fn spindle(&mut self, rapid: bool) -> Spindle {
-        if matches!(self.spindle.turn, Spindle::NotStated | Spindle::Stopped) {
+        if matches!(
+            self.spindle.turn,
+            Spindle::NotStated | Spindle::Stopped | Spindle::AfterTapping
+        ) {
             return self.spindle.turn;
         }
         if self.spindle.paused && !rapid {

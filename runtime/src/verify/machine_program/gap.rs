@@ -111,6 +111,11 @@ impl MachineSummary {
             let reason = "the program feeds and never starts the spindle: write M3 with S before";
             add(*line, true, reason.to_owned());
         }
+        let after_tap = self.spindle.iter().find(|(.., turn)| *turn == Spindle::AfterTapping);
+        if let Some((line, ..)) = after_tap {
+            let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
+            add(*line, true, reason.to_owned());
+        }
         if let Some(line) = self.no_offset {
             let names_tool = self.tools.iter().any(|tool| tool.number.is_some());
             let remedy = match names_tool {
@@ -132,7 +137,10 @@ impl MachineSummary {
         for note in &self.notes {
             let is_open = matches!(
                 note.kind,
-                NoteKind::OtherProgram | NoteKind::OptionalSwitches | NoteKind::TwoRadii
+                NoteKind::OtherProgram
+                    | NoteKind::OptionalSwitches
+                    | NoteKind::TwoRadii
+                    | NoteKind::OffsetOrShift
             );
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
@@ -146,6 +154,8 @@ impl MachineSummary {
     /// Returns whether the program says something about the spindle before some feed. Otherwise it leaves the spindle to the
     /// operator.
     pub fn states_spindle(&self) -> bool {
-        self.spindle.iter().any(|(.., spindle)| *spindle != Spindle::NotStated)
+        let is_stated =
+            |spindle: Spindle| !matches!(spindle, Spindle::NotStated | Spindle::AfterTapping);
+        self.spindle.iter().any(|(.., spindle)| is_stated(*spindle))
     }
 }
