@@ -746,7 +746,7 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
     shift.gives(&[], 2, &["shifts on native Sinumerik: state `start_offset`"]);
     shift.gives(&SIEMENS, 2, &["G59 is a shift in native programs of Sinumerik"]);
     // Words that move nothing, and the end of a block of Heidenhain.
-    Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n")).gives(&HAAS, 0, &[]);
+    Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n")).gives(&LINUXCNC, 0, &[]);
 }
 
 /// The repeats of a cycle are those after L, or after K; the other word says nothing.
