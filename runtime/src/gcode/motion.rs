@@ -480,7 +480,7 @@ impl Control {
         path: StepPath,
     ) {
         if !self.modal.exact_path && !matches!(path, StepPath::ToolChange(_)) {
-            self.notes.add(self.line, Subject::RoundedCorners);
+            self.notes.add_once(self.line, Subject::RoundedCorners);
         }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {

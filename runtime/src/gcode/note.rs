@@ -113,6 +113,11 @@ impl Notes {
         self.found.entry(subject).or_insert((line, 0)).1 += 1;
     }
 
+    /// Adds a subject whose number says nothing.
+    pub(super) fn add_once(&mut self, line: usize, subject: Subject) {
+        self.found.entry(subject).or_insert((line, 1));
+    }
+
     /// Returns the notes by line.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
         let note = |(subject, (line, count)): (&Subject, &(usize, usize))| ProgramNote {

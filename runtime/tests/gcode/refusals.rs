@@ -315,7 +315,8 @@ fn notes_name_what_is_left_to_the_control() {
         notes.iter().map(|note| (note.line, note.count, note.kind.clone())).collect();
     let passed = |word: &str| NoteKind::PassedOver { word: word.to_owned() };
     for expected in [
-        (2, 1, NoteKind::RoundedCorners { word: "G64".to_owned() }),
+        (2, 1, passed("G64")),
+        (3, 1, NoteKind::RoundedCorners),
         (2, 2, passed("M8")),
         (2, 1, passed("S")),
         (3, 1, NoteKind::ExecutedOptionalBlock),
@@ -325,17 +326,16 @@ fn notes_name_what_is_left_to_the_control() {
     ] {
         assert!(kinds.contains(&expected), "{expected:?} is not in {kinds:?}");
     }
-    assert_eq!(kinds.len(), 7, "{kinds:?}");
+    assert_eq!(kinds.len(), 8, "{kinds:?}");
     // Text after M30 that is no subprogram, and Fanuc's path modes, on and off.
-    let program = "G5.1 Q1\nG5.1 Q0\nG8 P0\nG61\nM30\n(end)\n\nG0 X1\n";
+    let program = "G61\nG0 X0\nG5.1 Q0\nG0 X1\nG61\nM30\n(end)\n\nG0 X1\n";
     let (_, notes) = read(program, &at_zero()).expect("a program");
     let shown: Vec<String> = notes.iter().map(ToString::to_string).collect();
     for expected in [
-        "line 1: G5.1 lets",
-        "line 2: G5.1 is passed",
-        "line 3: G8 is passed",
-        "line 4: G61",
-        "line 8: the text after",
+        "line 1: G61 is passed",
+        "line 3: G5.1 is passed",
+        "line 4: the control may round corners",
+        "line 9: the text after",
     ] {
         assert!(
             shown.iter().any(|note| note.starts_with(expected)),
