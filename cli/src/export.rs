@@ -10,8 +10,8 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use touchoff::Escaped;
-use touchoff::export::{Format, export as export_tools};
 use touchoff::tool::ToolInfo;
+use touchoff_import::export::{Format, export as export_tools};
 
 /// One line of `export --json`.
 #[derive(Serialize)]

@@ -109,7 +109,7 @@ pub(crate) enum Failure {
     Tool(#[from] ToolError),
     /// A tool library could not be imported.
     #[error(transparent)]
-    Import(#[from] touchoff::import::ImportError),
+    Import(#[from] touchoff_import::ImportError),
     /// A job file cannot be used.
     #[error("{file}: {message}")]
     Job {

@@ -16,7 +16,7 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::Escaped;
-use touchoff::import::{ImportError, ImportedTool, Library};
+use touchoff_import::{ImportError, ImportedTool, Library};
 
 /// The exit status if a tool was left out; `check` has the same for warnings.
 pub(crate) const LEFT_OUT: u8 = 3;

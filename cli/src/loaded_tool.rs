@@ -10,9 +10,9 @@ use tool_dsl::diagnostic::escaped;
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile_with_arguments};
 use tools_library::{SOURCES, TOOLS};
-use touchoff::import::Library;
 use touchoff::tool::Interpreted;
 use touchoff::{Escaped, Tool};
+use touchoff_import::Library;
 
 /// A built-in tool, or one from a `.tool` file.
 pub(crate) enum LoadedTool {

@@ -105,7 +105,6 @@
 //! |---|---|
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
-//! | `import` | tool libraries of CAM systems as `.tool` files, and back: `import::Library`, `export::export`; implies `interpreter` |
 //! | `haptic` | a cycle of the haptic loop, without threads and clock: `haptic::Session` |
 //! | `realtime` | the loop in a thread, at a fixed rate; implies `haptic` |
 //! | `spacenav` | a SpaceMouse in the loop; implies `realtime` |
@@ -139,14 +138,10 @@ pub mod certify;
 pub mod cloud;
 mod debug;
 mod escape;
-#[cfg(feature = "import")]
-pub mod export;
 pub mod gcode;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 mod id;
-#[cfg(feature = "import")]
-pub mod import;
 mod input;
 mod interval;
 mod keywords;

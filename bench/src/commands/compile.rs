@@ -51,7 +51,7 @@ impl Compile {
                 "tool-macros/src",
                 "tools-library/tools",
                 "runtime/src/tool",
-                "runtime/src/import",
+                "import/src",
             ],
             sections: vec![
                 Section { title: "Compiled", body: body(&rows), missed_limits: Vec::new() },

@@ -6,8 +6,8 @@ use std::time::Instant;
 use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
-use touchoff::import::{ImportedTool, Library};
 use touchoff_bench::page::Section;
+use touchoff_import::{ImportedTool, Library};
 use touchoff_tests::libraries::fusion_library;
 
 /// Number of tools of the library, and the limit on the time of their import, in s.

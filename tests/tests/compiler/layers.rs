@@ -47,8 +47,6 @@ const RUNTIME: &[&str] = &[
     "gcode",
     "tool",
     "reach",
-    "import",
-    "export",
     "bvh",
     "cloud",
     "point_bvh",

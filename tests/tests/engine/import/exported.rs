@@ -3,8 +3,8 @@
 
 use super::notations::{assert_same_solid, load};
 use touchoff::Tool;
-use touchoff::export::{Export, Format, export};
 use touchoff::tool::Interpreted;
+use touchoff_import::export::{Export, Format, export};
 use touchoff_tests::library::library;
 
 /// Largest difference in ulp(S). Angles are computed from corners, and the corners from angles again.

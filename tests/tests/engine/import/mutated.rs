@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 use std::io::Write;
 use std::time::{Duration, Instant};
-use touchoff::import::{ImportError, ImportedTool, Library, Note};
+use touchoff_import::{ImportError, ImportedTool, Library, Note};
 use touchoff_tests::count::case_count;
 use touchoff_tests::libraries::{self, LibraryFile};
 use touchoff_tests::oracle::rng::Rng;

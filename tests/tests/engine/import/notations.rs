@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 use tool_dsl::source::Source;
 use touchoff::Level;
-use touchoff::import::Library;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
+use touchoff_import::Library;
 use touchoff_tests::count::case_count;
 use touchoff_tests::libraries;
 use touchoff_tests::oracle::rng::Rng;

@@ -2,7 +2,7 @@
 //! the same because the value has no influence, or it is left out, or a note says what was taken.
 
 use serde_json::{Value, json};
-use touchoff::import::Library;
+use touchoff_import::Library;
 use touchoff_tests::libraries;
 
 /// Keys whose absence has a meaning in the format itself: a tool without a neck, without a shaft, without a holder.

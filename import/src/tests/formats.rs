@@ -2,8 +2,8 @@
 
 use super::super::{ImportError, Library, Note};
 use super::{corners, fusion, library};
-use crate::tool::Tool;
 use serde_json::{Value, json};
+use touchoff::tool::Tool;
 
 fn parse(name: &str, text: &str) -> Library {
     Library::parse(name.as_ref(), text.as_bytes()).expect("a library")

@@ -14,11 +14,11 @@ mod freecad;
 mod fusion;
 mod section;
 
-use crate::import::Library;
-use crate::tool::{ProfileSegment, Tool, ToolInfo};
-use crate::unit::Unit;
+use crate::Library;
 use section::{HalfSection, same};
 use std::path::Path;
+use touchoff::Unit;
+use touchoff::tool::{ProfileSegment, Tool, ToolInfo};
 
 /// A format to export to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

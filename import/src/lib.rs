@@ -7,7 +7,7 @@
 //! The same file gives the same bytes each time.
 //!
 //! ```
-//! use touchoff::import::Library;
+//! use touchoff_import::Library;
 //!
 //! let json = r#"{"data": [{"type": "ball end mill", "unit": "millimeters", "description": "D6 ball",
 //!     "geometry": {"DC": 6, "RE": 3, "LCF": 20, "OAL": 50, "SFDM": 6}}]}"#;
@@ -15,13 +15,16 @@
 //! let tool = &library.tools()[0];
 //! assert_eq!(tool.files[0].path, "d6_ball.tool");
 //! assert!(tool.files[0].text.contains("arc to (R, R) center (0, R) as ball cutting;"));
-//! # Ok::<(), touchoff::import::ImportError>(())
+//! # Ok::<(), touchoff_import::ImportError>(())
 //! ```
+
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
 mod apt;
 mod camotics;
 mod entry;
 mod error;
+pub mod export;
 mod files;
 mod form;
 mod freecad;
@@ -39,15 +42,14 @@ mod tests;
 pub use entry::{Entry, Note, Skipped};
 pub use error::ImportError;
 pub use files::ToolFile;
-pub(crate) use term::rounded;
 
-use crate::tool::Interpreted;
 use entry::reason;
 use files::Writer;
 use serde_json::Value;
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use touchoff::tool::Interpreted;
 
 /// The largest file that is read, and the largest text that an archive may hold, in bytes.
 const MAX_BYTES: u64 = 64 << 20;

@@ -2,8 +2,8 @@
 
 use super::shape::{Cutter, Shape, ShapeError};
 use super::term::decimal;
-use crate::unit::Unit;
 use std::fmt;
+use touchoff::Unit;
 
 /// A tool of a library.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use super::entry::{Entry, Holder, Note, Section};
 use super::fusion::tool_number;
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
-use crate::unit::Unit;
 use serde_json::{Map, Value};
 use std::path::{Component, Path, PathBuf};
+use touchoff::Unit;
 
 type Object = Map<String, Value>;
 

@@ -66,5 +66,5 @@ pub enum ImportError {
     },
     /// The tool does not compile.
     #[error(transparent)]
-    Tool(#[from] crate::tool::ToolError),
+    Tool(#[from] touchoff::tool::ToolError),
 }

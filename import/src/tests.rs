@@ -1,8 +1,8 @@
 //! Imported tools against closed forms, and files that are no libraries.
 
 use super::{Entry, ImportError, Library, Note};
-use crate::tool::{Interpreted, Tool};
 use serde_json::{Value, json};
+use touchoff::tool::{Interpreted, Tool};
 
 mod formats;
 mod segments;

@@ -3,9 +3,9 @@
 use super::cutter::{Type, recognise};
 use super::section::{Cone, HalfSection, tidy};
 use super::{Written, description, is_same};
-use crate::tool::{ProfileSegment, ToolInfo};
-use crate::unit::Unit;
 use serde_json::{Map, Value, json};
+use touchoff::Unit;
+use touchoff::tool::{ProfileSegment, ToolInfo};
 
 /// Returns the library's text.
 pub(super) fn text(tools: &[Value]) -> String {

@@ -7,8 +7,8 @@ use super::entry::{Entry, Note};
 use super::fusion::{number_of, text, tool_number};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use crate::unit::Unit;
 use serde_json::{Map, Value};
+use touchoff::Unit;
 
 type Object = Map<String, Value>;
 

@@ -1,6 +1,6 @@
 //! The types of cutters that libraries share, found in an outline.
 
-use crate::tool::{Circle, ProfileSegment};
+use touchoff::tool::{Circle, ProfileSegment};
 
 /// A cutting part as its type and its dimensions, in the tool's unit; angles in degrees.
 #[derive(Clone, Copy, Debug)]

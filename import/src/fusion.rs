@@ -7,8 +7,8 @@
 use super::entry::{Entry, Holder, Note, Section};
 use super::shape::{Crest, Cutter, Shape, ShapeError};
 use super::{Found, Problem, form};
-use crate::unit::Unit;
 use serde_json::{Map, Value};
+use touchoff::Unit;
 
 type Object = Map<String, Value>;
 

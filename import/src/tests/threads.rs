@@ -1,9 +1,9 @@
 //! Thread mills with flat and round crests against closed forms.
 
 use super::{assert_corners, fusion, library, loaded};
-use crate::import::{Library, Note};
-use crate::tool::{Circle, ProfileSegment, Tool};
+use crate::{Library, Note};
 use serde_json::{Value, json};
+use touchoff::tool::{Circle, ProfileSegment, Tool};
 
 /// Returns a thread mill of 10 mm, its teeth a pitch of 2 apart, with these dimensions besides.
 fn mill(more: &Value) -> Value {

@@ -3,8 +3,8 @@
 use super::cutter::{Type, recognise};
 use super::section::{HalfSection, tidy};
 use super::{Written, description, is_same};
-use crate::tool::ToolInfo;
 use serde_json::{Map, json};
+use touchoff::tool::ToolInfo;
 
 /// Writes a tool as one of FreeCAD's shapes.
 pub(super) fn write(

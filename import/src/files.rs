@@ -5,11 +5,11 @@ use super::name::{Names, quotable, type_name};
 use super::outline::{Outline, plain};
 use super::shape::{Cutter, ShapeError};
 use super::term::{Term, decimal, rounded};
-use crate::unit::Unit;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use tool_dsl::format::format;
 use tool_dsl::source::Source;
+use touchoff::Unit;
 
 /// A file of an imported tool.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! The half section of a tool, divided into the parts that libraries know: cutter, shaft and holder.
 
-use crate::import::rounded;
-use crate::tool::{Circle, ProfileSegment, ToolInfo};
-use crate::unit::Unit;
+use crate::term::rounded;
+use touchoff::Unit;
+use touchoff::tool::{Circle, ProfileSegment, ToolInfo};
 
 /// Lengths nearer than this part of the size are the same.
 const SAME: f64 = 1e-9;

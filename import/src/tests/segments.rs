@@ -1,9 +1,9 @@
 //! Circle-segment mills against closed forms.
 
 use super::{fusion, library, loaded};
-use crate::import::Note;
-use crate::tool::{Interpreted, ProfileSegment, Tool};
+use crate::Note;
 use serde_json::{Value, json};
+use touchoff::tool::{Interpreted, ProfileSegment, Tool};
 
 /// Returns a mill of 12 mm with flutes of 20 mm and these dimensions besides.
 fn mill(kind: &str, more: &Value) -> Value {

@@ -11,8 +11,8 @@
 use super::entry::{Entry, Note};
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem};
-use crate::unit::Unit;
 use std::collections::HashSet;
+use touchoff::Unit;
 
 /// The fields of `CUTTER`, `TLDATA/MILL` and `TLDATA/DRILL,MILL`.
 const CUTTER: [&str; 7] = [

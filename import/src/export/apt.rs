@@ -3,8 +3,8 @@
 use super::cutter::{Type, recognise};
 use super::section::{HalfSection, tidy};
 use super::{Written, description, is_same};
-use crate::tool::ToolInfo;
-use crate::unit::Unit;
+use touchoff::Unit;
+use touchoff::tool::ToolInfo;
 
 /// Returns the program.
 pub(super) fn text(statements: &[String]) -> String {
