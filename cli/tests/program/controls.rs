@@ -307,7 +307,7 @@ fn a_feed_needs_a_spindle_that_turns_the_right_way() {
         scene.gives(&LINUXCNC, status, &[words]);
     };
     given("S900 M3", 0, "");
-    given("S900 M13", 0, "");
+    given("S900 M13", 2, "a brake of a rotary axis on Haas");
     given("S900 M3\nM5", 1, "feeds with the spindle off");
     given("M3", 1, "no speed of the spindle");
     given("S0 M3", 1, "feeds with the spindle off");
@@ -617,6 +617,24 @@ fn g98_returns_to_the_initial_level_wherever_it_is() {
     lower.gives(&LINUXCNC, 1, &["the clamp"]);
 }
 
+/// LinuxCNC moves on a straight line to the next hole of a series and to a level that is higher, others sideways first.
+#[test]
+fn a_series_of_cycles_rises_on_the_way_or_after_it() {
+    let blocks = "G0 X-10. Y0. Z20.\nG99 G81 X-10. Y0. Z0.5 R2.\nG98 X10.\nG80\nG1 X11.";
+    let scene =
+        Scene::new(blocks).obstacle([4.0, -3.0, 0.5], [9.0, 3.0, 4.0]).with("anyway = true");
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&HAAS, 1, &["the clamp"]);
+    scene.gives(&[], 1, &["the clamp", "under cycle_below_r = \"sideways first\""]);
+}
+
+/// A change to the tool in the spindle may leave Z where it is.
+#[test]
+fn a_change_to_the_same_tool_may_not_retract() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nT1 M6\nS9000 M3\nG0 X6.";
+    Scene::new(blocks).placed().gives(&HAAS, 2, &["`tool_change`"]);
+}
+
 #[test]
 fn g43_without_h_takes_the_tool_or_the_last_h() {
     let text =
@@ -732,6 +750,8 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
         // Fanuc moves in rapid traverse, and by a dog-leg.
         ("G53 Z0.", "G53 while G1 is in force differs between controls: write G0 in the block"),
         ("G0 Z20.\nT2\nT3 M6", "another tool is staged"),
+        ("G0 Z20.\nT1 M6 X5.", "M6 while its block has axis words"),
+        ("M98 P7 G0 Z20.\nM30\nO7\nM99", "M98 while its block has other words"),
         // Rigid tapping leaves the spindle standing.
         ("G0 Z20.\nG84 X4. Z1. R2.\nG80\nG1 X5.", "write M3 after G80"),
     ] {

@@ -254,6 +254,12 @@ impl Block {
         letters.chars().any(|letter| self.has(letter) && value(letter) != 0.0)
     }
 
+    /// Returns whether the block has words that are no part of a call of a subprogram by M98.
+    pub(super) fn has_more_than_call(&self) -> bool {
+        let call = 1 << (b'P' - b'A') | 1 << (b'L' - b'A');
+        self.unused & !call != 0 || !self.passed_over.is_empty() || self.keyword.is_some()
+    }
+
     /// Returns whether the block moves, or changes what motions do.
     pub(super) fn has_effect(&self) -> bool {
         self.codes.iter().any(Option::is_some) || self.keyword.is_some() || self.has_any("XYZABC")

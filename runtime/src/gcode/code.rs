@@ -106,9 +106,9 @@ fn m_group(code: Code) -> Result<Group, GcodeFault> {
         4280 | 4290 => Group::Kinematics,
         // Spindle and coolant, orientation of the spindle, rigid tapping, overrides.
         30 | 40 | 50 | 70 | 80 | 90 | 190 | 290 | 480 | 490 => Group::PassedOver,
-        // Clamps of rotary axes, spindle with coolant, chip conveyor, gears, LinuxCNC's overrides and outputs, coolant
+        // Clamps of rotary axes, chip conveyor, gears, LinuxCNC's overrides and outputs, coolant
         // through the spindle, air jets.
-        100 | 110 | 120 | 130 | 140 | 310 | 330 | 410 | 420 | 430 | 440 => Group::PassedOver,
+        100 | 110 | 120 | 310 | 330 | 410 | 420 | 430 | 440 => Group::PassedOver,
         510 | 520 | 530 | 620 | 630 | 640 | 650 | 670 | 680 => Group::PassedOver,
         830 | 840 | 880 | 890 => Group::PassedOver,
         tenths => return Err(refused_m(code, tenths)),
@@ -150,6 +150,10 @@ fn refused_m(code: Code, tenths: u32) -> GcodeFault {
         1280 | 1290 => {
             ("tool centre point control of Heidenhain", "write G43.4 H, and G49 to end it")
         }
+        130 | 140 => (
+            "the spindle with coolant, or a brake of a rotary axis on Haas",
+            "write M3 or M4, and M8",
+        ),
         170 => ("a return of Sinumerik", "write M99"),
         500 => (
             "a pallet change on Haas, and a switch of the override on LinuxCNC",

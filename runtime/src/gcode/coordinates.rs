@@ -45,6 +45,13 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
+        if has_change && block.has_any("XYZABC") {
+            return Err(GcodeFault::Combination {
+                word: "M6".to_owned(),
+                condition: "its block has axis words",
+                remedy: "write them in a block before or after",
+            });
+        }
         if has_change
             && let (Some(before), Some(tool)) = (before, self.staged)
             && before != tool
@@ -71,7 +78,7 @@ impl Control {
     fn change_tool(&mut self, tool: u32) {
         self.notes.add(self.line, Subject::ToolChange);
         self.stop_spindle();
-        self.leave_for_change();
+        self.leave_for_change(self.state.tool == Some(tool));
         self.length_cancelled = false;
         self.change(|state| state.tool = Some(tool));
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
@@ -108,12 +115,13 @@ impl Control {
         self.change(|state| state.length = length);
     }
 
-    /// Moves the axes as a tool change does.
-    fn leave_for_change(&mut self) {
+    /// Moves the axes as a tool change does. A change to the tool in the spindle may leave them.
+    fn leave_for_change(&mut self, is_same: bool) {
         let stated = self.change_position;
         let (moved, target) = match stated {
             Some(target) => (target.map(|value| value.is_some()), target),
             None => match self.choice(Rule::ToolChange) {
+                Choice::Retracts if is_same => (self.axes, [None; 6]),
                 Choice::Retracts => {
                     let height = self.home.map(|home| home[2]);
                     let z_alone = [false, false, true, false, false, false];

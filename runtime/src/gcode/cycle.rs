@@ -76,7 +76,7 @@ impl Control {
             self.move_along(normal, true, levels.retract);
         }
         for _ in 0..repeats {
-            self.move_over(axes);
+            self.move_over(axes, levels.clear);
             if self.position[normal] != levels.retract || levels.retract.is_none() {
                 self.move_along(normal, true, levels.retract);
             }
@@ -184,10 +184,19 @@ impl Control {
         Ok(Levels { retract, depth, clear })
     }
 
-    /// Moves over the next hole, at the present level.
-    fn move_over(&mut self, axes: Position) {
+    /// Moves over the next hole, at the present level. In a series, LinuxCNC moves straight to a level that is higher
+    /// (`CYCLE_MACRO` of its interpreter).
+    fn move_over(&mut self, axes: Position, clear: Option<f64>) {
+        let normal = self.modal.plane.normal();
         let mut end = self.position;
         let mut commanded = [false; 6];
+        if self.cycle.is_some()
+            && is_below(end[normal], clear)
+            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
+        {
+            end[normal] = clear;
+            commanded[normal] = true;
+        }
         for axis in self.modal.plane.axes() {
             if let Some(value) = axes[axis] {
                 let origin = if self.modal.incremental { end[axis] } else { Some(0.0) };

@@ -153,6 +153,15 @@ impl<'a> Interpreter<'a> {
             return Ok(());
         }
         self.flow.start();
+        let is_call = block.code_of(Group::Subprogram).is_some_and(|code| code.tenths == 980);
+        if is_call && (block.codes().nth(1).is_some() || block.has_more_than_call()) {
+            // LinuxCNC reads P and L, and executes no other word of the block.
+            return Err(GcodeFault::Combination {
+                word: "M98".to_owned(),
+                condition: "its block has other words",
+                remedy: "write them in a block before",
+            });
+        }
         self.control.execute(line, block)?;
         self.flow.count(self.control.pending.len())?;
         let subprogram = block.code_of(Group::Subprogram);

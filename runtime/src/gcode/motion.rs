@@ -430,6 +430,9 @@ impl Control {
         } else {
             named = self.axes;
         }
+        if self.state.origin_rotation != 0.0 && named[0] != named[1] {
+            return refused("the work offset is rotated", "name X and Y, or neither");
+        }
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, StepPath::Line);

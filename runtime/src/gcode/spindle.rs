@@ -47,8 +47,8 @@ impl Control {
         }
         for code in &block.passed_over {
             let turn = match (code.letter, code.tenths) {
-                ('M', 30 | 130) => Spindle::Clockwise,
-                ('M', 40 | 140) => Spindle::CounterClockwise,
+                ('M', 30) => Spindle::Clockwise,
+                ('M', 40) => Spindle::CounterClockwise,
                 ('M', 50 | 190) => Spindle::Stopped,
                 _ => continue,
             };

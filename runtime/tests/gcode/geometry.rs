@@ -187,7 +187,7 @@ fn canned_cycles_stop_at_their_levels() {
         (20.0, fast),
     ];
     assert_eq!(levels("G98 G83 X1 Z-5 R2 Q3"), pecks);
-    // A series keeps R and the depth, and its initial level under G98.
+    // A series keeps R and the depth, and its initial level under G98, to which it rises on the way.
     let series = levels("G99 G81 X1 Z-5 R2\nX2\nG98 X3\nG80\nG0 Z7");
     let expected = [
         (20.0, fast),
@@ -197,6 +197,7 @@ fn canned_cycles_stop_at_their_levels() {
         (2.0, fast),
         (-5.0, slow),
         (2.0, fast),
+        (20.0, fast),
         (2.0, fast),
         (-5.0, slow),
         (20.0, fast),

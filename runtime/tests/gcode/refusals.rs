@@ -284,6 +284,7 @@ fn words_that_are_not_read_are_named() {
         ("G92 X1\nG52 X0", 2, "G92 is in force"),
         ("G10 L20 P1 X0", 1, "L20 is not understood"),
         ("M98 P7", 1, "there is no O7"),
+        ("G10 L2 P1 X0 Y0 Z0 R30\nG0 X1\nG28 X0", 3, "the work offset is rotated"),
         ("M99", 1, "M99 ends no subprogram"),
         ("G0 X1\nO7\nM99", 2, "runs into O7"),
         ("M98 P7\nM30\nO7\nM98 P7\nM99", 4, "more than 10 deep"),
