@@ -61,17 +61,12 @@ impl Scene {
         touchoff(&[&["verify", &file][..], more].concat())
     }
 
-    /// Writes the control of a Sinumerik that reads native programs, and returns the option that names it.
-    fn native(&self) -> [String; 2] {
-        let siemens = ControlRules::named("siemens").expect("a control");
-        let native = siemens.with(Rule::ToolLength, Choice::Always).to_toml();
-        ["--control".to_owned(), self.bench.write("native.toml", native)]
-    }
-
     /// As [`Scene::gives`], on a Sinumerik that reads native programs.
     fn gives_natively(&self, status: i32, words: &[&str]) {
-        let [option, control] = self.native();
-        self.gives(&[&option, &control], status, words);
+        let siemens = ControlRules::named("siemens").expect("a control");
+        let native = siemens.with(Rule::ToolLength, Choice::Always).to_toml();
+        let control = self.bench.write("native.toml", native);
+        self.gives(&["--control", &control], status, words);
     }
 
     /// Asserts the status and words of the output with more options.

@@ -254,10 +254,13 @@ impl Block {
         letters.chars().any(|letter| self.has(letter) && value(letter) != 0.0)
     }
 
-    /// Returns whether the block has words that are no part of a call of a subprogram by M98.
+    /// Returns whether a block with M98 has words that are no part of the call.
     pub(super) fn has_more_than_call(&self) -> bool {
         let call = 1 << (b'P' - b'A') | 1 << (b'L' - b'A');
-        self.unused & !call != 0 || !self.passed_over.is_empty() || self.keyword.is_some()
+        self.unused & !call != 0
+            || self.codes().nth(1).is_some()
+            || !self.passed_over.is_empty()
+            || self.keyword.is_some()
     }
 
     /// Returns whether the block moves, or changes what motions do.

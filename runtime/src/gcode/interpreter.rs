@@ -153,8 +153,8 @@ impl<'a> Interpreter<'a> {
             return Ok(());
         }
         self.flow.start();
-        let is_call = block.code_of(Group::Subprogram).is_some_and(|code| code.tenths == 980);
-        if is_call && (block.codes().nth(1).is_some() || block.has_more_than_call()) {
+        let subprogram = block.code_of(Group::Subprogram);
+        if matches!(subprogram, Some(Code { tenths: 980, .. })) && block.has_more_than_call() {
             // LinuxCNC reads P and L, and executes no other word of the block.
             return Err(GcodeFault::Combination {
                 word: "M98".to_owned(),
@@ -164,7 +164,6 @@ impl<'a> Interpreter<'a> {
         }
         self.control.execute(line, block)?;
         self.flow.count(self.control.pending.len())?;
-        let subprogram = block.code_of(Group::Subprogram);
         let call = match subprogram {
             Some(Code { tenths: 980, .. }) => Some(self.called(block)?),
             _ => None,
@@ -414,13 +413,11 @@ const READ_AHEAD: Code = Code { letter: 'G', tenths: 1030 };
 /// Takes the words of a path mode.
 fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
     let switch = match code.tenths {
-        640 => {
+        640 | 1870 => {
             block.take('P');
-            block.take('Q');
-            return Ok(());
-        }
-        1870 => {
-            block.take('P');
+            if code.tenths == 640 {
+                block.take('Q');
+            }
             return Ok(());
         }
         610 | 611 => return Ok(()),

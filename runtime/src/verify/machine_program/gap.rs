@@ -106,13 +106,12 @@ impl MachineSummary {
                           control";
             add(*line, true, reason.to_owned());
         }
-        let not_stated = self.spindle.iter().find(|(.., spindle)| *spindle == Spindle::NotStated);
-        if let (Some((line, ..)), false) = (not_stated, self.states_spindle()) {
+        let first_feed = |turn: Spindle| self.spindle.iter().find(|(.., spindle)| *spindle == turn);
+        if let (Some((line, ..)), false) = (first_feed(Spindle::NotStated), self.states_spindle()) {
             let reason = "the program feeds and never starts the spindle: write M3 with S before";
             add(*line, true, reason.to_owned());
         }
-        let after_tap = self.spindle.iter().find(|(.., turn)| *turn == Spindle::AfterTapping);
-        if let Some((line, ..)) = after_tap {
+        if let Some((line, ..)) = first_feed(Spindle::AfterTapping) {
             let reason = "a tapping cycle before a feed leaves the spindle standing or turning, by the control: write M3 after G80";
             add(*line, true, reason.to_owned());
         }
