@@ -177,6 +177,18 @@ fn numbers_without_a_point_are_units_or_increments() {
     scene.gives(&FANUC, 1, &["the clamp"]);
 }
 
+/// A Haas may read a whole number after R or Q as units, where those of axes are increments.
+#[test]
+fn a_whole_number_after_r_is_either_on_haas() {
+    let blocks = "G0 X-6. Y0. Z20.\nG68 X0. Y0. R90\nX12. Z1.\nG1 X10.\nG69";
+    let scene = Scene::new(blocks).obstacle([-8.0, 8.0, -1.0], [-4.0, 15.0, 9.0]);
+    let scene = scene.with("anyway = true");
+    scene.gives(&HAAS, 1, &["the clamp", "under whole_radii = \"units\""]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    scene.gives(&FANUC, 0, &[]);
+    scene.gives(&[], 1, &["the clamp"]);
+}
+
 #[test]
 fn text_after_a_semicolon_is_a_comment_or_a_block() {
     let blocks =
@@ -317,6 +329,12 @@ fn a_feed_needs_a_spindle_that_turns_the_right_way() {
     stop.gives(&LINUXCNC, 0, &[]);
     stop.gives(&HAAS, 1, &["feeds with the spindle off"]);
     stop.gives(&[], 1, &["feeds with the spindle off", "under stop = \"stops spindle\""]);
+    let heidenhain = Scene::of(&format!("G71 G90\nS900 M3\nM0\n{feed}"));
+    let heidenhain_words = ["feeds with the spindle off"];
+    heidenhain.gives(&["--control", "heidenhain"], 1, &heidenhain_words);
+    // M6 stops the spindle without a change of the tool, too.
+    let change = Scene::of(&format!("G71 G90\nT1\nS900 M3\nM6\n{feed}"));
+    change.gives(&["--control", "heidenhain"], 1, &heidenhain_words);
     let order =
         Scene::of(&format!("G21 G90 G54\nG0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nS900 M3\n{feed}"));
     order.gives(&LINUXCNC, 1, &["feeds with the spindle off"]);
@@ -456,7 +474,8 @@ fn controls_and_machines_are_listed() {
         let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
         let open = match row["name"].as_str() {
             Some("fanuc") => 2,
-            Some("haas" | "siemens") => 1,
+            Some("haas") => 2,
+            Some("siemens") => 1,
             _ => 0,
         };
         assert_eq!(stated, keys - open, "{row}");
@@ -514,7 +533,7 @@ fn words_of_heidenhain_are_not_read_as_those_of_others() {
     // I and J are the pole: an arc about the origin.
     let arc = Scene::of("G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z1.\nG2 X6. Y0. I0. J0.\nM30\n");
     arc.gives(&heidenhain, 0, &[]);
-    arc.gives(&LINUXCNC, 2, &["the arc has the radius zero"]);
+    arc.gives(&LINUXCNC, 2, &["G71 is a unit in programs of Sinumerik"]);
 }
 
 /// The path is that of each axis, or the straight line, where the machine's file has rates.
@@ -758,7 +777,7 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
     let text = "G21 G90 G59 S9000 M3 F100.\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nM30\n";
     let mut shift = Scene::of(text).placed();
     shift.job += "G59 = [1, 0, -400]\n";
-    shift.gives(&[], 2, &["shifts on native Sinumerik: state `start_offset`"]);
+    shift.gives(&[], 2, &["shifts on native Sinumerik: state `dialect`"]);
     shift.gives(&SIEMENS, 2, &["G59 is a shift in native programs of Sinumerik"]);
     // Words that move nothing, and the end of a block of Heidenhain.
     Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n")).gives(&LINUXCNC, 0, &[]);

@@ -234,9 +234,10 @@ impl Block {
         letters.chars().any(|letter| self.has(letter))
     }
 
-    /// Returns whether a coordinate that no word has used has no decimal point.
-    pub(super) fn has_whole(&self) -> bool {
-        self.whole & self.unused != 0
+    /// Returns whether one of the letters, which no word has used, has no decimal point.
+    pub(super) fn has_whole(&self, letters: &str) -> bool {
+        let is_whole = |letter: char| self.whole & (1 << (letter as u8 - b'A')) != 0;
+        letters.chars().any(|letter| self.has(letter) && is_whole(letter))
     }
 
     /// Multiplies the coordinates without a decimal point by a factor of their letter.
@@ -261,6 +262,16 @@ impl Block {
             || self.codes().nth(1).is_some()
             || !self.passed_over.is_empty()
             || self.keyword.is_some()
+    }
+
+    /// Returns whether a word of the block can name axes without moving them, or by a path of its own. What it leaves of the axis
+    /// words moves on some controls.
+    pub(super) fn owns_axis_words(&self) -> bool {
+        let names_axes = |code: &Code| matches!(code.tenths, 150 | 230 | 500 | 501 | 670);
+        let owners = [Group::OneShot, Group::Machine, Group::Dwell];
+        owners.into_iter().any(|group| self.code_of(group).is_some())
+            || self.code_of(Group::Rotation).is_some_and(|code| code.tenths != 690)
+            || self.passed_over.iter().any(|code| code.letter == 'G' && names_axes(code))
     }
 
     /// Returns whether the block moves, or changes what motions do.

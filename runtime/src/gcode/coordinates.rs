@@ -45,9 +45,9 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
-        if has_change && block.has_any("XYZABC") {
+        if (has_change || changes) && block.has_any("XYZABC") {
             return Err(GcodeFault::Combination {
-                word: "M6".to_owned(),
+                word: if has_change { "M6" } else { "T" }.to_owned(),
                 condition: "its block has axis words",
                 remedy: "write them in a block before or after",
             });
@@ -62,6 +62,9 @@ impl Control {
                 condition: "another tool is staged",
                 remedy: "write T in a block before M6",
             });
+        }
+        if has_change {
+            self.stop_spindle();
         }
         match self.staged {
             Some(tool) if changes => self.change_tool(tool),
@@ -347,11 +350,11 @@ impl Control {
             tenths => WorkOffset::Standard((tenths - 590 + 6) as u8),
         };
         if matches!(code.tenths, 580 | 590) {
-            match self.stated(Rule::StartOffset) {
+            match self.stated(Rule::Dialect) {
                 None => self.notes.add(self.line, Subject::OffsetOrShift),
-                Some(Choice::NoOffset) => {
+                Some(Choice::Sinumerik) => {
                     let meaning = "a shift in native programs of Sinumerik";
-                    let remedy = "write G54 to G57, or state `start_offset` of the control";
+                    let remedy = "write G54 to G57, or state `dialect = \"iso\"` of the control";
                     return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
                 }
                 Some(_) => {}
@@ -412,6 +415,11 @@ impl Control {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         let turn = block.take('R');
+        if turn.is_some() && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            let meaning = "a rotation of the work offset on LinuxCNC alone";
+            let remedy = "write G68, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(GcodeFault::NotRead { word: "R of G10".to_owned(), meaning, remedy });
+        }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
         let (origin, rotation) = self.origins.entry(offset).or_insert(([None; 6], 0.0));

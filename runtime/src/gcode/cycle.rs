@@ -13,7 +13,7 @@ use super::block::Block;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{ControlState, Position, Tcp};
-use super::{GcodeFault, MAX_CYCLE_STEPS, StepPath};
+use super::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
 use crate::unit::Unit;
 use std::sync::Arc;
 
@@ -53,6 +53,13 @@ impl Control {
     ) -> Result<(), GcodeFault> {
         let word = format!("G{number}");
         self.check_cycle(block, &word)?;
+        if self.modal.plane != Plane::Xy && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
+                remedy: "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
+            });
+        }
         self.check_feed(&word)?;
         self.check_tilted(block)?;
         let normal = self.modal.plane.normal();

@@ -129,16 +129,6 @@ pub enum GcodeFault {
         /// The word's letter.
         word: char,
     },
-    /// A letter that two words of the block would use.
-    #[error("{word} could belong to {first} or to {second}: write them in two blocks")]
-    Ambiguous {
-        /// The letter.
-        word: char,
-        /// The one.
-        first: String,
-        /// The other.
-        second: String,
-    },
     /// A G or M word without a word that it needs.
     #[error("{word} needs {needed}: add it to the block")]
     Missing {

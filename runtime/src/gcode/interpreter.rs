@@ -154,20 +154,21 @@ impl<'a> Interpreter<'a> {
         }
         self.flow.start();
         let subprogram = block.code_of(Group::Subprogram);
-        if matches!(subprogram, Some(Code { tenths: 980, .. })) && block.has_more_than_call() {
+        let is_call = matches!(subprogram, Some(Code { tenths: 980, .. }));
+        if let Some(code) = subprogram
+            && block.has_more_than_call()
+            && (is_call || self.control.stated(Rule::Dialect) != Some(Choice::Iso))
+        {
             // LinuxCNC reads P and L, and executes no other word of the block.
             return Err(GcodeFault::Combination {
-                word: "M98".to_owned(),
+                word: code.to_string(),
                 condition: "its block has other words",
                 remedy: "write them in a block before",
             });
         }
         self.control.execute(line, block)?;
         self.flow.count(self.control.pending.len())?;
-        let call = match subprogram {
-            Some(Code { tenths: 980, .. }) => Some(self.called(block)?),
-            _ => None,
-        };
+        let call = if is_call { Some(self.called(block)?) } else { None };
         block.check_used()?;
         match (call, subprogram) {
             (Some((label, times)), _) => {
@@ -270,9 +271,16 @@ impl Control {
         check_axis_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
-        self.spindle_words(block);
         dwell(block)?;
+        let turned = self.spindle_words(block);
         self.motion_mode(block);
+        if let Some(word) = turned.filter(|_| is_programmed(block) && self.modal.is_feed()) {
+            return Err(GcodeFault::Combination {
+                word: word.to_string(),
+                condition: "its block has a motion at feed rate",
+                remedy: "write it in a block before or after",
+            });
+        }
         self.settings(block)?;
         self.numbers(block);
         self.coordinates(block)?;
@@ -292,6 +300,14 @@ impl Control {
 
     /// Refuses words that mean something else in the dialect of the control.
     fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        if let (Some(Choice::Iso | Choice::Rs274Ngc), Some(code)) =
+            (self.stated(Rule::Dialect), block.code_of(Group::Units))
+            && code.tenths > 210
+        {
+            let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
+            let remedy = "write G20 or G21";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
         let other = block.codes().find(|code| is_other_word(*code));
         match other {
             Some(code) if self.choice(Rule::Dialect) == Choice::Heidenhain => {
@@ -311,10 +327,13 @@ impl Control {
                 _ => Unit::Millimetre,
             };
         }
-        if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
+        if block.has_whole("XYZABCIJKRQ") && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
+            let keeps_radii =
+                block.has_whole("RQ") && self.choice(Rule::WholeRadii) == Choice::Units;
             block.scale_whole(|letter| match letter {
+                'R' | 'Q' if keeps_radii => 1.0,
                 'A' | 'B' | 'C' => 1e-3,
                 // The number of repeats of a cycle.
                 'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
@@ -435,17 +454,21 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
     }
 }
 
-/// Reads G4, and the word with its time.
+/// Takes the word with the time of G4: P or X, or F, which is no feed rate then.
 fn dwell(block: &mut Block) -> Result<(), GcodeFault> {
-    let Some(code) = block.code_of(Group::Dwell) else { return Ok(()) };
-    if block.take('P').is_some() || !block.has('X') {
+    if block.code_of(Group::Dwell).is_none() {
         return Ok(());
     }
-    if block.has_any("YZABC") || block.code_of(Group::Motion).is_some() {
-        let (first, second) = (code.to_string(), "a motion".to_owned());
-        return Err(GcodeFault::Ambiguous { word: 'X', first, second });
+    if block.has('S') {
+        return Err(GcodeFault::Combination {
+            word: "S".to_owned(),
+            condition: "its block has G4, of which it is the time in turns of the spindle",
+            remedy: "write it in a block before",
+        });
     }
-    block.take('X');
+    if block.take('P').is_none() && block.code_of(Group::Motion).is_none() {
+        block.take('X');
+    }
     Ok(())
 }
 

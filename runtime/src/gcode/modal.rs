@@ -70,6 +70,11 @@ impl Modal {
         }
     }
 
+    /// Returns whether axis words move at feed rate, at last.
+    pub(super) fn is_feed(&self) -> bool {
+        !matches!(self.motion, None | Some(Motion::Rapid))
+    }
+
     /// Returns the least increment of a length, in the unit of the program.
     pub(super) fn increment(&self) -> f64 {
         if self.unit == Unit::Inch { 1e-4 } else { 1e-3 }

@@ -175,6 +175,9 @@ impl Control {
         if block.code_of(Group::Machine).is_some() {
             return self.machine_coordinates(block);
         }
+        if block.owns_axis_words() {
+            return Ok(());
+        }
         let has_vector = self.state.tcp == Tcp::Vector && block.has_any("IJK");
         let has_axes = block.has_any("XYZABC") || has_vector;
         match self.modal.motion {

@@ -63,7 +63,7 @@ impl fmt::Display for NoteKind {
                 "the control may round corners without G61, by a tolerance of its own: its path is checked as programmed",
             ),
             NoteKind::OffsetOrShift => f.write_str(
-                "G58 and G59 are work offsets, but shifts on native Sinumerik: state `start_offset` of the control",
+                "G58 and G59 are work offsets, but shifts on native Sinumerik: state `dialect` of the control",
             ),
             NoteKind::ToolChange => f.write_str("the motion of the tool change is not checked"),
             NoteKind::Stop => f.write_str("motions by hand during the stop are not checked"),

@@ -48,6 +48,8 @@ pub enum Rule {
     LengthChange,
     /// The word for the repeats of a canned cycle.
     CycleRepeats,
+    /// Numbers after R and Q without a decimal point, where those of axes are increments.
+    WholeRadii,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -86,6 +88,8 @@ pub enum Choice {
     FirstOffset,
     NoOffset,
     Iso,
+    Rs274Ngc,
+    Sinumerik,
     Heidenhain,
     OfTool,
     LastH,
@@ -108,7 +112,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 19] = [
+const RULES: [Entry; 20] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -233,7 +237,17 @@ const RULES: [Entry; 19] = [
         key: "dialect",
         about: "words",
         choices: &[
-            (Choice::Iso, "iso", "mean what they mean on Fanuc, Haas and LinuxCNC"),
+            (Choice::Iso, "iso", "mean what they mean on Fanuc and Haas"),
+            (
+                Choice::Rs274Ngc,
+                "rs274ngc",
+                "mean what they mean on LinuxCNC: R of G10 L2 rotates a work offset, and cycles are along the normal of the plane",
+            ),
+            (
+                Choice::Sinumerik,
+                "sinumerik",
+                "mean what they mean in native programs of Sinumerik: G58 and G59 are shifts, and G70 and G71 select the unit",
+            ),
             (
                 Choice::Heidenhain,
                 "heidenhain",
@@ -283,6 +297,15 @@ const RULES: [Entry; 19] = [
         ],
     },
     Entry {
+        rule: Rule::WholeRadii,
+        key: "whole_radii",
+        about: "a number after R or Q without a decimal point, where those of axes are increments",
+        choices: &[
+            (Choice::Increments, "increments", "R5 is 0.005 mm or degrees, or 0.0005 inch"),
+            (Choice::Units, "units", "R5 is 5 mm, inches or degrees"),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -295,7 +318,7 @@ const RULES: [Entry; 19] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 18]); 5] = {
+const CONTROLS: [(&str, [Choice; 19]); 5] = {
     use Choice::*;
     [
         (
@@ -319,6 +342,7 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 KeepsPreset,
                 MovesZ,
                 RepeatsByK,
+                Increments,
             ],
         ),
         (
@@ -342,6 +366,7 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 KeepsPreset,
                 MovesZ,
                 RepeatsByL,
+                Units,
             ],
         ),
         (
@@ -360,11 +385,12 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 PlaneR,
                 WithoutLength,
                 FirstOffset,
-                Iso,
+                Rs274Ngc,
                 OfTool,
                 EndsPreset,
                 WithNextZ,
                 RepeatsByL,
+                Units,
             ],
         ),
         (
@@ -383,11 +409,12 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 InitialLevel,
                 WithLength,
                 NoOffset,
-                Iso,
+                Sinumerik,
                 OfTool,
                 EndsPreset,
                 WithNextZ,
                 RepeatsByK,
+                Units,
             ],
         ),
         (
@@ -402,7 +429,7 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 Millimetre,
                 KeepsLength,
                 Always,
-                KeepsSpindle,
+                StopsSpindle,
                 InitialLevel,
                 WithoutLength,
                 FirstOffset,
@@ -411,16 +438,19 @@ const CONTROLS: [(&str, [Choice; 18]); 5] = {
                 EndsPreset,
                 WithNextZ,
                 RepeatsByL,
+                Units,
             ],
         ),
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 4] = [
+const OPEN: [(&str, Rule); 5] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     ("haas", Rule::LengthChange),
+    // Setting 162 does not list R and Q.
+    ("haas", Rule::WholeRadii),
     // Native programs have no G43, and those in ISO mode need it.
     ("siemens", Rule::ToolLength),
 ];

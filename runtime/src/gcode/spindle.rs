@@ -1,6 +1,7 @@
 //! The spindle.
 
 use super::block::Block;
+use super::code::Code;
 use super::motion::Control;
 use super::rules::{Choice, Rule};
 
@@ -40,8 +41,10 @@ impl SpindleWords {
 }
 
 impl Control {
-    /// Reads S and the words of the spindle.
-    pub(super) fn spindle_words(&mut self, block: &mut Block) {
+    /// Reads S and the words of the spindle, and returns the word that changes how it turns, if there is one.
+    pub(super) fn spindle_words(&mut self, block: &mut Block) -> Option<Code> {
+        let before = (self.spindle.turn, self.spindle.paused);
+        let mut last = None;
         if let Some(speed) = block.take('S') {
             self.spindle.speed = Some(speed);
         }
@@ -53,7 +56,9 @@ impl Control {
                 _ => continue,
             };
             (self.spindle.turn, self.spindle.paused) = (turn, false);
+            last = Some(*code);
         }
+        last.filter(|_| (self.spindle.turn, self.spindle.paused) != before)
     }
 
     /// Notes a stop of the program (M0, M1).

@@ -2,7 +2,9 @@
 
 use crate::common::{folder, text};
 use std::collections::BTreeMap;
-use touchoff::gcode::{ControlSetup, GcodeError, Interpreter, Plane, Step, StepPath, WorkOffset};
+use touchoff::gcode::{
+    ControlRules, ControlSetup, GcodeError, Interpreter, Plane, Step, StepPath, WorkOffset,
+};
 
 /// A motion of a file `expected`, lengths in millimetres.
 #[derive(Clone, Debug, Default)]
@@ -108,6 +110,7 @@ fn setup() -> ControlSetup {
         lengths: BTreeMap::new(),
         home: Some(zero),
         second_home: Some(zero),
+        rules: ControlRules::named("linuxcnc").expect("a control"),
         ..ControlSetup::default()
     }
 }

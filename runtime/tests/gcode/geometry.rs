@@ -13,6 +13,7 @@ fn at_zero() -> ControlSetup {
     ControlSetup {
         start: [Some(0.0); 6],
         work_offsets: [Some([0.0; 6]); 9],
+        rules: ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc),
         ..ControlSetup::default()
     }
 }

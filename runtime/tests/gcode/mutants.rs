@@ -94,7 +94,9 @@ fn setups() -> [ControlSetup; 2] {
     let rules =
         rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
     let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
-    [ControlSetup { rules, ..known }, ControlSetup::default()]
+    let rules = rules.with(Rule::Dialect, Choice::Rs274Ngc);
+    let unknown = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    [ControlSetup { rules, ..known }, ControlSetup { rules: unknown, ..ControlSetup::default() }]
 }
 
 #[test]

@@ -18,6 +18,12 @@ fn run(program: &str) -> Result<Vec<Step>, GcodeError> {
     Interpreter::new(program, &at_zero())?.collect()
 }
 
+/// Executes a program as LinuxCNC does.
+fn run_on_linuxcnc(program: &str) -> Result<Vec<Step>, GcodeError> {
+    let rules = ControlRules::named("linuxcnc").expect("a control");
+    Interpreter::new(program, &ControlSetup { rules, ..at_zero() })?.collect()
+}
+
 fn refusal(name: &str, program: &str) -> GcodeError {
     match run(program) {
         Ok(steps) => panic!("{name} is read, with {} motions", steps.len()),
@@ -111,7 +117,8 @@ fn subprograms_of_both_dialects() {
 #[test]
 fn machine_coordinates_do_not_depend_on_offsets() {
     let Some(folder) = folder() else { return };
-    let steps = run(&text(&folder.join("interp/rotation/test.ngc"))).expect("a program");
+    let program = text(&folder.join("interp/rotation/test.ngc"));
+    let steps = run_on_linuxcnc(&program).expect("a program");
     assert_eq!(steps.len(), 2 * 7 * 2);
     for (index, step) in steps.iter().enumerate() {
         let unit = if index < 14 { 25.4 } else { 1.0 };
@@ -284,7 +291,19 @@ fn words_that_are_not_read_are_named() {
         ("G92 X1\nG52 X0", 2, "G92 is in force"),
         ("G10 L20 P1 X0", 1, "L20 is not understood"),
         ("M98 P7", 1, "there is no O7"),
-        ("G10 L2 P1 X0 Y0 Z0 R30\nG0 X1\nG28 X0", 3, "the work offset is rotated"),
+        ("G10 L2 P1 X0 Y0 Z0 R30", 1, "a rotation of the work offset on LinuxCNC alone"),
+        ("G0 X1\nG50.1 X0 Y0", 2, "X is used by no"),
+        ("G0 X1\nG92.1 Y0", 2, "Y is used by no"),
+        ("G0 X1\nG53.1", 2, "a tilted plane"),
+        ("G0 X1\nG68 X0 Y0 Z5 R30", 2, "Z is used by no"),
+        ("G0 X1\nG4 X0 P500", 2, "X is used by no"),
+        ("G0 X1\nG4 P1 Z5", 2, "Z is used by no"),
+        ("G0 X1\nG4 Z5", 2, "Z is used by no"),
+        ("G4 S3", 1, "S while its block has G4"),
+        ("G1 X1 F1 M3 S1", 1, "M3 while its block has a motion at feed rate"),
+        ("M3 S1\nG1 X1 F1 M5", 2, "M5 while its block has a motion at feed rate"),
+        ("G18 G81 X1 Y-1 R1 F1", 1, "G81 while G18 or G19 is in force"),
+        ("M98 P7\nM30\nO7\nG0 X1 M99", 4, "M99 while its block has other words"),
         ("M99", 1, "M99 ends no subprogram"),
         ("G0 X1\nO7\nM99", 2, "runs into O7"),
         ("M98 P7\nM30\nO7\nM98 P7\nM99", 4, "more than 10 deep"),
@@ -300,12 +319,31 @@ fn words_that_are_not_read_are_named() {
         ("M98 P7 L99999999\nM30\nO7\nM99", 4, "more than 10000000 blocks and motions"),
         ("G93 G1 X1 F1\nX2", 2, "(G93)"),
         ("G5 X1 Y1 I1 J1 P1 Q1", 1, "G5 is a spline"),
-        ("G4 X1 Y2", 1, "X could belong to G4"),
+        ("G4 X1 Y2", 1, "Y is used by no"),
+        ("G0 G4 X1", 1, "X is used by no"),
     ] {
         let error = refusal(program, program);
         assert_eq!(error.line, line, "{program}: {error}");
         assert!(error.to_string().contains(message), "{program}\n{error}");
     }
+}
+
+/// What a program may say depends on the dialect that its control states.
+#[test]
+fn words_of_one_dialect() {
+    let turned = "G10 L2 P1 X0 Y0 Z0 R30\nG0 X1\nG28 X0\nM30";
+    let error = run_on_linuxcnc(turned).expect_err("a return");
+    assert!(error.to_string().contains("line 3: G28 while the work offset is rotated"), "{error}");
+    let cycle = run_on_linuxcnc("G18 G81 X1 Z1 Y-1 R1 F1\nM30").expect("a cycle along Y");
+    assert_eq!(cycle.last().and_then(|step| step.end[1]), Some(1.0));
+    let execute = |control: &str, program: &str| {
+        let rules = ControlRules::named(control).expect("a control");
+        read(program, &ControlSetup { rules, ..at_zero() }).map(|(steps, _)| steps.len())
+    };
+    let unit = execute("haas", "G70\nM30").expect_err("a bolt circle");
+    assert!(unit.to_string().contains("a unit in programs of Sinumerik"), "{unit}");
+    assert_eq!(execute("siemens", "G70\nM30"), Ok(0));
+    assert_eq!(execute("fanuc", "M98 P7\nM30\nO7\nG0 X1. M99"), Ok(1));
 }
 
 #[test]
