@@ -91,13 +91,13 @@ pub(crate) enum Failure {
     },
     /// The system has no such core.
     #[error(transparent)]
-    Core(#[from] touchoff::haptic::RealtimeError),
+    Core(#[from] touchoff_haptics::RealtimeError),
     /// A recording of the session is incomplete; the reason was reported when it happened.
     #[error("the recording is incomplete: make room on the disk, and run the session again")]
     RecordingFailed,
     /// A setting is out of range for the haptic loop.
     #[error(transparent)]
-    Setting(#[from] touchoff::haptic::SettingError),
+    Setting(#[from] touchoff_haptics::SettingError),
     /// The motion between two poses of a path is ambiguous.
     #[error(transparent)]
     Motion(touchoff::MotionError),
@@ -195,19 +195,19 @@ pub(crate) enum Failure {
     Verify(#[from] touchoff::verify::VerifyError),
     /// A sweep could not be done.
     #[error(transparent)]
-    Sweep(#[from] touchoff::postures::sweep::SweepError),
+    Sweep(#[from] touchoff_postures::sweep::SweepError),
     /// The rules of a sweep are invalid.
     #[error(transparent)]
-    Rules(#[from] touchoff::postures::RulesError),
+    Rules(#[from] touchoff_postures::RulesError),
     /// A posture map could not be read or written.
     #[error(transparent)]
-    Map(#[from] touchoff::postures::MapError),
+    Map(#[from] touchoff_postures::MapError),
     /// A session cannot be recorded.
     #[error(transparent)]
-    Recorder(#[from] touchoff::postures::RecorderError),
+    Recorder(#[from] touchoff_postures::RecorderError),
     /// No path could be planned.
     #[error(transparent)]
-    Path(#[from] touchoff::postures::path::PathError),
+    Path(#[from] touchoff_postures::path::PathError),
     /// A program is not proved as it would be written.
     #[error(
         "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \

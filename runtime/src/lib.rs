@@ -72,14 +72,12 @@
 //! # Ok(()) }
 //! ```
 //!
-//! **Sweep.** With the feature `postures`, `postures::sweep::PostureSweep` tries tools at every triangle from every
-//! direction, `postures::PostureMap` keeps the result, and `postures::path::PathRequest` plans a path over it
-//! (`examples/sweep.rs`).
+//! **Sweep.** The package `touchoff-postures` tries tools at every triangle from every direction, keeps the result, and
+//! plans paths over it.
 //!
-//! **Run the loop.** With the feature `realtime`, `haptic::Session` drives a haptic device at 1 kHz
-//! (`examples/haptic_loop.rs`).
+//! **Run the loop.** The package `touchoff-haptics` drives a haptic device at 1 kHz.
 //!
-//! Shorter programs: `examples/first_contact.rs`, `examples/check_program.rs` and `examples/posture_map.rs`.
+//! Shorter programs: `examples/first_contact.rs` and `examples/check_program.rs`.
 //!
 //! # Main types
 //!
@@ -105,10 +103,6 @@
 //! |---|---|
 //! | `parallel` | many poses on all cores: `Probe::par_map` |
 //! | `interpreter` | `.tool` files loaded at run time: `tool::Interpreted` |
-//! | `haptic` | a cycle of the haptic loop, without threads and clock: `haptic::Session` |
-//! | `realtime` | the loop in a thread, at a fixed rate; implies `haptic` |
-//! | `spacenav` | a SpaceMouse in the loop; implies `realtime` |
-//! | `postures` | posture maps, sweeps and paths; implies `parallel` |
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
@@ -120,10 +114,6 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/certified.md")]
 struct CertifiedPage;
-
-#[cfg(all(doctest, feature = "haptic"))]
-#[doc = include_str!("../../docs/haptics.md")]
-struct HapticsPage;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/verify.md")]
@@ -139,8 +129,6 @@ pub mod cloud;
 mod debug;
 mod escape;
 pub mod gcode;
-#[cfg(feature = "haptic")]
-pub mod haptic;
 mod id;
 mod input;
 mod interval;
@@ -152,8 +140,6 @@ mod parallel;
 mod part;
 mod point_bvh;
 mod pose;
-#[cfg(feature = "postures")]
-pub mod postures;
 mod probe;
 pub mod program;
 mod reach;

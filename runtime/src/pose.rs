@@ -168,12 +168,7 @@ impl Pose {
     ///
     /// # Errors
     /// Fails if the tip is out of bounds or `rotation` is not a rotation.
-    #[cfg(feature = "haptic")]
-    pub(crate) fn rotated_to(
-        &self,
-        rotation: Matrix3<f64>,
-        tip: Point3<f64>,
-    ) -> Result<Pose, PoseError> {
+    pub fn rotated_to(&self, rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
         let rotation = orthonormal(rotation * self.rotation);
         match orthonormality_error(&rotation) {
             error if error <= ORTHONORMALITY_TOLERANCE => {
@@ -219,11 +214,9 @@ fn check_range(tip: Point3<f64>) -> Point3<f64> {
 
 /// Largest entry of `RᵀR - I` in a valid rotation. A certifier's bounds hold for rotations with rounding
 /// errors; a matrix farther off was not made by this module.
-#[cfg(feature = "haptic")]
 const ORTHONORMALITY_TOLERANCE: f64 = 1e-9;
 
 /// Returns the largest magnitude in `RᵀR - I`, or NaN if any entry is NaN.
-#[cfg(any(test, feature = "haptic"))]
 pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
     let error = rotation.transpose() * rotation - Matrix3::identity();
     error.iter().fold(
@@ -340,7 +333,6 @@ mod tests {
     }
 
     /// Checks that a NaN matrix, or one that has drifted away from a rotation, gives no pose.
-    #[cfg(feature = "haptic")]
     #[test]
     fn rejects_matrices_that_are_not_rotations() {
         let (pose, origin) = (Pose::default(), Point3::origin());

@@ -4,8 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// A unit of length, with the symbol that `.tool` files and the program use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "postures", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Unit {
     /// `mm`
     Millimetre,

@@ -8,11 +8,11 @@ use crate::tool;
 use crate::touch::{SurfaceContact, Touch, Touched};
 use serde::Serialize;
 use std::rc::Rc;
-use touchoff::haptic::{
-    Coupling, DeviceAxes, DeviceLimits, Rendering, SessionSettings, SessionState,
-};
 use touchoff::tool::{Interpreted, Symmetry};
 use touchoff::{Mesh, Part, Pose, Sampling, Tool};
+use touchoff_haptics::{
+    Coupling, DeviceAxes, DeviceLimits, Rendering, SessionSettings, SessionState,
+};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// Time constant of the coupling's damper, s. A tool without contact follows the hand with this delay. The longer it is, the

@@ -2,9 +2,9 @@
 
 use crate::error::EngineError;
 use nalgebra::Point3;
-use touchoff::haptic::{Device, DeviceError, DeviceLimits, DeviceWrench};
 use touchoff::tool::Symmetry;
 use touchoff::{Motion, Pose};
+use touchoff_haptics::{Device, DeviceError, DeviceLimits, DeviceWrench};
 
 /// Greatest distance in mm and angle in rad per cycle: half of the speed that a session takes for plausible at 1 kHz.
 const MAX_STEP: [f64; 2] = [5.0, 0.05];

@@ -4,9 +4,9 @@ use crate::error::EngineError;
 use crate::hand::Hand;
 use self_cell::self_cell;
 use std::rc::Rc;
-use touchoff::haptic::{Session, SessionSettings, SessionState};
 use touchoff::tool::Interpreted;
 use touchoff::{Contact, Law, Part, Pose, Probe};
+use touchoff_haptics::{Session, SessionSettings, SessionState};
 
 /// A part and a tool that are shared with the engine.
 #[derive(Debug)]

@@ -2,13 +2,13 @@
 
 use clap::Args;
 use std::error::Error;
-use touchoff::haptic::{EnergyBalance, Rendering};
 use touchoff::scenes::tube;
 use touchoff::{Law, Part, Sampling};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measurements, page, plots};
 use touchoff_bench::haptics::roughness::{Case, ForceStats, HandPath, force_stats, tools};
 use touchoff_bench::page::{Page, Section};
+use touchoff_haptics::{EnergyBalance, Rendering};
 use touchoff_tests::haptics::{energy, sheet, wall};
 
 /// Measures the haptic loop: stable wall stiffness, force roughness, energy, a thin sheet and latencies.
@@ -50,9 +50,9 @@ impl Haptics {
             covers: &[
                 "runtime/src/bvh",
                 "runtime/src/cloud",
-                "runtime/src/haptic",
+                "haptics/src",
                 // Declarations only.
-                ":!runtime/src/haptic/mod.rs",
+                ":!haptics/src/lib.rs",
                 "runtime/src/part.rs",
                 "runtime/src/point_bvh",
                 "runtime/src/pose.rs",

@@ -74,10 +74,10 @@ impl Postures {
             name: "postures",
             title: "Postures beside brute force",
             covers: &[
-                "runtime/src/postures",
+                "postures/src",
                 // Declarations only, and the paths, which this page is not about.
-                ":!runtime/src/postures/mod.rs",
-                ":!runtime/src/postures/path",
+                ":!postures/src/lib.rs",
+                ":!postures/src/path",
                 "runtime/src/certify",
                 "tools-library/tools",
             ],

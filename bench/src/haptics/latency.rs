@@ -2,11 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use touchoff::haptic::{
+use touchoff::{Law, Part, Probe};
+use touchoff_haptics::{
     LoopReport, MonotonicClock, Realtime, ScriptedDevice, Session, SessionSettings, SimulatedHand,
     Tremor, state_channel,
 };
-use touchoff::{Law, Part, Probe};
 use touchoff_tests::haptics::wall::LIMITS;
 use touchoff_tests::haptics::{block, tool, upright};
 

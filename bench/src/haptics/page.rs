@@ -3,7 +3,7 @@
 use super::roughness::{Case, ForceStats};
 use crate::plot::{Axis, Plot, Series};
 use std::fmt::{self, Write};
-use touchoff::haptic::{EnergyBalance, LoopReport};
+use touchoff_haptics::{EnergyBalance, LoopReport};
 use touchoff_tests::haptics::wall::{ENCODER_STEP, Row};
 
 /// The measurements of the page.

@@ -2,11 +2,11 @@
 
 use super::smooth::Fig73Smooth;
 use nalgebra::Vector3;
-use touchoff::haptic::{
-    Coupling, DeviceLimits, Rendering, Session, SessionSettings, SimulatedHand,
-};
 use touchoff::scenes::{BALL, ScenePath};
 use touchoff::{Law, Part, Pose, Probe, Tool};
+use touchoff_haptics::{
+    Coupling, DeviceLimits, Rendering, Session, SessionSettings, SimulatedHand,
+};
 use touchoff_tests::haptics::tool;
 use touchoff_tests::haptics::wall::LIMITS;
 

@@ -17,9 +17,9 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 use tool_model::ToolModel;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::sweep::{PostureSweep, SweepStats};
-use touchoff::postures::{Directions, MapRow, Rules};
 use touchoff::{Mesh, Tool, TriangleId};
+use touchoff_postures::sweep::{PostureSweep, SweepStats};
+use touchoff_postures::{Directions, MapRow, Rules};
 use touchoff_tests::oracle::rng::Rng;
 
 /// The settings of a comparison.

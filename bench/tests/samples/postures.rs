@@ -4,14 +4,14 @@ use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::postures::sweep::PostureSweep;
-use touchoff::postures::{Directions, Rules};
 use touchoff::{Mesh, Unit};
 use touchoff_bench::postures::brute_force::{TrianglePart, Verdict};
 use touchoff_bench::postures::parts::relief;
 use touchoff_bench::postures::tool_model::Posture;
 use touchoff_bench::postures::tool_model::ToolModel;
 use touchoff_bench::postures::{ComparisonSettings, measure};
+use touchoff_postures::sweep::PostureSweep;
+use touchoff_postures::{Directions, Rules};
 
 fn sample(tools: Vec<&str>, draws: usize) {
     let mesh = relief(20).expect("a block");

@@ -17,14 +17,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use touchoff::certify::TriangleBvh;
-use touchoff::haptic::{
+use touchoff::tool::{Symmetry, ToolInfo};
+use touchoff::{Part, Pose, Probe, Tool, Unit};
+use touchoff_haptics::{
     Coupling, Device, DeviceAxes, DeviceLimits, LoopReport, MonotonicClock, PlaybackDevice,
     Realtime, Rendering, Session, SessionSettings, SessionState, SimulatedHand, StatePublisher,
     Tremor, check_core, state_channel,
 };
-use touchoff::postures::Recorder;
-use touchoff::tool::{Symmetry, ToolInfo};
-use touchoff::{Part, Pose, Probe, Tool, Unit};
+use touchoff_postures::Recorder;
 
 /// Number of states by which recordings may lag behind the loop: 65 s at 1 kHz.
 const STATE_BUFFER: usize = 1 << 16;
@@ -99,7 +99,7 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
         )),
         #[cfg(unix)]
         DeviceKind::Spacenav => {
-            use touchoff::haptic::spacenav::{SOCKET, Spacenav, SpeedGains};
+            use touchoff_haptics::spacenav::{SOCKET, Spacenav, SpeedGains};
             let gains = SpeedGains { linear: 100.0, angular: 1.0 };
             let mouse = Spacenav::open(Path::new(SOCKET), start, unit, arguments.rate, gains)
                 .map_err(|source| Failure::Spacenav { socket: SOCKET, source })?;
@@ -265,7 +265,7 @@ struct Quantiles {
 }
 
 impl Quantiles {
-    fn of(times: &touchoff::haptic::LatencyHistogram) -> Quantiles {
+    fn of(times: &touchoff_haptics::LatencyHistogram) -> Quantiles {
         let at = |share: f64| times.value_at_quantile(share);
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: times.max() }
     }

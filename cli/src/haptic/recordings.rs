@@ -6,9 +6,9 @@ use crate::postures::default_tolerance;
 use crate::postures::map::check_part;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use touchoff::haptic::{SessionState, StateStream};
-use touchoff::postures::{MapError, MapIdentity, PostureMap, Recorder, RecorderStats, Rules};
 use touchoff::{AtomicFile, Mesh, Tool};
+use touchoff_haptics::{SessionState, StateStream};
+use touchoff_postures::{MapError, MapIdentity, PostureMap, Recorder, RecorderStats, Rules};
 
 const COLUMNS: &str = "cycle,time_s,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
     tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,contacts,energy_in,energy_stored";

@@ -14,7 +14,7 @@ use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
 use tool_dsl::draw::lettering::width;
 use touchoff::Unit;
-use touchoff::postures::colormap;
+use touchoff_postures::colormap;
 
 pub(crate) use scale::Scale;
 

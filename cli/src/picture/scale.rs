@@ -2,7 +2,7 @@
 
 use super::NOTHING;
 use super::render::Paint;
-use touchoff::postures::colormap;
+use touchoff_postures::colormap;
 
 /// A quantity that colours stand for.
 #[derive(Clone, Debug)]

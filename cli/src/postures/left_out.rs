@@ -7,8 +7,8 @@ use crate::picture::render::{Facet, Paint};
 use crate::picture::{Heading, Legend, NOTHING, sheet};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
-use touchoff::postures::path::{LeftOutReason, ToolPath};
 use touchoff::{Escaped, Mesh};
+use touchoff_postures::path::{LeftOutReason, ToolPath};
 
 /// Colours of points that are not reached, and of those without a proved motion.
 const COLOURS: [[u8; 3]; 2] = [[204, 60, 50], [40, 90, 200]];

@@ -8,8 +8,8 @@ use crate::part;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use touchoff::postures::{PartFingerprint, PostureMap, colormap};
 use touchoff::{AtomicFile, Escaped, Mesh};
+use touchoff_postures::{PartFingerprint, PostureMap, colormap};
 
 #[derive(Serialize)]
 struct Summary<'a> {

@@ -15,10 +15,10 @@ use std::io::Write;
 use std::mem;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::path::{LeftOutReason, PathRequest, Pattern};
-use touchoff::postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff::program::{AptHeader, Cutter, Decimals, apt_unit};
 use touchoff::{Motion, Program};
+use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern};
+use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
 
 #[derive(Serialize)]
 struct Summary {

@@ -7,8 +7,8 @@ use crate::picture::{Heading, Legend, Scale, facets, sheet};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use std::path::Path;
-use touchoff::postures::{Directions, MapRow, Piece, PostureMap};
 use touchoff::{Escaped, Mesh, TriangleId};
+use touchoff_postures::{Directions, MapRow, Piece, PostureMap};
 
 /// Side of a view, in pixels.
 pub(super) const SIDE: usize = 700;

@@ -4,8 +4,8 @@ use super::sweep::{Count, RefinementSummary};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use std::ops::ControlFlow;
-use touchoff::postures::PostureMap;
-use touchoff::postures::sweep::{BATCH_TRIANGLES, PieceBatch, PostureSweep, Refiner, SweepStats};
+use touchoff_postures::PostureMap;
+use touchoff_postures::sweep::{BATCH_TRIANGLES, PieceBatch, PostureSweep, Refiner, SweepStats};
 
 /// The sweep whose triangles are divided, and the map of their pieces.
 pub(super) struct Pieces<'a> {

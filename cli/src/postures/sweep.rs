@@ -15,9 +15,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::sweep::{Batch, PostureSweep, Refinement, Refiner, SweepStats};
-use touchoff::postures::{Directions, MapIdentity, MapRow, Piece, PostureMap, Rules};
 use touchoff::{Mesh, Tool, TriangleId, Unit};
+use touchoff_postures::sweep::{Batch, PostureSweep, Refinement, Refiner, SweepStats};
+use touchoff_postures::{Directions, MapIdentity, MapRow, Piece, PostureMap, Rules};
 
 /// Summary of a sweep.
 #[derive(Serialize)]

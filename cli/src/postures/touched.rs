@@ -6,9 +6,9 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use touchoff::certify::TriangleBvh;
-use touchoff::postures::sweep::SweepError;
-use touchoff::postures::{PostureMap, PostureRecord, Validator};
 use touchoff::{Mesh, Part, Pose, Probe, Sampling, Tool, TriangleId};
+use touchoff_postures::sweep::SweepError;
+use touchoff_postures::{PostureMap, PostureRecord, Validator};
 
 /// The columns of the page's table.
 const COLUMNS: &str = "triangle,niceness,tool,x,y,z,qx,qy,qz,qw";

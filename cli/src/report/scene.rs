@@ -7,8 +7,8 @@ use super::tool_shape::ToolShape;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
-use touchoff::postures::colormap;
 use touchoff::{Escaped, Pose, Unit};
+use touchoff_postures::colormap;
 
 /// Number of triangles above which there is no 3-D view, so that the file stays below 15 MB.
 const MAX_TRIANGLES: usize = 500_000;

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 /// The location of the restricted interior of a tool, given that no triangle of the part meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Containment {
+pub enum Containment {
     /// The whole region is outside the part.
     Outside,
     /// A connected piece is inside. Holds the surface that is the nearest to a point of that piece, as an index in
@@ -134,7 +134,6 @@ impl QuerySetting<'_> {
     }
 
     /// Returns whether the restricted interior is one connected piece.
-    #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(
         &self,
         (info, core_points): (&ToolInfo, &mut CorePoints),

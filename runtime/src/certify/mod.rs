@@ -31,11 +31,8 @@ mod tool_model;
 mod triangle;
 mod verdict;
 
-#[cfg(feature = "postures")]
-pub(crate) use containment::Containment;
-#[cfg(feature = "postures")]
-pub(crate) use part::Location;
-pub use part::TriangleBvh;
+pub use containment::Containment;
+pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use verdict::{
     AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,
     Penetration, PoseVerdict, Witness,
@@ -48,11 +45,8 @@ use crate::interval::Interval;
 use crate::pose::Pose;
 use crate::tool::{Tool, ToolInfo};
 use clearance::ClearanceQuery;
-#[cfg(not(feature = "postures"))]
-use containment::Containment;
 use containment::CorePoints;
 use fearless_simd::Level;
-#[cfg(feature = "postures")]
 use nalgebra::{Point3, Vector3};
 use query::DepthQuery;
 use search::{QuerySetting, SearchState};
@@ -263,9 +257,9 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// Locates the restricted interior of the tool relative to the part. Call only if no triangle is in contact with
-    /// it.
-    pub(crate) fn containment(&mut self, pose: &Pose) -> Containment {
+    /// Locates the restricted interior of the tool relative to the part: the points deeper than is
+    /// [allowed](Certifier::with_allowance). The answer holds only if [`Certifier::touches`] finds no triangle in contact.
+    pub fn containment(&mut self, pose: &Pose) -> Containment {
         let core_points = (self.info, &mut self.core_points);
         self.setting.containment(core_points, pose, 4.0 * self.setting.error)
     }
@@ -322,36 +316,36 @@ impl<'a> Certifier<'a> {
 
     /// Returns whether the restricted interior is one connected piece: the points deeper than their limit by more
     /// than twice the rounding error, as in [`Certifier::is_too_deep`].
-    #[cfg(feature = "postures")]
-    pub(crate) fn is_one_piece(&mut self) -> bool {
+    pub fn is_one_piece(&mut self) -> bool {
         self.setting.is_one_piece((self.info, &mut self.core_points), self.setting.error)
     }
 
-    /// Resets the starting triangle, as if no query had been made.
-    #[cfg(feature = "postures")]
-    pub(crate) fn clear_caches(&mut self) {
+    /// Resets the starting triangle, as if no query had been made. Answers within the tolerance may depend on it, so equal
+    /// queries after it have equal bits.
+    pub fn clear_caches(&mut self) {
         self.state.clear_cache();
     }
 
-    /// Checks whether a triangle of the part is deeper in the tool than is allowed.
-    pub(crate) fn touches(&mut self, pose: &Pose) -> ContactVerdict {
+    /// Checks whether a triangle of the part is deeper in the tool than is [allowed](Certifier::with_allowance). A tool wholly
+    /// inside the material touches none.
+    pub fn touches(&mut self, pose: &Pose) -> ContactVerdict {
         let Certifier { setting, whole_query, allowance_queries, state, budget, .. } = self;
         let allowance_queries =
             allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
         touches(setting, allowance_queries, state, pose, *budget)
     }
 
-    /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance).
-    #[cfg(feature = "postures")]
-    pub(crate) fn is_too_deep(
+    /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance), in a tool
+    /// that its tip and its axis, a unit vector, place: a tool with a profile.
+    pub fn is_too_deep(
         &mut self,
-        pose: (&Point3<f64>, &Vector3<f64>),
+        tip: &Point3<f64>,
+        axis: &Vector3<f64>,
         point: &Point3<f64>,
     ) -> bool {
         let Certifier { setting, whole_query, allowance_queries, state, .. } = self;
         let allowance_queries =
             allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
-        let (tip, axis) = pose;
         let offset = (point - tip) / setting.length;
         let z = offset.dot(axis);
         let d = (offset.norm_squared() - z * z).max(0.0).sqrt();
@@ -363,10 +357,13 @@ impl<'a> Certifier<'a> {
 }
 
 /// The result of comparing the depth of triangles with the allowances.
-pub(crate) enum ContactVerdict {
+#[derive(Clone, Debug)]
+pub enum ContactVerdict {
+    /// No triangle is deeper than is allowed.
     No,
+    /// A point of a triangle is deeper.
     Yes(Witness),
-    /// No triangle exceeds its allowance by more than this, in the part's unit.
+    /// Rounding decides, or the budget is spent: no triangle exceeds its allowance by more than this, in the part's unit.
     Undecided(f64),
 }
 

@@ -5,7 +5,6 @@ use crate::certify::bounds::batch::Batch;
 use crate::certify::bounds::descent::Descent;
 use crate::certify::part::{TriangleBvh, flat};
 use crate::certify::query::DepthQuery;
-#[cfg(feature = "postures")]
 use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::field::Scratch;
@@ -192,13 +191,11 @@ impl SearchState {
     }
 
     /// Resets the starting triangle, as if no query had been made.
-    #[cfg(feature = "postures")]
     pub(crate) fn clear_cache(&mut self) {
         self.last = None;
     }
 
     /// Returns the depth of a point in the tool's frame if it is owned, or less than 0.
-    #[cfg(feature = "postures")]
     pub(crate) fn depth(&mut self, of: &QuerySetting<'_>, query: &DepthQuery, point: Point) -> f64 {
         let depth = of.tool_model.depth(&mut self.scratch, &query.owners, point);
         depth.map_or(f64::NEG_INFINITY, |depth| depth.value)

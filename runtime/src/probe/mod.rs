@@ -146,10 +146,14 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
         self.tool.reserve(scratch);
     }
 
-    /// Returns the compliance centre in the tool's frame, and the length of the part's unit in mm.
-    #[cfg(feature = "haptic")]
-    pub(crate) fn centre_and_unit(&self) -> (Point3<f64>, f64) {
-        (self.state.centre, self.state.unit.factor_to(Unit::Millimetre))
+    /// Returns the centre of torques and of compliance, in the tool's frame and the part's unit.
+    pub fn centre(&self) -> Point3<f64> {
+        self.state.centre
+    }
+
+    /// Returns the unit of the part, in which poses are given.
+    pub fn unit(&self) -> Unit {
+        self.state.unit
     }
 
     /// Returns an upper bound on the error of a computed depth against the depth of the given point, in the part's

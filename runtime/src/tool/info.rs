@@ -126,7 +126,7 @@ impl ToolInfo {
 
     /// Returns the tool's size: its reach from the tip along the axis or its radius about the axis, whichever is
     /// larger.
-    pub(crate) fn size(&self) -> f64 {
+    pub fn size(&self) -> f64 {
         let reach = self.envelope.iter().map(|s| s.low.abs().max(s.high.abs()).max(s.radius));
         reach.fold(0.0, f64::max)
     }

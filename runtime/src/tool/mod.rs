@@ -319,7 +319,7 @@ impl Evaluations {
     }
 
     /// Returns the indices of the points inside, in ascending order.
-    pub(crate) fn inside_indices(&self) -> impl Iterator<Item = usize> {
+    pub fn inside_indices(&self) -> impl Iterator<Item = usize> {
         self.inside.iter().enumerate().flat_map(|(block, bits)| {
             let mut remaining = *bits;
             std::iter::from_fn(move || {

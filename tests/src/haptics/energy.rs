@@ -2,8 +2,8 @@
 
 use super::wall::LIMITS;
 use super::{block, tool, upright};
-use touchoff::haptic::{EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings};
 use touchoff::{Law, Part, Probe};
+use touchoff_haptics::{EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings};
 
 /// Returns the block whose top is the plane.
 pub fn plane_part() -> Part {

@@ -3,9 +3,9 @@
 use super::wall::LIMITS;
 use super::{tool, upright};
 use nalgebra::Point3;
-use touchoff::haptic::{Rendering, Session, SessionSettings, SimulatedHand};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Probe, Sampling, Unit};
+use touchoff_haptics::{Rendering, Session, SessionSettings, SimulatedHand};
 
 /// Returns a sheet 0.5 mm thick, from z = -0.5 to 0.
 pub fn sheet_part() -> Part {

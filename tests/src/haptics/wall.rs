@@ -6,11 +6,11 @@
 
 use super::{block, tool, upright};
 use nalgebra::{Matrix2, Vector2};
-use touchoff::haptic::{
+use touchoff::{Law, Part, Probe};
+use touchoff_haptics::{
     Coupling, DeviceAxes, DeviceLimits, HandImpedance, Rendering, Session, SessionSettings,
     SimulatedHand,
 };
-use touchoff::{Law, Part, Probe};
 
 /// The device that the hand holds.
 pub const LIMITS: DeviceLimits = DeviceLimits {

@@ -3,9 +3,9 @@
 
 use super::COUNTED;
 use stats_alloc::Region;
-use touchoff::haptic::{DeviceLimits, Rendering, ScriptedDevice, Session, SessionSettings};
 use touchoff::tool::{BatchEvaluator, Interpreted};
 use touchoff::{Law, Part, Probe, Tool};
+use touchoff_haptics::{DeviceLimits, Rendering, ScriptedDevice, Session, SessionSettings};
 use touchoff_tests::haptics::wall::LIMITS;
 use touchoff_tests::haptics::{block, upright};
 

@@ -7,12 +7,12 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 use std::sync::atomic::AtomicBool;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::haptic::{
+use touchoff::scenes::{ScenePath, tube};
+use touchoff::{Law, Pose, Probe};
+use touchoff_haptics::{
     DeviceAxes, DeviceLimits, Rendering, Session, SessionSettings, SimulatedClock, SimulatedHand,
     StatePublisher, state_channel,
 };
-use touchoff::scenes::{ScenePath, tube};
-use touchoff::{Law, Pose, Probe};
 use touchoff_tests::fixtures::{part, poses};
 
 #[global_allocator]

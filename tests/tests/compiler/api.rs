@@ -1,4 +1,4 @@
-//! The public interface of the library, kept as a snapshot, so that each change of it is seen.
+//! The public interfaces of the libraries, kept as snapshots, so that each change of it is seen.
 //!
 //! The items are read from the source text: `cargo public-api` needs a nightly toolchain. Items that macros write,
 //! as the vector types of [`touchoff::tool`], are not seen.
@@ -302,16 +302,16 @@ fn parsed(folder: &Path, name: &str) -> File {
     syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-#[test]
-fn the_public_interface_is_as_kept() {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../runtime/src");
+/// Returns the public interface of the package whose sources are in a folder.
+fn interface(folder: &str, name: &str) -> String {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder).join("src");
     let mut read = Crate::default();
     read.root = {
         let items = parsed(&source, "lib").items;
         read.read(items, &source)
     };
     let mut listed = BTreeMap::new();
-    read.list(&[], "touchoff", &mut listed);
+    read.list(&[], name, &mut listed);
     let mut text = String::new();
     let mut homes: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (path, (home, items)) in listed {
@@ -330,6 +330,18 @@ fn the_public_interface_is_as_kept() {
         text.push_str(&format!("// {path}\n{}\n", prettyplease::unparse(&file)));
     }
     let shared: Vec<_> = homes.iter().filter(|(_, homes)| homes.len() > 1).collect();
-    assert!(shared.is_empty(), "public types share a name: {shared:?}");
-    insta::assert_snapshot!(text);
+    assert!(shared.is_empty(), "public types of {folder} share a name: {shared:?}");
+    text
+}
+
+#[test]
+fn the_public_interfaces_are_as_kept() {
+    for (folder, name) in [
+        ("runtime", "touchoff"),
+        ("haptics", "touchoff_haptics"),
+        ("postures", "touchoff_postures"),
+        ("import", "touchoff_import"),
+    ] {
+        insta::assert_snapshot!(name, interface(folder, name));
+    }
 }

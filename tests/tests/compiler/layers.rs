@@ -58,8 +58,6 @@ const RUNTIME: &[&str] = &[
     "program",
     "certify",
     "stock",
-    "haptic",
-    "postures",
     "verify",
     "lib",
 ];

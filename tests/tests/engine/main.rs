@@ -2,7 +2,6 @@
 
 mod closed_forms;
 mod evaluators;
-mod haptic;
 mod import;
 mod levels;
 mod query;

@@ -5,8 +5,8 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use resvg::tiny_skia::Pixmap;
 use serde_json::Value;
 use std::process::Output;
-use touchoff::postures::PostureMap;
 use touchoff::{Mesh, Unit};
+use touchoff_postures::PostureMap;
 
 /// A box of 30 by 24 by 12 mm with a pocket of 16 by 10 by 6, in 28 triangles.
 struct Pocket {

@@ -3,7 +3,7 @@
 use super::{Tube, object, refused};
 use crate::bench::{stderr, stdout, touchoff};
 use serde_json::Value;
-use touchoff::postures::PostureMap;
+use touchoff_postures::PostureMap;
 
 #[test]
 fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {

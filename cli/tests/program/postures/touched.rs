@@ -3,8 +3,8 @@
 use crate::bench::{Bench, stderr, stdout, touchoff};
 use nalgebra::Point3;
 use touchoff::mesh::shapes;
-use touchoff::postures::PostureMap;
 use touchoff::{TriangleId, Unit};
+use touchoff_postures::PostureMap;
 
 #[test]
 fn touched_postures_are_proved_before_they_are_recorded() {

@@ -7,6 +7,6 @@ mod winding;
 
 pub(crate) use coplanar_faces::Face;
 pub(crate) use planarity::NodeRing;
-pub use triangle_bvh::TriangleBvh;
+pub use triangle_bvh::{BoxVisitor, TriangleBvh};
 pub(crate) use triangle_bvh::{Corners, flat};
-pub(crate) use winding::Location;
+pub use winding::Location;

@@ -7,7 +7,7 @@ use crate::id::TriangleId;
 use crate::mesh::Mesh;
 use crate::mesh::{self, inverted};
 use crate::unit::Unit;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 /// A bounding volume hierarchy of a part's triangles, for queries of the depth of a tool: a 16-wide tree of boxes
 /// like that of a point cloud, whose leaves hold 16 triangles.
@@ -31,6 +31,16 @@ pub struct TriangleBvh {
     unit: Unit,
     /// True if inside and outside are defined; see [`TriangleBvh::has_inside`].
     pub(crate) solid: bool,
+}
+
+/// A search of the triangles of a [`TriangleBvh`] by their boxes.
+pub trait BoxVisitor {
+    /// Returns whether the triangles in a box have to be visited, by its centre relative to [`TriangleBvh::origin`] and half of
+    /// its size, both within 1e-6 of that size.
+    fn enters(&mut self, centre: Vector3<f64>, half: Vector3<f64>) -> bool;
+
+    /// Visits a triangle by its corners, in the part's frame and unit.
+    fn triangle(&mut self, corners: [Point3<f64>; 3]);
 }
 
 /// The first, second and third corners of 16 triangles relative to the centre of their box, coordinate by
@@ -143,6 +153,36 @@ impl TriangleBvh {
     /// Returns the unit of length.
     pub fn unit(&self) -> Unit {
         self.unit
+    }
+
+    /// Returns the point to which the boxes of [`TriangleBvh::visit`] are relative, in the part's frame and unit.
+    pub fn origin(&self) -> Point3<f64> {
+        Point3::from(self.frame.origin)
+    }
+
+    /// Returns the ids of the triangles in the order of the tree, in which neighbours are close.
+    pub fn triangle_ids(&self) -> &[TriangleId] {
+        &self.ids
+    }
+
+    /// Visits the triangles in those boxes that the visitor enters, by boxes of boxes.
+    pub fn visit(&self, visitor: &mut impl BoxVisitor) {
+        let mut stack = vec![(0, 0)];
+        while let Some((level, index)) = stack.pop() {
+            for lane in 0..self.children(level, index) {
+                let child = index * WIDTH + lane;
+                let Some(boxes) = self.levels.get(level).map(|boxes| &boxes[index]) else {
+                    visitor.triangle(self.corners[child].map(Point3::from));
+                    continue;
+                };
+                let scaled = |list: &[[f32; WIDTH]; 3]| {
+                    Vector3::from_fn(|k, _| f64::from(list[k][lane]) * self.frame.scale)
+                };
+                if visitor.enters(scaled(&boxes.centre), scaled(&boxes.half)) {
+                    stack.push((level + 1, child));
+                }
+            }
+        }
     }
 
     /// Returns the number of children of a node of a level; below the last level are the leaves.

@@ -8,8 +8,10 @@ use robust::{Coord3D, orient3d};
 
 /// The location of a point relative to a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Location {
+pub enum Location {
+    /// In the material.
     Inside,
+    /// Outside it.
     Outside,
     /// The part has no inside: its mesh is not closed, not consistently oriented, or inside out.
     Unknown,
@@ -50,7 +52,7 @@ impl TriangleBvh {
     ///
     /// The result is exact for the doubles of the point and of the triangles' corners, unless products of four
     /// lengths overflow or underflow.
-    pub(crate) fn locate(&self, point: Point3<f64>) -> Location {
+    pub fn locate(&self, point: Point3<f64>) -> Location {
         if !self.solid {
             return Location::Unknown;
         }

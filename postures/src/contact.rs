@@ -1,0 +1,164 @@
+//! Contact sites: points of a tool's cutting profile that can touch a face.
+
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::PI;
+use touchoff::tool::{Circle, ToolInfo};
+
+/// Sites of the profile where a cutting surface is convex: arcs with their normals, and corners with the
+/// normals along which they may be touched.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactSites {
+    sites: Vec<ContactSite>,
+    /// Size of the tool, in the part's unit.
+    size: f64,
+}
+
+/// A contact of a tool with a face.
+pub(crate) struct Contact {
+    /// Position of the tip.
+    pub(crate) tip: Point3<f64>,
+    /// The touching point in the tool's half plane as `[d, z]`, moved slightly into the surface on either side
+    /// of it. Both surfaces touch, so the niceness of the contact is the lesser of the two.
+    pub(crate) within: [[f64; 2]; 2],
+}
+
+/// An arc, or a corner as an arc of radius 0. Lengths are in the part's unit.
+#[derive(Clone, Copy, Debug)]
+struct ContactSite {
+    centre: [f64; 2],
+    radius: f64,
+    /// Range of its normals' angles in the half plane, from d toward z, in radians.
+    angles: [f64; 2],
+    /// Two directions into a corner's material, nearer to the surface before it and to the surface after it. An
+    /// arc has `None`: its inward direction is the opposite of the normal.
+    inward: Option<[[f64; 2]; 2]>,
+}
+
+/// Tolerance of angles in radians, and of lengths relative to the circle or the tool; far above rounding
+/// errors.
+const TOLERANCE: f64 = 1e-9;
+
+impl ContactSites {
+    /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
+    pub(crate) fn new(info: &ToolInfo, length: f64) -> ContactSites {
+        let cuts = |surface| info.surface(surface).cutting;
+        let mut sites = Vec::new();
+        // The profile continues beyond the axis as its mirror image.
+        let mut previous = info.outline.first().map(|first| {
+            let [d, z] = unit_tangent(first.from, first.to, first.circle, 0);
+            ([d, -z], cuts(first.surface))
+        });
+        for piece in info.outline.iter() {
+            let [start, end] =
+                [0, 1].map(|end| unit_tangent(piece.from, piece.to, piece.circle, end));
+            let cutting = cuts(piece.surface);
+            if let Some((last, cut)) = previous
+                && cut
+                && cutting
+            {
+                let turn = cross(last, start).atan2(dot(last, start));
+                if turn > TOLERANCE {
+                    let from = normal(last);
+                    // The corner's material spans an angle of π less `turn` about the opposite of the mean
+                    // normal.
+                    let into = |side: f64| {
+                        let (sine, cosine) =
+                            (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
+                        [-cosine, -sine]
+                    };
+                    sites.push(ContactSite {
+                        centre: piece.from.map(|component| component * length),
+                        radius: 0.0,
+                        angles: [from, from + turn],
+                        inward: Some([into(1.0), into(-1.0)]),
+                    });
+                }
+            }
+            if let Some(Circle { centre, radius, convex: true }) = piece.circle
+                && cutting
+            {
+                let from = normal(start);
+                let turn = (normal(end) - from).rem_euclid(2.0 * PI);
+                sites.push(ContactSite {
+                    centre: centre.map(|component| component * length),
+                    radius: radius * length,
+                    angles: [from, from + turn],
+                    inward: None,
+                });
+            }
+            previous = Some((end, cutting));
+        }
+        ContactSites { sites, size: info.size() * length }
+    }
+
+    /// Returns the largest distance between the tip and a site, in the part's unit.
+    pub(crate) fn reach(&self) -> f64 {
+        let max_distance = |site: &ContactSite| site.centre[0].hypot(site.centre[1]) + site.radius;
+        self.sites.iter().map(max_distance).fold(0.0, f64::max)
+    }
+
+    /// Returns the contacts between a tool with the given axis and a face. The face has a point `point` and an
+    /// outward normal; the tool's outward normal at the contact is the opposite.
+    pub(crate) fn contacts(
+        &self,
+        point: Point3<f64>,
+        normal: Vector3<f64>,
+        axis: Vector3<f64>,
+    ) -> impl Iterator<Item = Contact> {
+        let up = -normal.dot(&axis);
+        let across = -normal - axis * up;
+        let out = across.norm();
+        let angle = up.atan2(out);
+        self.sites.iter().filter_map(move |site| {
+            let [from, to] = site.angles;
+            // Both are angles of the half plane, or slightly beyond its ends.
+            let offset = (angle - from + TOLERANCE).rem_euclid(2.0 * PI) - TOLERANCE;
+            if offset > to - from + TOLERANCE {
+                return None;
+            }
+            let touched = [site.centre[0] + site.radius * out, site.centre[1] + site.radius * up];
+            // A face perpendicular to the axis leaves the radial direction undefined.
+            if out < TOLERANCE && touched[0] > TOLERANCE * self.size {
+                return None;
+            }
+            let way = if out > 0.0 { across / out } else { across };
+            let inward = site.inward.unwrap_or([[-out, -up]; 2]);
+            Some(Contact {
+                tip: point - way * touched[0] - axis * touched[1],
+                within: inward
+                    .map(|way| [0, 1].map(|k| touched[k] + TOLERANCE * self.size * way[k])),
+            })
+        })
+    }
+}
+
+/// Returns the unit tangent at the beginning (`end` 0) or the end of a profile segment.
+fn unit_tangent(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> [f64; 2] {
+    let Some(Circle { centre, convex, .. }) = circle else {
+        return unit([to[0] - from[0], to[1] - from[1]]);
+    };
+    let at = if end == 0 { from } else { to };
+    let [d, z] = unit([at[0] - centre[0], at[1] - centre[1]]);
+    if convex { [-z, d] } else { [z, -d] }
+}
+
+/// Returns the angle of the outward normal for a direction of travel with the material on its left.
+fn normal([d, z]: [f64; 2]) -> f64 {
+    (-d).atan2(z)
+}
+
+fn unit(vector: [f64; 2]) -> [f64; 2] {
+    let length = vector[0].hypot(vector[1]);
+    vector.map(|component| component / length)
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests;

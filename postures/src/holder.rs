@@ -1,0 +1,182 @@
+//! Stick-out that a tool needs so that its holder clears the part.
+
+use nalgebra::{Point3, Vector3};
+use touchoff::certify::{BoxVisitor, TriangleBvh};
+use touchoff::tool::{ProfileSegment, ToolInfo};
+
+/// The underside of a holder as a step function of the radius, upward from its nose. Lengths are in the part's
+/// unit.
+///
+/// The holder consists of the components that the file of a tool mounts above the first: surfaces called
+/// `nut.…` where the outline begins with one called `cutter.…`.
+#[derive(Clone, Debug)]
+pub(crate) struct Holder {
+    /// Pairs of radius and height, both ascending: within the radius no point of the holder is lower than the
+    /// height above its nose.
+    steps: Vec<[f64; 2]>,
+    /// The least stick-out: the height of the highest cutting point.
+    cutting: f64,
+    /// Stick-out of the tool as it is: the height of the nose.
+    pub(crate) stickout: f64,
+    /// Size down to which triangles are subdivided. A smaller one counts as high as its highest point.
+    min_size: f64,
+}
+
+/// Steps per straight segment of the profile.
+const STEPS_PER_SEGMENT: usize = 16;
+
+/// Size down to which triangles are subdivided, as a fraction of the holder's radius.
+const MIN_SIZE_FRACTION: f64 = 1.0 / 64.0;
+
+impl Holder {
+    /// Creates the holder of a tool, or returns `None` if it has none. `length` is the factor from the tool's
+    /// unit of length to the part's.
+    pub(crate) fn new(info: &ToolInfo, length: f64) -> Option<Holder> {
+        let mount = |segment: &ProfileSegment| {
+            info.surface(segment.surface).name.split_once('.').map(|(mount, _)| mount)
+        };
+        let first = mount(info.outline.first()?)?;
+        let pieces = info.outline.iter().filter(|segment| mount(segment) != Some(first));
+        let mut corners: Vec<[f64; 2]> = Vec::new();
+        for segment in pieces {
+            // An arc is a single step with its largest radius and its lowest height.
+            let [from, to] = [segment.from, segment.to];
+            let count = if segment.circle.is_some() { 1 } else { STEPS_PER_SEGMENT };
+            for k in 0..count {
+                let at = |k: usize, part: usize| {
+                    from[part] + (to[part] - from[part]) * k as f64 / count as f64
+                };
+                let (low, high) = (at(k, 1).min(at(k + 1, 1)), at(k, 0).max(at(k + 1, 0)));
+                let bulge = segment.circle.filter(|arc| arc.convex);
+                let radius = bulge.map_or(high, |arc| high.max(arc.centre[0] + arc.radius));
+                // With the material on its left, an arc runs outward below its centre.
+                let below = bulge.filter(|arc| from[0] <= arc.centre[0] && arc.centre[0] <= to[0]);
+                let low = below.map_or(low, |arc| low.min(arc.centre[1] - arc.radius));
+                corners.push([radius * length, low * length]);
+            }
+        }
+        let nose = corners.iter().map(|corner| corner[1]).reduce(f64::min)?;
+        corners.sort_by(|a, b| b[0].total_cmp(&a[0]).then(a[1].total_cmp(&b[1])));
+        // From the widest inward, keep each corner that is lower than all wider ones.
+        let mut steps: Vec<[f64; 2]> = Vec::new();
+        for [radius, z] in corners {
+            let height = z - nose;
+            if steps.last().is_none_or(|[_, lowest]| height < *lowest) {
+                steps.push([radius, height]);
+            }
+        }
+        steps.reverse();
+        let cutting_segments =
+            info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
+        let cutting = cutting_segments
+            .flat_map(|segment| [segment.from[1], segment.to[1]])
+            .fold(0.0, f64::max);
+        let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
+        Some(Holder {
+            steps,
+            cutting: cutting * length,
+            stickout: nose,
+            min_size: MIN_SIZE_FRACTION * widest,
+        })
+    }
+
+    /// Returns the least height of the holder above its nose at a distance `d` from the axis; `None` beyond its
+    /// radius.
+    fn height(&self, d: f64) -> Option<f64> {
+        self.steps.iter().find(|[radius, _]| d <= *radius).map(|[_, height]| *height)
+    }
+
+    /// Returns the stick-out at which the holder touches nothing for a tip and an axis; `None` if that is not
+    /// less than `limit`. The holder is taken to continue upward at the largest radius so far. The result is
+    /// therefore no less than what is needed, and exceeds it by at most the height of a step and the size of a
+    /// subdivided triangle.
+    pub(crate) fn required_stickout(
+        &self,
+        bvh: &TriangleBvh,
+        tip: &Point3<f64>,
+        axis: &Vector3<f64>,
+        limit: Option<f64>,
+    ) -> Option<f64> {
+        let limit = limit.unwrap_or(f64::INFINITY);
+        let origin = bvh.origin() - tip;
+        let mut search =
+            StickoutSearch { holder: self, tip, axis, origin, limit, required: self.cutting };
+        bvh.visit(&mut search);
+        (search.required < limit).then_some(search.required)
+    }
+
+    /// Returns the stick-out that a triangle needs, or `required` if that is more. Its corners are relative to the
+    /// tip.
+    fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, required: f64) -> f64 {
+        let mut highest = required;
+        let mut stack = vec![corners];
+        while let Some([a, b, c]) = stack.pop() {
+            let heights = [a, b, c].map(|corner| corner.dot(axis));
+            let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let centroid = (a + b + c) / 3.0;
+            let radius =
+                [a, b, c].map(|corner| (corner - centroid).norm()).into_iter().fold(0.0, f64::max);
+            let min_distance = ((centroid - axis * centroid.dot(axis)).norm() - radius).max(0.0);
+            let Some(needed) = self.height(min_distance).map(|height| high - height) else {
+                continue;
+            };
+            if needed <= highest {
+                continue;
+            }
+            if radius <= self.min_size {
+                highest = needed;
+                continue;
+            }
+            // Halve the longest side.
+            let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
+            let [a, b, c] = match () {
+                () if sides[0] >= sides[1] && sides[0] >= sides[2] => [a, b, c],
+                () if sides[1] >= sides[2] => [b, c, a],
+                () => [c, a, b],
+            };
+            let half = (a + b) / 2.0;
+            stack.extend([[a, half, c], [half, b, c]]);
+        }
+        highest
+    }
+}
+
+/// A search for the least stick-out of a holder at a pose.
+struct StickoutSearch<'a> {
+    holder: &'a Holder,
+    tip: &'a Point3<f64>,
+    axis: &'a Vector3<f64>,
+    /// Origin of the boxes, relative to the tip.
+    origin: Vector3<f64>,
+    /// The stick-out at which the search ends.
+    limit: f64,
+    /// The stick-out that the triangles need which were visited.
+    required: f64,
+}
+
+impl BoxVisitor for StickoutSearch<'_> {
+    fn enters(&mut self, centre: Vector3<f64>, half: Vector3<f64>) -> bool {
+        let centre = self.origin + centre;
+        let half = half * BOX_ROUNDING_FACTOR;
+        let height_of_centre = centre.dot(self.axis);
+        let high = height_of_centre + half.dot(&self.axis.abs());
+        let radius = half.norm();
+        let min_distance = ((centre - self.axis * height_of_centre).norm() - radius).max(0.0);
+        let lowest = self.holder.height(min_distance);
+        self.required < self.limit && lowest.is_some_and(|height| high - height > self.required)
+    }
+
+    fn triangle(&mut self, corners: [Point3<f64>; 3]) {
+        if self.required < self.limit {
+            let corners = corners.map(|corner| corner - self.tip);
+            let required = self.holder.triangle(corners, self.axis, self.required);
+            self.required = self.required.max(required);
+        }
+    }
+}
+
+/// Factor that covers the rounding of boxes, which are stored in `f32`.
+const BOX_ROUNDING_FACTOR: f64 = 1.0 + 1e-6;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! The largest angle of the tool axis from +z of the part.
+
+use crate::Directions;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// A limit of the angle between the tool axis and +z.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TiltLimit {
+    /// Least z component of the axis.
+    least: f64,
+}
+
+/// Rounding of a z component that is not counted as tilt. Where the axis is horizontal, it is 1e-12 rad.
+const ROUNDING: f64 = 1e-12;
+
+impl TiltLimit {
+    /// Creates the limit from an angle in radians; `None` unless it is above 0 and at most π.
+    pub(super) fn new(max_tilt: f64) -> Option<TiltLimit> {
+        (max_tilt > 0.0 && max_tilt <= PI).then(|| TiltLimit { least: max_tilt.cos() - ROUNDING })
+    }
+
+    /// Returns whether some axis exceeds the limit.
+    pub(super) fn is_limited(self) -> bool {
+        self.least > -1.0
+    }
+
+    /// Returns whether an axis is within the limit.
+    pub(super) fn allows(self, axis: &Vector3<f64>) -> bool {
+        axis.z >= self.least
+    }
+
+    /// Returns whether an axis is within the limit while it turns from one direction to another, on a great circle.
+    ///
+    /// The circle is lowest at the direction d of -z in its plane. Between the ends the axis is lowest there, if d
+    /// lies between them, and otherwise at an end.
+    pub(super) fn allows_turn(self, from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
+        if !(self.allows(from) && self.allows(to)) {
+            return false;
+        }
+        let normal = from.cross(to);
+        let lowest = normal.cross(&normal.cross(&Vector3::z()));
+        let is_between =
+            |d: &Vector3<f64>| from.cross(d).dot(&normal) > 0.0 && d.cross(to).dot(&normal) > 0.0;
+        // Parallel and opposite directions, and horizontal circles, have no lowest direction.
+        match lowest.try_normalize(0.0) {
+            Some(lowest) if is_between(&lowest) => self.allows(&lowest),
+            _ => true,
+        }
+    }
+
+    /// Returns a direction turned toward +z as far as the limit requires; +z for a direction along -z.
+    pub(super) fn clamped(self, direction: &Vector3<f64>) -> Vector3<f64> {
+        if self.allows(direction) {
+            return *direction;
+        }
+        let across = Vector3::new(direction.x, direction.y, 0.0);
+        let z = self.least + ROUNDING;
+        match across.try_normalize(ROUNDING) {
+            Some(across) => across * (1.0 - z * z).max(0.0).sqrt() + Vector3::z() * z,
+            None => Vector3::z(),
+        }
+    }
+
+    /// Returns sets of directions without those beyond the limit. A set of another length belongs to other
+    /// directions, and becomes empty.
+    pub(super) fn filter(self, directions: &Directions, sets: &[Vec<u64>]) -> Vec<Vec<u64>> {
+        let mut within = vec![0u64; directions.words()];
+        for (index, direction) in directions.list().iter().enumerate() {
+            if self.allows(&Vector3::from(*direction)) {
+                within[index / 64] |= 1 << (index % 64);
+            }
+        }
+        let filtered = |set: &Vec<u64>| -> Vec<u64> {
+            match set.len() == within.len() {
+                true => set.iter().zip(&within).map(|(word, within)| word & within).collect(),
+                false => Vec::new(),
+            }
+        };
+        sets.iter().map(filtered).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn accepts_angles_above_0_and_up_to_pi() {
+        for angle in [0.0, -1.0, 3.2, f64::NAN, f64::INFINITY] {
+            assert!(TiltLimit::new(angle).is_none(), "{angle}");
+        }
+        assert!(!TiltLimit::new(PI).expect("an angle").is_limited());
+        assert!(TiltLimit::new(3.1).expect("an angle").is_limited());
+    }
+
+    /// The lowest direction of a turn, by sampling it.
+    #[test]
+    fn a_turn_is_as_low_as_its_samples() {
+        let directions = Directions::spread(40);
+        let list: Vec<Vector3<f64>> =
+            directions.list().iter().map(|direction| Vector3::from(*direction)).collect();
+        let mut refused_between = 0;
+        for angle in [0.4, 1.0, FRAC_PI_2, 2.0, 2.9] {
+            let tilt = TiltLimit::new(angle).expect("an angle");
+            for (from, to) in list.iter().flat_map(|from| list.iter().map(move |to| (from, to))) {
+                let lowest = (0..=500)
+                    .filter_map(|k| from.lerp(to, f64::from(k) / 500.0).try_normalize(1e-9))
+                    .map(|axis| axis.z)
+                    .fold(1.0, f64::min);
+                // Samples miss the lowest direction by little.
+                if (lowest - angle.cos()).abs() > 1e-3 && from.dot(to) > -0.99 {
+                    assert_eq!(
+                        tilt.allows_turn(from, to),
+                        lowest > angle.cos(),
+                        "{from} {to} {angle}"
+                    );
+                    let ends = tilt.allows(from) && tilt.allows(to);
+                    refused_between += usize::from(ends && lowest < angle.cos());
+                }
+                assert!(tilt.allows(&tilt.clamped(from)));
+            }
+        }
+        assert!(refused_between > 10, "{refused_between}");
+    }
+}

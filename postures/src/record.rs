@@ -1,0 +1,101 @@
+//! Data on record for a triangle.
+
+use super::Piece;
+use super::map::merge;
+use nalgebra::Point3;
+use serde::{Deserialize, Serialize};
+use std::num::NonZeroU16;
+use touchoff::{Pose, PoseError};
+
+/// A posture on record: the pose of a tool at a triangle, its niceness, and its proved bounds. Lengths are in
+/// the part's unit, points in its frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PostureRecord {
+    /// Index of the tool in the map's list.
+    pub tool: u16,
+    /// Position of the tip.
+    pub tip: [f64; 3],
+    /// Unit vector from the tip to the spindle.
+    pub axis: [f64; 3],
+    /// Niceness of the contact: the least of its points.
+    pub niceness: f64,
+    /// Upper bound on the depth of the part in the tool.
+    pub depth: f64,
+    /// Lower bound on the distance between the part and the surfaces that do not cut; 0 where they touch within
+    /// their allowance.
+    pub clearance: f64,
+}
+
+impl PostureRecord {
+    /// Returns the validated pose, bit for bit.
+    ///
+    /// # Errors
+    /// If tip and axis do not form a pose. Those of a map always do.
+    pub fn pose(&self) -> Result<Pose, PoseError> {
+        Pose::from_axis(Point3::from(self.tip), self.axis.into())
+    }
+}
+
+/// The directions from which a tool reaches a triangle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Accessibility {
+    /// Index of the tool in the map's list.
+    pub tool: u16,
+    /// Bit set of directions: bit `k % 64` of word `k / 64` stands for direction `k` of the map's list.
+    pub directions: Vec<u64>,
+    /// Least stick-out from the holder that suffices for one of these directions, in the part's unit; `None` if
+    /// the tool has no holder or the set is empty.
+    pub stickout: Option<f64>,
+}
+
+/// A row of a map: the data on record for a triangle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MapRow {
+    /// The best postures on record, the nicest first.
+    pub best: Vec<PostureRecord>,
+    /// One entry per tool that a sweep tried at this triangle; empty if no sweep has processed it.
+    pub access: Vec<Accessibility>,
+}
+
+impl Accessibility {
+    /// Returns whether the tool reaches the triangle, or the piece of one.
+    pub fn is_reached(&self) -> bool {
+        self.directions.iter().any(|word| *word != 0)
+    }
+
+    fn join(&mut self, other: &Accessibility) {
+        let words = self.directions.iter_mut().zip(&other.directions);
+        words.for_each(|(word, other)| *word |= other);
+        self.stickout = match (self.stickout, other.stickout) {
+            (Some(one), Some(other)) => Some(one.min(other)),
+            (one, other) => one.or(other),
+        };
+    }
+}
+
+impl MapRow {
+    /// Joins the rows of the pieces of a triangle to one: the best `keep` postures of all, and per tool the directions
+    /// from which it reaches any of the pieces, with the least stick-out.
+    pub fn joined(pieces: &[(Piece, MapRow)], keep: NonZeroU16) -> MapRow {
+        let mut joined = MapRow::default();
+        for (_, row) in pieces {
+            merge(&mut joined.best, &row.best, keep);
+            for access in &row.access {
+                match joined.access.iter_mut().find(|known| known.tool == access.tool) {
+                    Some(known) => known.join(access),
+                    None => joined.access.push(access.clone()),
+                }
+            }
+        }
+        joined
+    }
+}
+
+/// Returns the fraction of a triangle's area that a tool reaches, by its pieces; `None` if no sweep tried it.
+pub(super) fn area_fraction(pieces: &[(Piece, MapRow)], tool: u16) -> Option<f64> {
+    let reach = |(piece, row): &(Piece, MapRow)| {
+        let access = row.access.iter().find(|access| access.tool == tool)?;
+        Some(if access.is_reached() { piece.fraction() } else { 0.0 })
+    };
+    pieces.iter().map(reach).sum()
+}

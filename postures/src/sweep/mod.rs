@@ -1,0 +1,205 @@
+//! Automatic search for postures at every triangle, with every tool and direction.
+//!
+//! A tool is placed so that one of its cutting surfaces touches the triangle's centroid, with its axis in one
+//! of the directions. Either the certifier proves that this is acceptable, or a point of the part is shown to
+//! be in the way. Some postures need no search: directions that no cutting surface faces, contacts that are not
+//! nice enough, and above all obstructions known from a neighbour. A point that was in the way of the
+//! neighbouring triangle, in the same direction, is usually in the way of this one. Testing that point costs
+//! one evaluation.
+//!
+//! One point says little about a large triangle. A [`Refiner`] divides triangles where it matters, and
+//! [`PostureSweep::run_pieces`] judges the pieces as if they were triangles.
+
+mod refine;
+mod stats;
+mod worker;
+
+pub use refine::{Refinement, Refiner, TriangleReach};
+pub use stats::SweepStats;
+
+use super::{Directions, MapRow, Piece, Rules, RulesError, ValidatorError};
+use std::fmt;
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use touchoff::Mesh;
+use touchoff::Tool;
+use touchoff::TriangleId;
+use touchoff::certify::TriangleBvh;
+use worker::Worker;
+
+/// Number of neighbouring triangles, or pieces of them, in a batch of rows.
+pub const BATCH_TRIANGLES: usize = 256;
+
+/// A part, and tools to try at all of its triangles.
+pub struct PostureSweep<'a> {
+    mesh: &'a Mesh,
+    bvh: &'a TriangleBvh,
+    tools: Vec<&'a dyn Tool>,
+    directions: &'a Directions,
+    rules: Rules,
+    keep: NonZeroU16,
+}
+
+impl fmt::Debug for PostureSweep<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PostureSweep")
+            .field("tools", &self.tools.len())
+            .field("rules", &self.rules)
+            .field("keep", &self.keep)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A reason for which a sweep cannot run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// A tool has no cutting surface.
+    #[error("nothing of {0} cuts: write `cutting` behind the surface in its file")]
+    NoCuttingSurface(String),
+    /// The rules are invalid.
+    #[error(transparent)]
+    Rules(#[from] RulesError),
+    /// A tool's postures cannot be validated.
+    #[error(transparent)]
+    Validator(#[from] ValidatorError),
+    /// The size of pieces is not a finite length above 0.
+    #[error("pieces of triangles cannot have edges of {0}: give a finite length above 0")]
+    PieceSize(f64),
+    /// The triangles would be divided into too many pieces.
+    #[error(
+        "pieces with edges down to {finest} are more than {limit}: refine down to a larger length"
+    )]
+    TooManyPieces {
+        /// The length of edges down to which pieces are divided.
+        finest: f64,
+        /// The largest number of pieces.
+        limit: usize,
+    },
+}
+
+/// Rows of neighbouring triangles, with counters.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Batch {
+    /// The rows, each with the id of its triangle.
+    pub rows: Vec<(TriangleId, MapRow)>,
+    /// Counters of the rules that decided the postures of the batch.
+    pub stats: SweepStats,
+}
+
+/// Rows of neighbouring pieces of triangles, with counters.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct PieceBatch {
+    /// The rows, each with its piece.
+    pub rows: Vec<(Piece, MapRow)>,
+    /// Counters of the rules that decided the postures of the batch.
+    pub stats: SweepStats,
+}
+
+impl<'a> PostureSweep<'a> {
+    /// Creates a sweep over a mesh and its triangles that keeps the best `keep` postures per triangle.
+    ///
+    /// # Errors
+    /// If the rules are invalid, or a tool cannot be used; see [`SweepError`].
+    pub fn new(
+        mesh: &'a Mesh,
+        bvh: &'a TriangleBvh,
+        tools: Vec<&'a dyn Tool>,
+        directions: &'a Directions,
+        rules: Rules,
+        keep: NonZeroU16,
+    ) -> Result<PostureSweep<'a>, SweepError> {
+        rules.check(&tools)?;
+        let sweep = PostureSweep { mesh, bvh, tools, directions, rules, keep };
+        for tool in &sweep.tools {
+            if !tool.info().surfaces.iter().any(|surface| surface.cutting) {
+                return Err(SweepError::NoCuttingSurface(tool.info().name.to_string()));
+            }
+        }
+        // Report here the errors that workers would meet in their threads.
+        Worker::new(&sweep)?;
+        Ok(sweep)
+    }
+
+    /// Returns the number of batches.
+    pub fn batches(&self) -> usize {
+        self.bvh.len().div_ceil(BATCH_TRIANGLES)
+    }
+
+    /// Returns the ids of the triangles in a batch.
+    pub fn triangles(&self, batch: usize) -> &[TriangleId] {
+        let ids = self.bvh.triangle_ids();
+        &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
+    }
+
+    /// Processes the given batches on all cores, and passes each to `each` as it is done, in no particular
+    /// order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor on
+    /// the time.
+    pub fn run<B>(
+        &self,
+        batches: &[usize],
+        each: impl FnMut(Batch) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let judge = |worker: &mut Worker<'_>, batch: usize| {
+            let triangles = self.triangles(batch);
+            let (rows, stats) = worker.rows(triangles.iter().map(|id| Piece::whole(*id)));
+            Batch { rows: triangles.iter().copied().zip(rows).collect(), stats }
+        };
+        self.parallel(batches, judge, each)
+    }
+
+    /// Judges pieces of triangles at their centroids, on all cores, in batches of [`BATCH_TRIANGLES`]. `batches`
+    /// has the indices of those to process; for the rest see [`PostureSweep::run`].
+    pub fn run_pieces<B>(
+        &self,
+        pieces: &[Piece],
+        batches: &[usize],
+        each: impl FnMut(PieceBatch) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let judge = |worker: &mut Worker<'_>, batch: usize| {
+            let pieces = pieces.chunks(BATCH_TRIANGLES).nth(batch).unwrap_or_default();
+            let (rows, stats) = worker.rows(pieces.iter().copied());
+            PieceBatch { rows: pieces.iter().copied().zip(rows).collect(), stats }
+        };
+        self.parallel(batches, judge, each)
+    }
+
+    fn parallel<T: Send, B>(
+        &self,
+        batches: &[usize],
+        judge: impl Fn(&mut Worker<'_>, usize) -> T + Sync,
+        mut each: impl FnMut(T) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let workers = std::thread::available_parallelism().map_or(1, usize::from);
+        let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+        std::thread::scope(|scope| {
+            let (done, batch) = mpsc::sync_channel(2 * workers);
+            for _ in 0..workers.min(batches.len()) {
+                let (done, next, stop, judge) = (done.clone(), &next, &stop, &judge);
+                scope.spawn(move || {
+                    let Ok(mut worker) = Worker::new(self) else { return };
+                    while !stop.load(Ordering::Relaxed)
+                        && let Some(index) = batches.get(next.fetch_add(1, Ordering::Relaxed))
+                    {
+                        if done.send(judge(&mut worker, *index)).is_err() {
+                            return;
+                        }
+                    }
+                });
+            }
+            drop(done);
+            while let Ok(batch) = batch.recv() {
+                let flow = each(batch);
+                if flow.is_break() {
+                    stop.store(true, Ordering::Relaxed);
+                    return flow;
+                }
+            }
+            ControlFlow::Continue(())
+        })
+    }
+}
