@@ -98,8 +98,12 @@ fn after_a_tool_change_only_the_machine_knows_where_the_axes_are() {
     );
     scene.gives(&FANUC, 2, &["`tool_change`"]);
     scene.gives(&LINUXCNC, 0, &[]);
-    // The control of Haas retracts Z to its home.
-    scene.gives(&HAAS, 1, &["the clamp"]);
+    // The control of Haas retracts Z to its home, unless T1 is in the spindle already.
+    scene.gives(&HAAS, 2, &["`tool_change`"]);
+    let other = blocks.replace("G43 H1 G0 X-6.", "T3 M6\nG43 H3 G0 X-6.");
+    let mut other = Scene::new(&other).placed().obstacle([2.0, -3.0, 60.0], [12.0, 3.0, 70.0]);
+    other.job += "[tool.3]\ntool = \"D2Ball\"\nlength = 50\n";
+    other.gives(&HAAS, 1, &["the clamp"]);
     let machine = touchoff(&["machines", "3-axis"]);
     let machine = stdout(&machine).replace("name = ", "tool_change = { Z = -300 }\nname = ");
     scene.bench.write("mine.toml", &machine);
@@ -180,7 +184,7 @@ fn numbers_without_a_point_are_units_or_increments() {
 /// A Haas may read a whole number after R or Q as units, where those of axes are increments.
 #[test]
 fn a_whole_number_after_r_is_either_on_haas() {
-    let blocks = "G0 X-6. Y0. Z20.\nG68 X0. Y0. R90\nX12. Z1.\nG1 X10.\nG69";
+    let blocks = "G0 X-6. Y0. Z20.\nG68 X0. Y0. R90\nX12. Y6. Z1.\nG1 X10.\nG69";
     let scene = Scene::new(blocks).obstacle([-8.0, 8.0, -1.0], [-4.0, 15.0, 9.0]);
     let scene = scene.with("anyway = true");
     scene.gives(&HAAS, 1, &["the clamp", "under whole_radii = \"units\""]);
@@ -473,9 +477,9 @@ fn controls_and_machines_are_listed() {
     for row in &rows {
         let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
         let open = match row["name"].as_str() {
-            Some("fanuc") => 2,
+            Some("fanuc") => 3,
             Some("haas") => 2,
-            Some("siemens") => 1,
+            Some("siemens" | "heidenhain") => 1,
             _ => 0,
         };
         assert_eq!(stated, keys - open, "{row}");
@@ -588,6 +592,105 @@ fn the_length_that_counts_always_is_that_of_the_tool() {
     edge.gives_natively(1, &["in rapid traverse"]);
     let edge = Scene::of(&format!("{start}D2\nG0 Z49.\nM30\n")).placed().with("anyway = true");
     edge.gives_natively(2, &["D1, the only cutting edge"]);
+}
+
+/// Endless axes of Siemens turn between angles from 0 to 360.
+#[test]
+fn a_rotary_axis_turns_within_a_turn() {
+    let blocks =
+        "T1 M6\nS9000 M3\nG43 H1\nG0 X20. Y0. Z50. A0. C0.\nG91 C450.\nG90 Z5.\nG1 C280.\nG0 Z50.";
+    let scene = Scene::new(blocks).placed().obstacle([-22.0, -2.0, -2.0], [-18.0, 2.0, 30.0]);
+    let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives_natively(1, &["the clamp"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives(&[], 1, &["under rotary = \"within a turn\""]);
+}
+
+/// Fanuc takes the part as it stands where tool centre point control begins.
+#[test]
+fn tool_centre_point_control_begins_with_the_table_at_zero() {
+    let blocks = "T1 M6\nS9000 M3\nG43.4 H1\nG0 X-6. Y0. Z20. A0. C0.\nG1 X-4. Z1.\nG0 Z50.";
+    let turned = blocks.replace("G43.4 H1", "G0 A0. C90.\nG43.4 H1");
+    let scene = |blocks: &str| {
+        let scene = Scene::new(blocks).placed();
+        scene.with("machine = \"A-C trunnion\"\nanyway = true")
+    };
+    scene(&turned).gives(&FANUC, 2, &["`tcp_start`"]);
+    scene(&turned).gives(&[], 2, &["`tcp_start`"]);
+    scene(&turned).gives(&LINUXCNC, 0, &[]);
+    let at_zero = blocks.replace("G43.4 H1", "G0 A0. C0.\nG43.4 H1");
+    scene(&at_zero).gives(&FANUC, 0, &[]);
+}
+
+/// Two positions of the rotary axes align the tool, and the nearer of one axis is not that of the other.
+#[test]
+fn an_alignment_that_controls_choose_in_different_ways_is_not_followed() {
+    let blocks = |first: &str| {
+        format!(
+            "T1 M6\nS9000 M3\nG43 H1\nG0 X-6. Y0. Z50. {first}\nG68.2 X0. Y0. Z0. I170. J20. K0.\nG53.1\nG0 X0. Y0. Z50.\nG1 Z1.5\nG0 Z50.\nG69"
+        )
+    };
+    let scene = |blocks: &str| {
+        let scene = Scene::new(blocks).placed();
+        scene.with("machine = \"A-C trunnion\"")
+    };
+    scene(&blocks("A5. C0.")).gives(&LINUXCNC, 2, &["two positions of the rotary axes"]);
+    scene(&blocks("A0. C0.")).gives(&LINUXCNC, 0, &[]);
+}
+
+/// In an aligned plane, too, each axis moves by itself.
+#[test]
+fn rapid_traverse_in_a_tilted_plane_is_any_dog_leg() {
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nG0 X-10. Y-10. Z50. A0. C0.\nG68.2 X0. Y0. Z0. I0. J0. K0.\nG53.1\n\
+                  G0 X-10. Y-10. Z1.\nX10. Y10. Z1.\nG1 Y12.\nG0 Z50.\nG69";
+    let scene = Scene::new(blocks).placed().obstacle([4.0, -9.0, -2.0], [9.0, -4.0, 5.0]);
+    let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives(&FANUC, 1, &["the clamp", "at some rates of its axes"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+/// The tool of a program that names none is that of its first length offset.
+#[test]
+fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
+    let start = "G43 H1 G0 X-6. Y0. Z45.\nG1 X-4. Z1.\nG0 Z45.\n";
+    for end in ["G49 Z45.\nX6.\nG1 X5.", "G91 G28 Z0.\nG90 G49 G0 Z45.\nX6.\nG1 X5."] {
+        let scene = Scene::new(&format!("{start}{end}")).placed();
+        let scene = scene.obstacle([0.0, -2.0, -20.0], [8.0, 2.0, -1.0]).with("anyway = true");
+        scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    }
+    let other = Scene::new(&format!("{start}G43 H7 Z45.\nX6.\nG1 X5.")).placed();
+    other.gives(&LINUXCNC, 2, &["with the length offset H7 of another tool"]);
+}
+
+/// What a program leaves at its end is what its next run begins with, on some controls.
+#[test]
+fn a_program_that_ends_otherwise_than_it_begins_is_named() {
+    let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
+    let word = "can keep for the next run";
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&FANUC, 2, &[word]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&LINUXCNC, 0, &[]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(&FANUC, 0, &[]);
+    Scene::of(&format!("{begin}G52 X1.\nM30\n")).gives(&LINUXCNC, 2, &[word]);
+}
+
+/// Words of Heidenhain whose order in a block matters, or that keep what they leave out.
+#[test]
+fn words_of_heidenhain_depend_on_their_order() {
+    let begin = "G71 G90 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\n";
+    for (blocks, word) in [
+        ("G1 X6. G91 Y0. Z0.", "it holds for the coordinates after it"),
+        ("G2 X-10. Y20. I-10.", "which keeps it on Heidenhain"),
+        ("M89", "M89 is another word"),
+    ] {
+        let scene = Scene::of(&format!("{begin}{blocks}\nM30\n"));
+        scene.gives(&["--control", "heidenhain"], 2, &[word]);
+    }
+    // The head is a title for others.
+    let head = Scene::of("%P G71\nG90 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nM30\n");
+    head.gives(&["--control", "heidenhain"], 2, &["G54 is another word"]);
+    head.gives(&HAAS, 2, &["(-152.4000"]);
+    let edge = Scene::new("D1\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nD0\nG0 X6.").placed();
+    edge.gives_natively(2, &["D0 needs a tool in the spindle"]);
 }
 
 /// An axis that the program has not stated leaves all motions between stated positions unknown.
@@ -704,12 +807,14 @@ fn other_words_on_which_controls_differ_are_refused() {
 #[test]
 fn a_change_of_the_length_offset_moves_z_or_not() {
     let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z45.\nX5.\n";
-    for change in ["G49\nX6.", "G43 H0\nX6."] {
+    for (change, unnamed) in [("G49\nX6.", 1), ("G43 H0\nX6.", 2)] {
         let scene = Scene::new(&format!("{start}{change}\nG43 H1 Z45.\nG1 X5.")).placed();
         let scene = scene.obstacle([4.0, -2.0, -60.0], [8.0, 2.0, -1.0]).with("anyway = true");
         scene.gives(&LINUXCNC, 0, &[]);
         scene.gives(&FANUC, 1, &["the clamp", "under length_change = \"moves Z\""]);
-        scene.gives(&[], 1, &["the clamp", "length_change = \"moves Z\""]);
+        // H0 takes the length of the tool on LinuxCNC.
+        let words = if unnamed == 1 { "length_change = \"moves Z\"" } else { "write G49" };
+        scene.gives(&[], unnamed, &[words]);
     }
     let together = Scene::new(&format!("{start}G49 X6.\nG43 H1 Z45.\nG1 X5.")).placed();
     together.gives(&FANUC, 2, &["G49 while the length offset changes", "length_change"]);
@@ -789,7 +894,8 @@ fn the_repeats_of_a_cycle_are_after_l_or_k() {
     let blocks = "G0 X-6. Y0. Z20.\nG99 G91 G81 X4. Z-0.2 R-18. L2\nG80 G90\nG0 Z20.";
     let scene = Scene::new(blocks).obstacle([1.0, -2.0, -1.0], [3.0, 2.0, 9.0]);
     scene.gives(&HAAS, 1, &["the clamp"]);
-    scene.gives(&FANUC, 0, &[]);
+    scene.gives(&FANUC, 1, &["under cycle_repeats = \"L\""]);
+    scene.gives(&SIEMENS, 0, &[]);
     scene.gives(&[], 1, &["under cycle_repeats = \"L\""]);
     let scene =
         Scene::new(&blocks.replace("L2", "K2")).obstacle([1.0, -2.0, -1.0], [3.0, 2.0, 9.0]);

@@ -44,8 +44,14 @@ pub(super) struct Block {
     assignments: Vec<(Parameter, f64)>,
     /// Coordinates that have no decimal point and are not zero, as bits from A.
     whole: u32,
+    /// Letters whose number is a parameter or an expression, as bits from A.
+    computed: u32,
+    /// Set if the block has an assignment.
+    pub(super) assigns: bool,
     /// Set if the line begins with `/`.
     pub(super) deletable: bool,
+    /// Set if G90 or G91 stands after a coordinate.
+    pub(super) distance_after_coordinate: bool,
 }
 
 /// Removes `/`, which may be followed by the number of its switch, and a block number.
@@ -93,6 +99,7 @@ impl Block {
                 _ => return Err(unexpected(&cursor)),
             }
         }
+        self.assigns = !self.assignments.is_empty();
         for (parameter, value) in self.assignments.drain(..) {
             parameters.assign(parameter, value);
         }
@@ -106,7 +113,8 @@ impl Block {
         self.label = None;
         self.keyword = None;
         self.assignments.clear();
-        self.whole = 0;
+        (self.whole, self.computed, self.assigns) = (0, 0, false);
+        self.distance_after_coordinate = false;
     }
 
     /// Returns whether the block has no word yet.
@@ -146,6 +154,9 @@ impl Block {
                 if is_coordinate && is_whole && value != 0.0 {
                     self.whole |= bit;
                 }
+                if written.contains(['[', '#']) {
+                    self.computed |= bit;
+                }
                 Ok(())
             }
         }
@@ -160,7 +171,9 @@ impl Block {
             return Err(GcodeFault::NotAllowed { word: letter, value, expected });
         }
         let code = Code { letter, tenths: tenths as u32 };
-        match group(code)? {
+        let group = group(code)?;
+        self.distance_after_coordinate |= group == Group::Distance && self.has_any("XYZABCIJK");
+        match group {
             Group::PassedOver => self.passed_over.push(code),
             group => match &mut self.codes[group as usize] {
                 Some(first) => {
@@ -214,9 +227,9 @@ impl Block {
         Ok(())
     }
 
-    /// Returns the words of all groups.
+    /// Returns all G and M words.
     pub(super) fn codes(&self) -> impl Iterator<Item = Code> + '_ {
-        self.codes.iter().flatten().copied()
+        self.codes.iter().flatten().chain(&self.passed_over).copied()
     }
 
     /// Returns the word of a group.
@@ -255,13 +268,14 @@ impl Block {
         letters.chars().any(|letter| self.has(letter) && value(letter) != 0.0)
     }
 
-    /// Returns whether a block with M98 has words that are no part of the call.
+    /// Returns whether a block with M98 has words that are no part of the call, or numbers that are computed: a control that
+    /// repeats the call computes them again.
     pub(super) fn has_more_than_call(&self) -> bool {
         let call = 1 << (b'P' - b'A') | 1 << (b'L' - b'A');
-        self.unused & !call != 0
-            || self.codes().nth(1).is_some()
-            || !self.passed_over.is_empty()
-            || self.keyword.is_some()
+        if self.assigns || self.computed & self.unused & call != 0 && self.has('L') {
+            return true;
+        }
+        self.unused & !call != 0 || self.codes().nth(1).is_some() || self.keyword.is_some()
     }
 
     /// Returns whether a word of the block can name axes without moving them, or by a path of its own. What it leaves of the axis
@@ -277,6 +291,11 @@ impl Block {
     /// Returns whether the block moves, or changes what motions do.
     pub(super) fn has_effect(&self) -> bool {
         self.codes.iter().any(Option::is_some) || self.keyword.is_some() || self.has_any("XYZABC")
+    }
+
+    /// Returns the number after a letter that no word has used.
+    pub(super) fn value(&self, letter: char) -> Option<f64> {
+        self.has(letter).then_some(self.values[usize::from(letter as u8 - b'A')])
     }
 
     /// Returns the number after a letter, which counts as used.

@@ -22,6 +22,11 @@ impl Control {
         edit(&mut new);
         if new != *self.state {
             self.length_changed |= new.length != self.state.length;
+            self.rotation_changed |= new.rotation != self.state.rotation;
+            for (axis, changed) in self.origin_changed.iter_mut().enumerate() {
+                *changed |= new.origin[axis] != self.state.origin[axis]
+                    || new.shift[axis] != self.state.shift[axis];
+            }
             self.position = self.state.carry_over(&new, self.position);
             self.state = Arc::new(new);
         }
@@ -45,7 +50,19 @@ impl Control {
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
-        if (has_change || changes) && block.has_any("XYZABC") {
+        let groups = [Group::OneShot, Group::Machine, Group::Length];
+        let is_other = |group: &Group| block.code_of(*group).is_some();
+        if has_change
+            && let Some(group) = groups.iter().find(|group| is_other(group))
+            && let Some(code) = block.code_of(*group)
+        {
+            return Err(combination(
+                code,
+                "its block has M6",
+                "write it in a block before or after",
+            ));
+        }
+        if (has_change || changes) && block.has_any("XYZABCIJK") {
             return Err(GcodeFault::Combination {
                 word: if has_change { "M6" } else { "T" }.to_owned(),
                 condition: "its block has axis words",
@@ -81,7 +98,8 @@ impl Control {
     fn change_tool(&mut self, tool: u32) {
         self.notes.add(self.line, Subject::ToolChange);
         self.stop_spindle();
-        self.leave_for_change(self.state.tool == Some(tool));
+        // The tool before the first change may be the same.
+        self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
         self.change(|state| state.tool = Some(tool));
         let is_always = self.stated(Rule::ToolLength) == Some(Choice::Always);
@@ -92,7 +110,13 @@ impl Control {
 
     /// Executes D where it selects the length of the tool: 0 is none, and 1 the only edge whose length is known.
     fn edge_length(&mut self, edge: u32) -> Result<(), GcodeFault> {
-        let Some(tool) = self.state.tool else { return Ok(()) };
+        let Some(tool) = self.state.tool else {
+            if edge != 1 && self.choice(Rule::ToolLength) == Choice::Always {
+                let needed = "a tool in the spindle (T M6) before";
+                return Err(GcodeFault::Missing { word: format!("D{edge}"), needed });
+            }
+            return Ok(());
+        };
         let is_first = edge == 1 && !self.length_cancelled;
         if is_first || self.choice(Rule::ToolLength) != Choice::Always {
             return Ok(());
@@ -124,9 +148,11 @@ impl Control {
         let (moved, target) = match stated {
             Some(target) => (target.map(|value| value.is_some()), target),
             None => match self.choice(Rule::ToolChange) {
-                Choice::Retracts if is_same => (self.axes, [None; 6]),
                 Choice::Retracts => {
                     let height = self.home.map(|home| home[2]);
+                    let present = self.state.to_machine(self.position)[2];
+                    let stays = is_same && present.is_some() && present != height;
+                    let height = height.filter(|_| !stays);
                     let z_alone = [false, false, true, false, false, false];
                     (z_alone, [None, None, height, None, None, None])
                 }
@@ -190,10 +216,17 @@ impl Control {
             let (before, height) = (Arc::clone(&self.state), self.position[2]);
             let has_returned = self.returned.is_some();
             self.length(block, code)?;
-            if !block.has('Z') && !has_returned && self.moves_by_length(&before, height) {
-                if block.has_any("XYABC") {
+            let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
+            let is_return = matches!(one_shot, Some(280 | 300));
+            if (is_return || !block.has('Z'))
+                && !has_returned
+                && self.moves_by_length(&before, height)
+            {
+                let is_rotated = self.state.rotation != Rotation::Off;
+                if is_return || is_rotated || block.has_any("XYABC") {
                     let condition = "the length offset changes, and moves Z";
-                    return Err(combination(code, condition, "write it in a block of its own"));
+                    let remedy = "write it in a block of its own, without a rotation";
+                    return Err(combination(code, condition, remedy));
                 }
                 self.move_along_z(height);
             }
@@ -232,6 +265,7 @@ impl Control {
             return Err(combination(code, "a plane is rotated", "end it with G69 before"));
         }
         let mut given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
+        let is_zero = given == Some(0) && code.tenths == 430;
         if given.is_none()
             && code.tenths == 430
             && self.last_register != self.state.tool
@@ -240,6 +274,17 @@ impl Control {
             given = Some(self.last_register.unwrap_or(0));
         }
         self.last_register = given.or(self.last_register);
+        if is_zero {
+            match self.stated(Rule::Dialect) {
+                Some(Choice::Rs274Ngc) => given = None,
+                None => {
+                    let condition =
+                        "it ends the length offset, or takes that of the tool on LinuxCNC";
+                    return Err(combination(code, condition, "write G49, or name the control"));
+                }
+                Some(_) => {}
+            }
+        }
         self.length_cancelled = given == Some(0);
         let length = match (given, self.state.length, self.state.tool) {
             (Some(0), ..) => LengthOffset::Off,
@@ -260,12 +305,10 @@ impl Control {
     /// Returns whether the control moves Z by a change of the length offset without a word for Z: as by an increment of 0. At a
     /// reference position the offset is suspended, and its change moves nothing.
     fn moves_by_length(&mut self, before: &ControlState, height: Option<f64>) -> bool {
-        let is_plain =
-            |state: &ControlState| state.tcp == Tcp::Off && state.rotation == Rotation::Off;
         height.is_some()
             && before.length != self.state.length
-            && is_plain(before)
-            && is_plain(&self.state)
+            && before.tcp == Tcp::Off
+            && self.state.tcp == Tcp::Off
             && self.choice(Rule::LengthChange) == Choice::MovesZ
     }
 
@@ -303,6 +346,7 @@ impl Control {
                 remedy: "end it with G49 before",
             });
         }
+        self.offset_deselected |= block.keyword.is_some();
         if word == "M429" || word == "TRAFOOF" {
             self.transformed = false;
             self.change(|state| state.tcp = Tcp::Off);
@@ -361,6 +405,7 @@ impl Control {
             }
         }
         self.offset_stated = true;
+        self.offset_deselected = false;
         if offset != self.state.work_offset {
             self.check_unrotated(code)?;
         }
@@ -398,7 +443,12 @@ impl Control {
             100 => self.set_origin(block, code),
             520 => self.set_local(block, code),
             920 => self.preset(block, code),
-            tenths => self.end_preset(code, tenths),
+            923 => {
+                let meaning = "a shift that another program may have left";
+                let remedy = "write G92 with its axes";
+                Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
+            }
+            _ => self.end_preset(code),
         }
     }
 
@@ -422,6 +472,25 @@ impl Control {
         }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
+        let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
+        let is_shifted = self.state.shift != [Some(0.0); 6];
+        if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {
+            return Err(combination(
+                code,
+                "G52 or G92 is in force, and it rotates",
+                "end it before",
+            ));
+        }
+        let is_known = self.origins.get(&offset).is_some_and(|(origin, _)| *origin != [None; 6]);
+        // A program that sets G54 moves the part, and is refused on a machine.
+        if turn.is_none()
+            && !is_known
+            && number != 1
+            && matches!(self.stated(Rule::Dialect), None | Some(Choice::Rs274Ngc))
+        {
+            let needed = "R0, since LinuxCNC keeps a rotation of the work offset; or state its origin in `work_offsets`";
+            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+        }
         let (origin, rotation) = self.origins.entry(offset).or_insert(([None; 6], 0.0));
         for (coordinate, value) in origin.iter_mut().zip(axes) {
             *coordinate = value.or(*coordinate);
@@ -452,6 +521,9 @@ impl Control {
     /// Executes G92: the present position gets the given coordinates.
     fn preset(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         self.check_local(code)?;
+        if self.modal.incremental {
+            return Err(combination(code, "G91 is in force", "write G90 before"));
+        }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
@@ -469,24 +541,13 @@ impl Control {
         Ok(())
     }
 
-    /// Executes G92.1, G92.2 and G92.3.
-    fn end_preset(&mut self, code: Code, tenths: u32) -> Result<(), GcodeFault> {
+    /// Executes G92.1 and G92.2.
+    fn end_preset(&mut self, code: Code) -> Result<(), GcodeFault> {
         self.check_local(code)?;
-        if self.preset != [Some(0.0); 6] && self.choice(Rule::PresetEnd) == Choice::KeepsPreset {
-            return Ok(());
+        if self.preset != [Some(0.0); 6] && self.choice(Rule::PresetEnd) == Choice::EndsPreset {
+            self.preset = [Some(0.0); 6];
+            self.update_shift();
         }
-        match tenths {
-            921 => (self.preset, self.suspended) = ([Some(0.0); 6], None),
-            922 => {
-                // A second G92.2 does not forget what the first suspended.
-                if self.suspended.is_none() {
-                    self.suspended = Some(self.preset);
-                }
-                self.preset = [Some(0.0); 6];
-            }
-            _ => self.preset = self.suspended.take().unwrap_or(self.preset),
-        }
-        self.update_shift();
         Ok(())
     }
 
@@ -575,7 +636,7 @@ impl Control {
 
 /// Returns whether a block has a position in program coordinates for a motion.
 pub(super) fn is_programmed(block: &Block) -> bool {
-    block.has_any("XYZABC")
+    block.has_any("XYZABCIJK")
         && block.code_of(Group::OneShot).is_none()
         && block.code_of(Group::Machine).is_none()
 }

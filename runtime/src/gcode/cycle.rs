@@ -10,6 +10,7 @@
 //! as zero.
 
 use super::block::Block;
+use super::code::Group;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{ControlState, Position, Tcp};
@@ -60,8 +61,23 @@ impl Control {
                 remedy: "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
             });
         }
+        if block.code_of(Group::Length).is_some() {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "its block changes the length offset, before or after its initial level is taken",
+                remedy: "write G43 or G49 in a block before",
+            });
+        }
+        if matches!(number, 74 | 84) && !self.can_tap(number) {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "the spindle does not turn into the thread, which some controls start themselves",
+                remedy: "write M3 before G84, M4 before G74, or M29 for rigid tapping",
+            });
+        }
         self.check_feed(&word)?;
         self.check_tilted(block)?;
+        self.check_position(block)?;
         let normal = self.modal.plane.normal();
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
@@ -83,7 +99,7 @@ impl Control {
             self.move_along(normal, true, levels.retract);
         }
         for _ in 0..repeats {
-            self.move_over(axes, levels.clear);
+            self.move_over(axes, levels);
             if self.position[normal] != levels.retract || levels.retract.is_none() {
                 self.move_along(normal, true, levels.retract);
             }
@@ -193,11 +209,12 @@ impl Control {
 
     /// Moves over the next hole, at the present level. In a series, LinuxCNC moves straight to a level that is higher
     /// (`CYCLE_MACRO` of its interpreter).
-    fn move_over(&mut self, axes: Position, clear: Option<f64>) {
+    fn move_over(&mut self, axes: Position, Levels { retract, clear, .. }: Levels) {
         let normal = self.modal.plane.normal();
         let mut end = self.position;
         let mut commanded = [false; 6];
         if self.cycle.is_some()
+            && !is_below(retract, end[normal])
             && is_below(end[normal], clear)
             && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
         {

@@ -104,8 +104,12 @@ impl Parameter {
         }
     }
 
-    fn is_local(&self) -> bool {
-        !matches!(self, Parameter::Numbered(number) if *number >= FIRST_SHARED)
+    /// Returns whether a subprogram has its own: names always, numbers below [`FIRST_SHARED`] if it has `sub` (O-words).
+    fn is_local(&self, has_sub: bool) -> bool {
+        match self {
+            Parameter::Named(_) => true,
+            Parameter::Numbered(number) => has_sub && *number < FIRST_SHARED,
+        }
     }
 }
 
@@ -120,17 +124,17 @@ impl Parameters {
         self.values.insert(parameter, value);
     }
 
-    /// Removes the parameters that are local to a subprogram of O-words, and returns them.
-    pub(super) fn take_locals(&mut self) -> Parameters {
+    /// Removes the parameters that are local to a subprogram, and returns them. `has_sub` is set for O-words.
+    pub(super) fn take_locals(&mut self, has_sub: bool) -> Parameters {
         let values = std::mem::take(&mut self.values);
-        let (locals, shared) = values.into_iter().partition(|(key, _)| key.is_local());
+        let (locals, shared) = values.into_iter().partition(|(key, _)| key.is_local(has_sub));
         self.values = shared;
         Parameters { values: locals }
     }
 
     /// Replaces the local parameters by those of the caller.
-    pub(super) fn restore_locals(&mut self, locals: Parameters) {
-        self.values.retain(|key, _| !key.is_local());
+    pub(super) fn restore_locals(&mut self, locals: Parameters, has_sub: bool) {
+        self.values.retain(|key, _| !key.is_local(has_sub));
         self.values.extend(locals.values);
     }
 
@@ -246,6 +250,9 @@ fn product(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64,
                 return Err(ExpressionFault::Operation { name: "**".to_owned() });
             }
             total = finite(total * signed(cursor, known, depth)?, "*")?;
+        } else if depth == 0 && cursor.peek() == Some(b'/') {
+            // Outside of brackets it is the sign of an optional block on Fanuc.
+            return Err(ExpressionFault::Operation { name: "/".to_owned() });
         } else if cursor.take(b'/') {
             total = finite(total / signed(cursor, known, depth)?, "/")?;
         } else {

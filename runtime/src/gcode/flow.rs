@@ -15,8 +15,8 @@ struct Call {
     return_to: Place,
     /// Executions that follow the present one.
     repeats: u32,
-    /// The caller's parameters that a subprogram of O-words does not see.
-    locals: Option<Parameters>,
+    /// The caller's parameters that the subprogram does not see.
+    locals: Parameters,
 }
 
 /// The place of execution in a text.
@@ -168,7 +168,7 @@ impl<'a> Flow<'a> {
         if times == 0 {
             return Ok(());
         }
-        let locals = (role == Role::Sub).then(|| parameters.take_locals());
+        let locals = parameters.take_locals(role == Role::Sub);
         let return_to = self.place;
         self.place = subprogram.body;
         self.calls.push(Call { label, subprogram, return_to, repeats: times - 1, locals });
@@ -220,9 +220,7 @@ impl<'a> Flow<'a> {
             _ => {
                 if let Some(call) = self.calls.pop() {
                     self.place = call.return_to;
-                    if let Some(locals) = call.locals {
-                        parameters.restore_locals(locals);
-                    }
+                    parameters.restore_locals(call.locals, call.subprogram.role == Role::Sub);
                 }
             }
         }

@@ -11,6 +11,7 @@ use super::modal::{FeedMode, Motion};
 use super::motion::Control;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
+use super::state::{Rotation, WorkOffset};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
@@ -43,7 +44,11 @@ impl<'a> Interpreter<'a> {
         let extent = text::extent(text);
         let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
         let mut control = Control::new(setup);
-        if let Some(unit) = extent.unit {
+        let dialect = setup.rules.get(Rule::Dialect);
+        // The head of a program of Heidenhain is a title elsewhere.
+        if let Some(unit) = extent.unit
+            && matches!(dialect, None | Some(Choice::Heidenhain))
+        {
             (control.modal.unit, control.modal.unit_stated) = (unit, true);
             control.read_heidenhain();
         }
@@ -180,6 +185,7 @@ impl<'a> Interpreter<'a> {
         match block.code_of(Group::Stop).map(|code| code.tenths) {
             Some(20 | 300) => {
                 self.finished = true;
+                self.control.note_left_modes();
                 if let Some(line) = self.flow.text_after_end() {
                     self.control.notes.add(line, Subject::TextAfterEnd);
                 }
@@ -276,7 +282,7 @@ impl Control {
         self.motion_mode(block);
         if let Some(word) = turned.filter(|_| is_programmed(block) && self.modal.is_feed()) {
             return Err(GcodeFault::Combination {
-                word: word.to_string(),
+                word,
                 condition: "its block has a motion at feed rate",
                 remedy: "write it in a block before or after",
             });
@@ -288,6 +294,10 @@ impl Control {
         if self.depends_on_length(block) {
             self.length_without_word();
         }
+        if is_programmed(block) && self.offset_deselected {
+            let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
+            return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
+        }
         if is_programmed(block)
             && !self.offset_stated
             && self.choice(Rule::StartOffset) == Choice::NoOffset
@@ -295,7 +305,38 @@ impl Control {
             let needed = "a work offset (G54) before, since this control starts without one";
             return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
         }
+        self.rely(block);
         self.motion(block)
+    }
+
+    /// Notes what a block takes for granted that the program has not stated.
+    fn rely(&mut self, block: &Block) {
+        if !is_programmed(block) {
+            return;
+        }
+        let modal = &self.modal;
+        let has_plane = matches!(modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_)));
+        self.relies.distance |= !modal.distance_stated;
+        self.relies.plane |= has_plane && !modal.plane_stated;
+        if !modal.unit_stated {
+            self.relies.unit.get_or_insert(modal.unit);
+        }
+        self.relies.offset |= !self.offset_stated;
+    }
+
+    /// Notes what the program leaves otherwise than it takes it for granted: the control may keep it for the next run.
+    fn note_left_modes(&mut self) {
+        let (modal, relies, state) = (&self.modal, self.relies, &self.state);
+        let shifts = state.shift != [Some(0.0); 6] || state.rotation != Rotation::Off;
+        let differs = relies.distance && modal.incremental
+            || relies.plane && modal.plane != Plane::Xy
+            || relies.unit.is_some_and(|unit| unit != modal.unit)
+            || relies.offset && state.work_offset != WorkOffset::Standard(1)
+            || shifts;
+        // LinuxCNC sets its modes at the end of a program, and keeps shifts by G92.
+        if differs && (shifts || self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)) {
+            self.notes.add(self.line, Subject::LeftModes);
+        }
     }
 
     /// Refuses words that mean something else in the dialect of the control.
@@ -309,18 +350,55 @@ impl Control {
             return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
         }
         let other = block.codes().find(|code| is_other_word(*code));
-        match other {
-            Some(code) if self.choice(Rule::Dialect) == Choice::Heidenhain => {
-                let meaning = "another word in DIN/ISO programs of Heidenhain";
-                let remedy = "post the program for this control, or state another `dialect`";
-                Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
-            }
-            _ => Ok(()),
+        if let Some(code) = other
+            && self.choice(Rule::Dialect) == Choice::Heidenhain
+        {
+            let meaning = "another word in DIN/ISO programs of Heidenhain";
+            let remedy = "post the program for this control, or state another `dialect`";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
         }
+        let dialect = self.stated(Rule::Dialect);
+        if let Some(code) = block.code_of(Group::Kinematics)
+            && dialect != Some(Choice::Rs274Ngc)
+        {
+            let meaning = "tool centre point control of LinuxCNC's five-axis configurations alone";
+            let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
+        if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
+            return Err(GcodeFault::Combination {
+                word: "G90 or G91".to_owned(),
+                condition: "a coordinate stands before it in the block",
+                remedy: "write it first: on Heidenhain it holds for the coordinates after it",
+            });
+        }
+        let is_m = |code: &Code| code.letter == 'M';
+        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60);
+        if matches!(dialect, None | Some(Choice::Iso))
+            && block.codes().filter(is_m).nth(1).is_some()
+            && let Some(code) = block.codes().filter(is_m).find(acts)
+        {
+            return Err(GcodeFault::Combination {
+                word: code.to_string(),
+                condition: "its block has another M word, of which Haas and Fanuc as delivered execute one",
+                remedy: "write them in two blocks",
+            });
+        }
+        if block.has('P')
+            && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
+        {
+            return Err(GcodeFault::Combination {
+                word: format!("P beside {code}"),
+                condition: "it selects another work offset on Fanuc and Siemens",
+                remedy: "write it in a block of its own",
+            });
+        }
+        Ok(())
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
     fn numbers(&mut self, block: &mut Block) {
+        self.unit_used |= block.is_nonzero("XYZIJKRQ");
         if !self.modal.unit_stated && block.is_nonzero("XYZIJKRQ") {
             self.modal.unit = match self.choice(Rule::Unit) {
                 Choice::Inch => Unit::Inch,
@@ -391,11 +469,21 @@ impl Control {
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
         if let Some(unit) = tenths(Group::Units) {
             let is_inch = matches!(unit, 200 | 700 | 7000);
-            self.modal.unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
+            let unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
+            let switches = self.unit_used && unit != self.modal.unit;
+            if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
+                return Err(GcodeFault::Combination {
+                    word: if is_inch { "G20" } else { "G21" }.to_owned(),
+                    condition: "the program has lengths in another unit",
+                    remedy: "select the unit once, at the start",
+                });
+            }
+            self.modal.unit = unit;
             self.modal.unit_stated = true;
         }
         if let Some(distance) = tenths(Group::Distance) {
             self.modal.incremental = distance == 910;
+            self.modal.distance_stated = true;
         }
         if let Some(distance) = tenths(Group::ArcDistance) {
             self.modal.absolute_centres = Some(distance == 901);
@@ -416,6 +504,7 @@ impl Control {
                 180 => Plane::Zx,
                 _ => Plane::Yz,
             })?;
+            self.modal.plane_stated = true;
         }
         if let Some(code) = block.code_of(Group::PathControl) {
             path_control(block, code)?;

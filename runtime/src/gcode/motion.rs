@@ -11,6 +11,7 @@ use super::rules::{Choice, ControlRules, Rule};
 use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Step, StepPath};
+use crate::unit::Unit;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -24,6 +25,18 @@ const RADII_TOLERANCE: f64 = 5e-3;
 /// Returns two coordinates of a position, if both are known.
 fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
     Some([position[axes[0]]?, position[axes[1]]?])
+}
+
+/// What a program takes for granted, before it states it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Relies {
+    /// G90.
+    pub(super) distance: bool,
+    /// G17.
+    pub(super) plane: bool,
+    pub(super) unit: Option<Unit>,
+    /// G54.
+    pub(super) offset: bool,
 }
 
 /// A control: everything that blocks change and motions depend on.
@@ -43,8 +56,6 @@ pub(super) struct Control {
     pub(super) local: [f64; 6],
     /// Shift by G92.
     pub(super) preset: Position,
-    /// Shift by G92 that G92.2 suspended.
-    pub(super) suspended: Option<Position>,
     /// The tool that the next M6 changes to.
     pub(super) staged: Option<u32>,
     /// The last D.
@@ -70,6 +81,15 @@ pub(super) struct Control {
     pub(super) last_register: Option<u32>,
     /// Set by a change of the length offset, until Z is stated.
     pub(super) length_changed: bool,
+    /// Set by a change of a work offset or a shift for its axes, until each is stated.
+    pub(super) origin_changed: [bool; 6],
+    /// Set by G68 and G69, until a position in the plane is stated.
+    pub(super) rotation_changed: bool,
+    /// Set by `TRAORI` and `TRAFOOF`, which deselect the work offset, until one is selected.
+    pub(super) offset_deselected: bool,
+    /// Set once the program has a length.
+    pub(super) unit_used: bool,
+    pub(super) relies: Relies,
     /// Set if the length offset is that of the tool in the spindle without a word.
     pub(super) length_implicit: bool,
     /// Set by G49, until the next tool change.
@@ -107,7 +127,6 @@ impl Control {
             second_home: setup.second_home,
             local: [0.0; 6],
             preset: [Some(0.0); 6],
-            suspended: None,
             staged: None,
             edge: None,
             transformed: false,
@@ -122,6 +141,11 @@ impl Control {
             returned: None,
             last_register: None,
             length_changed: false,
+            origin_changed: [false; 6],
+            rotation_changed: false,
+            offset_deselected: false,
+            unit_used: false,
+            relies: Relies::default(),
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::new(),
@@ -227,7 +251,7 @@ impl Control {
         }
         self.check_tilted(block)?;
         let turns = self.take_vector(block)?;
-        self.check_increment(block)?;
+        self.check_position(block)?;
         let (mut end, _, mut commanded) = self.take_end(block);
         if turns {
             end[3..].fill(None);
@@ -275,6 +299,16 @@ impl Control {
         self.check_tilted(block)?;
         let modal = self.modal;
         let length = |value: f64| modal.millimetres(value);
+        let in_plane = self.modal.plane.axes().map(|axis| ['I', 'J', 'K'][axis]);
+        if self.stated(Rule::Dialect) == Some(Choice::Heidenhain)
+            && block.has(in_plane[0]) != block.has(in_plane[1])
+        {
+            return Err(GcodeFault::Combination {
+                word: word.to_owned(),
+                condition: "one coordinate of its pole is left out, which keeps it on Heidenhain",
+                remedy: "write both",
+            });
+        }
         let words = ArcWords {
             clockwise,
             plane: self.modal.plane,
@@ -284,12 +318,10 @@ impl Control {
                 None => self.choice(Rule::Dialect) == Choice::Heidenhain && !self.modal.incremental,
             },
             radius: block.take('R').map(length),
-            turns: block
-                .take_whole('P', 1, 1_000_000, "a number of turns from 1 after P")?
-                .unwrap_or(1),
+            turns: self.turns(block)?,
             unit: self.modal.unit,
         };
-        self.check_increment(block)?;
+        self.check_position(block)?;
         let (end, _, commanded) = self.take_end(block);
         let path = arc::path(&words, self.position, end)?;
         self.check_radii(&path, &end)?;
@@ -297,13 +329,76 @@ impl Control {
         Ok(())
     }
 
-    /// Refuses an increment of Z on which a change of the length offset acts on some controls.
-    fn check_increment(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        if !block.has('Z') || !std::mem::take(&mut self.length_changed) || !self.modal.incremental {
+    /// Takes the number of turns of an arc.
+    fn turns(&self, block: &mut Block) -> Result<u32, GcodeFault> {
+        let turns = block.take_whole('P', 1, 1_000_000, "a number of turns from 1 after P")?;
+        if turns.is_some_and(|turns| turns > 1)
+            && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
+        {
+            let meaning = "a number of turns on LinuxCNC alone";
+            let remedy = "write an arc per turn, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(GcodeFault::NotRead { word: "P of an arc".to_owned(), meaning, remedy });
+        }
+        Ok(turns.unwrap_or(1))
+    }
+
+    /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
+    pub(super) fn check_position(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let dialect = self.stated(Rule::Dialect);
+        let is_incremental = self.modal.incremental;
+        let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
+        if length_changed && is_incremental {
+            let condition = "G91 is in force and the length offset has changed";
+            let remedy = "write it in G90";
+            return Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy });
+        }
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let Some(value) = block.value(letter).filter(|value| *value != 0.0 || !is_incremental)
+            else {
+                continue;
+            };
+            let is_shifted = std::mem::take(&mut self.origin_changed[axis]) && is_incremental;
+            if is_shifted && matches!(dialect, None | Some(Choice::Sinumerik)) {
+                return Err(GcodeFault::Combination {
+                    word: letter.to_string(),
+                    condition: "G91 is in force and its work offset or shift has changed, which Sinumerik adds",
+                    remedy: "write it in G90",
+                });
+            }
+            let steps = value / self.modal.increment();
+            if is_incremental
+                && axis < 3
+                && dialect != Some(Choice::Rs274Ngc)
+                && (steps - steps.round()).abs() > 1e-6
+            {
+                return Err(GcodeFault::Combination {
+                    word: format!("{letter}{value}"),
+                    condition: "G91 is in force, and it is no multiple of the least increment, to which controls round each",
+                    remedy: "write it in G90",
+                });
+            }
+        }
+        self.check_after_rotation(block)
+    }
+
+    /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
+    fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let is_absolute = !self.modal.incremental;
+        let moves = |value: f64| is_absolute || value != 0.0;
+        let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
+        if !self.rotation_changed || given == [false; 2] {
             return Ok(());
         }
-        let condition = "G91 is in force and the length offset has changed";
-        Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy: "write it in G90" })
+        let is_rotated = self.state.rotation != Rotation::Off;
+        if self.modal.incremental || is_rotated && given != [true; 2] {
+            return Err(GcodeFault::Combination {
+                word: "a position".to_owned(),
+                condition: "it is the first after G68 or G69, and not of both axes of the plane in G90",
+                remedy: "write both in G90",
+            });
+        }
+        self.rotation_changed = given != [true; 2];
+        Ok(())
     }
 
     /// Refuses an arc that is a full circle where coordinates are rounded, and notes one that is no circle.
@@ -381,6 +476,9 @@ impl Control {
         if self.state.tcp != Tcp::Off {
             return refused("tool centre point control is on", self.tcp_remedy());
         }
+        if matches!(self.state.rotation, Rotation::Plane { .. }) {
+            return refused("a plane is rotated", "end it with G69 before");
+        }
         match self.modal.motion {
             None | Some(Motion::Rapid) => {}
             // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
@@ -423,6 +521,9 @@ impl Control {
         if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
             return refused("a canned cycle is in force", "write G80 before");
         }
+        if matches!(self.state.rotation, Rotation::Plane { .. }) {
+            return refused("a plane is rotated", "end it with G69 before");
+        }
         if word == "G30" {
             block.take_whole('P', 2, 2, "P2, or no P")?;
         }
@@ -430,8 +531,12 @@ impl Control {
         let (end, mut named, commanded) = self.take_end(block);
         if named.contains(&true) {
             self.push(true, end, commanded, StepPath::Line);
-        } else {
+        } else if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
             named = self.axes;
+        } else {
+            // All axes on LinuxCNC and Haas, none on Fanuc.
+            let needed = "the axes that return";
+            return Err(GcodeFault::Missing { word: word.to_owned(), needed });
         }
         if self.state.origin_rotation != 0.0 && named[0] != named[1] {
             return refused("the work offset is rotated", "name X and Y, or neither");

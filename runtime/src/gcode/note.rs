@@ -45,6 +45,8 @@ pub enum NoteKind {
     OptionalSwitches,
     /// An arc whose radii at its start and end differ by more than rounding. It is read as a spiral.
     TwoRadii,
+    /// The end of a program in another state than it takes for granted at its start.
+    LeftModes,
 }
 
 impl fmt::Display for ProgramNote {
@@ -78,6 +80,11 @@ impl fmt::Display for NoteKind {
             NoteKind::TwoRadii => f.write_str(
                 "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc",
             ),
+            NoteKind::LeftModes => f.write_str(
+                "the program ends with another unit, plane, distance mode or offset than it takes for granted at its start, or \
+                 with a shift or a rotation, which a control can keep for the next run: state them at the start (G21 G17 G90 \
+                 G54), and end shifts and rotations",
+            ),
             NoteKind::OtherProgram => f.write_str(
                 "another program begins here, and is not checked: give a file per program",
             ),
@@ -99,6 +106,7 @@ pub(super) enum Subject {
     OtherProgram,
     OptionalSwitches,
     TwoRadii,
+    LeftModes,
 }
 
 /// The notes of a program.
@@ -149,6 +157,7 @@ impl Subject {
             Subject::OtherProgram => NoteKind::OtherProgram,
             Subject::OptionalSwitches => NoteKind::OptionalSwitches,
             Subject::TwoRadii => NoteKind::TwoRadii,
+            Subject::LeftModes => NoteKind::LeftModes,
         }
     }
 }

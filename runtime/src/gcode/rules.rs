@@ -50,6 +50,8 @@ pub enum Rule {
     CycleRepeats,
     /// Numbers after R and Q without a decimal point, where those of axes are increments.
     WholeRadii,
+    /// Coordinates under tool centre point control that begins while the table is turned.
+    TcpStart,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -66,6 +68,7 @@ pub enum Choice {
     SidewaysFirst,
     Counts,
     Shortest,
+    WithinTurn,
     Straight,
     EachAxis,
     Units,
@@ -99,6 +102,8 @@ pub enum Choice {
     MovesZ,
     RepeatsByL,
     RepeatsByK,
+    TableAtZero,
+    TableAsItStands,
     Executed,
     LeftOut,
 }
@@ -112,7 +117,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 20] = [
+const RULES: [Entry; 21] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -139,6 +144,11 @@ const RULES: [Entry; 20] = [
         choices: &[
             (Choice::Counts, "counts", "turns by the difference: C345 to C15 by -330 degrees"),
             (Choice::Shortest, "shortest", "turns the shorter way: C345 to C15 by +30 degrees"),
+            (
+                Choice::WithinTurn,
+                "within a turn",
+                "turns between angles from 0 to 360: C345 to C15 by -330 degrees, C450 to C280 by +190",
+            ),
         ],
     },
     Entry {
@@ -306,6 +316,19 @@ const RULES: [Entry; 20] = [
         ],
     },
     Entry {
+        rule: Rule::TcpStart,
+        key: "tcp_start",
+        about: "coordinates under tool centre point control (G43.4) that begins while the table is turned",
+        choices: &[
+            (Choice::TableAtZero, "table at zero", "are those of the part with its axes at 0"),
+            (
+                Choice::TableAsItStands,
+                "table as it stands",
+                "are those of the part as it stands, and are not followed",
+            ),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -318,7 +341,7 @@ const RULES: [Entry; 20] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 19]); 5] = {
+const CONTROLS: [(&str, [Choice; 20]); 5] = {
     use Choice::*;
     [
         (
@@ -343,6 +366,7 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
                 MovesZ,
                 RepeatsByK,
                 Increments,
+                TableAsItStands,
             ],
         ),
         (
@@ -367,6 +391,7 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
                 MovesZ,
                 RepeatsByL,
                 Units,
+                TableAtZero,
             ],
         ),
         (
@@ -391,6 +416,7 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
                 WithNextZ,
                 RepeatsByL,
                 Units,
+                TableAtZero,
             ],
         ),
         (
@@ -398,7 +424,7 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
             [
                 Moves,
                 SidewaysFirst,
-                Counts,
+                WithinTurn,
                 Straight,
                 Units,
                 Comment,
@@ -415,6 +441,7 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
                 WithNextZ,
                 RepeatsByK,
                 Units,
+                TableAtZero,
             ],
         ),
         (
@@ -439,20 +466,25 @@ const CONTROLS: [(&str, [Choice; 19]); 5] = {
                 WithNextZ,
                 RepeatsByL,
                 Units,
+                TableAtZero,
             ],
         ),
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 5] = [
+const OPEN: [(&str, Rule); 7] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
+    // K, and L on the Series 15 and in its format.
+    ("fanuc", Rule::CycleRepeats),
     ("haas", Rule::LengthChange),
     // Setting 162 does not list R and Q.
     ("haas", Rule::WholeRadii),
     // Native programs have no G43, and those in ISO mode need it.
     ("siemens", Rule::ToolLength),
+    // The display of the axis below 360 degrees, and M126.
+    ("heidenhain", Rule::Rotary),
 ];
 
 impl Rule {

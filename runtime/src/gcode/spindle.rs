@@ -1,7 +1,6 @@
 //! The spindle.
 
 use super::block::Block;
-use super::code::Code;
 use super::motion::Control;
 use super::rules::{Choice, Rule};
 
@@ -32,38 +31,57 @@ pub(super) struct SpindleWords {
     speed: Option<f64>,
     /// Set from a stop on, until the next word about the spindle.
     paused: bool,
+    /// Set by M29: tapping cycles turn the spindle themselves.
+    rigid: bool,
 }
 
 impl SpindleWords {
     pub(super) fn new() -> SpindleWords {
-        SpindleWords { turn: Spindle::NotStated, speed: None, paused: false }
+        SpindleWords { turn: Spindle::NotStated, speed: None, paused: false, rigid: false }
     }
 }
 
 impl Control {
-    /// Reads S and the words of the spindle, and returns the word that changes how it turns, if there is one.
-    pub(super) fn spindle_words(&mut self, block: &mut Block) -> Option<Code> {
-        let before = (self.spindle.turn, self.spindle.paused);
-        let mut last = None;
+    /// Reads S and the words of the spindle, and returns the word that changes whether and how it turns, if there is one.
+    pub(super) fn spindle_words(&mut self, block: &mut Block) -> Option<String> {
+        let before = self.spindle;
+        let mut word = None;
         if let Some(speed) = block.take('S') {
             self.spindle.speed = Some(speed);
+            let stood = before.speed.is_none_or(|speed| speed == 0.0);
+            let is_on = matches!(before.turn, Spindle::Clockwise | Spindle::CounterClockwise);
+            word = (is_on && stood != (speed == 0.0)).then(|| "S".to_owned());
         }
         for code in &block.passed_over {
             let turn = match (code.letter, code.tenths) {
                 ('M', 30) => Spindle::Clockwise,
                 ('M', 40) => Spindle::CounterClockwise,
                 ('M', 50 | 190) => Spindle::Stopped,
+                ('M', 290) => {
+                    self.spindle.rigid = true;
+                    continue;
+                }
                 _ => continue,
             };
             (self.spindle.turn, self.spindle.paused) = (turn, false);
-            last = Some(*code);
+            if (turn, false) != (before.turn, before.paused) {
+                word = Some(code.to_string());
+            }
         }
-        last.filter(|_| (self.spindle.turn, self.spindle.paused) != before)
+        word
     }
 
     /// Notes a stop of the program (M0, M1).
     pub(super) fn pause_spindle(&mut self) {
         self.spindle.paused = true;
+    }
+
+    /// Returns whether a tapping cycle finds the spindle as it needs it: turning into its thread, unless the cycle turns it itself
+    /// (M29), or a tapping cycle was before.
+    pub(super) fn can_tap(&mut self, number: u32) -> bool {
+        let wanted = if number == 84 { Spindle::Clockwise } else { Spindle::CounterClockwise };
+        let spindle = self.spindle(false);
+        self.spindle.rigid || spindle == wanted || spindle == Spindle::AfterTapping
     }
 
     /// Notes the end of a tapping cycle.

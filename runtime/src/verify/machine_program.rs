@@ -45,6 +45,8 @@ pub struct MachineProgram {
     assumed: ControlRules,
     /// Set if the program has no length offset at all, and a tool whose length is not stated.
     off_is_tip: bool,
+    /// The register of the first length offset before a tool is named: the tool in the spindle.
+    unnamed_tool: Option<u32>,
     summary: MachineSummary,
 }
 
@@ -221,15 +223,24 @@ impl MachineProgram {
         }
         let file = name.to_owned();
         let summary = MachineSummary::default();
-        let off_is_tip = false;
-        let mut program =
-            MachineProgram { file, text, machine, setup, assumed, off_is_tip, summary };
+        let (off_is_tip, unnamed_tool) = (false, None);
+        let mut program = MachineProgram {
+            file,
+            text,
+            machine,
+            setup,
+            assumed,
+            off_is_tip,
+            unnamed_tool,
+            summary,
+        };
         let mut result = program.run(is_placed);
-        if let Ok((summary, false)) = &result {
+        if let Ok((summary, offsets)) = &result {
             let is_off =
                 |unknown: &UnknownMotions| matches!(unknown.cause, UnknownCause::NoOffset { .. });
-            program.off_is_tip = summary.unknown.iter().any(is_off);
-            if program.off_is_tip {
+            program.off_is_tip = !offsets.any && summary.unknown.iter().any(is_off);
+            program.unnamed_tool = offsets.unnamed;
+            if program.off_is_tip || program.unnamed_tool.is_some() {
                 result = program.run(is_placed);
             }
         }
@@ -281,7 +292,8 @@ impl MachineProgram {
         let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
         let frame = MoveFrame { link, origin: Vector3::new(x, y, z), unit };
         let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
-        let mut resolver = Resolver::new(&self.machine, &self.setup, self.off_is_tip);
+        let mut resolver =
+            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
         let mut from = None;
         // The first run has read and resolved every step.
         let steps = steps.map(|step| step.expect("a step that was read before"));
@@ -304,17 +316,17 @@ impl MachineProgram {
         MachineProgramError::Gcode { file: self.file.clone(), line, fault }
     }
 
-    /// Runs the program once, and returns whether it has a length offset. `is_placed` is set if the origin of the part is
-    /// known.
-    fn run(&self, is_placed: bool) -> Result<(MachineSummary, bool), MachineProgramError> {
-        let mut has_offset = false;
+    /// Runs the program once. `is_placed` is set if the origin of the part is known.
+    fn run(&self, is_placed: bool) -> Result<(MachineSummary, LengthOffsets), MachineProgramError> {
+        let mut offsets = LengthOffsets::default();
         let mut summary = MachineSummary::default();
         let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
         let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
         let mut is_last_singular = false;
         let mut interpreter =
             Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
-        let mut resolver = Resolver::new(&self.machine, &self.setup, self.off_is_tip);
+        let mut resolver =
+            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
         for step in interpreter.by_ref() {
             let step = step.map_err(|error| self.error(error))?;
             let resolved = resolver.resolve(&step).map_err(|fault| MachineProgramError::Step {
@@ -328,7 +340,12 @@ impl MachineProgram {
             {
                 seen.push((number, step.line));
             }
-            has_offset |= step.state.length != LengthOffset::Off;
+            if let LengthOffset::On { register, .. } = step.state.length {
+                offsets.any = true;
+                if number.is_none() {
+                    offsets.unnamed.get_or_insert(register);
+                }
+            }
             if !step.rapid {
                 summary.add_feed(&step, self.off_is_tip);
             }
@@ -379,8 +396,17 @@ impl MachineProgram {
             unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
         let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
         summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
-        Ok((summary, has_offset))
+        Ok((summary, offsets))
     }
+}
+
+/// The length offsets of a program.
+#[derive(Clone, Copy, Default)]
+struct LengthOffsets {
+    /// Set if one is in force in some step.
+    any: bool,
+    /// The register of the first that is in force before a tool is named.
+    unnamed: Option<u32>,
 }
 
 /// Returns whether each choice of a rule is a reading of its own. The others are judged by the choice that includes all.

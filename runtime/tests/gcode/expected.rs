@@ -266,7 +266,7 @@ fn programs_that_are_not_read_are_refused_by_name() {
             8,
             "there is no O<rm400> in this file",
         ),
-        ("g52/g52-g92-interaction.ngc", "g52/expected", 28, "G92.2 while G52 is in force"),
+        ("g52/g52-g92-interaction.ngc", "g52/expected", 16, "G92.3 is a shift"),
         ("rotation/g28.ngc", "rotation/expected", 7, "G28.1 is storing a reference position"),
     ] {
         let (steps, error) = steps(&text(&folder.join(program)));

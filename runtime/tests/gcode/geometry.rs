@@ -143,6 +143,8 @@ fn inches_are_converted_once() {
         linear(ends("G0 X0.1 Y1 Z-3.3", &setup)[0]),
         [Some(0.1 * 25.4), Some(25.4), Some(-3.3 * 25.4)]
     );
+    let rules = setup.rules.with(Rule::Dialect, Choice::Sinumerik);
+    let setup = ControlSetup { rules, ..at_zero() };
     assert_eq!(ends("G71 G0 X1\nG70 X1\nG710 X2", &setup).map_x(), [1.0, 25.4, 2.0].map(Some));
     let positions = ends("G20 G0 X1\nG21 G91 X1\nG20 X1", &at_zero());
     assert_eq!(positions.map_x(), [Some(25.4), Some(26.4), Some(26.4 + 25.4)]);
@@ -162,7 +164,7 @@ impl MapX for Vec<Position> {
 #[test]
 fn canned_cycles_stop_at_their_levels() {
     let levels = |program: &str| -> Vec<(f64, bool)> {
-        let steps = steps_of(&format!("G0 X0 Y0 Z20\nF100\n{program}"), &at_zero());
+        let steps = steps_of(&format!("G0 X0 Y0 Z20\nF100 M29\n{program}"), &at_zero());
         steps[1..].iter().map(|step| (step.end[2].expect("a level"), step.rapid)).collect()
     };
     let (fast, slow) = (true, false);
@@ -322,7 +324,8 @@ fn tilted_planes_map_by_their_euler_angles() {
 #[test]
 fn tool_centre_point_control() {
     let program = "T3 M6\nG0 X1 Y2 Z3 A0 B0 C0\nG43.4 H3\nG1 F100 X2 B30\nG49\nG0 Z50\n";
-    let mut setup = ControlSetup::default();
+    let rules = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    let mut setup = ControlSetup { rules, ..ControlSetup::default() };
     setup.lengths.insert(3, 75.0);
     let steps = steps_of(program, &setup);
     // At zero of the rotary axes, only the length takes effect.
@@ -331,7 +334,8 @@ fn tool_centre_point_control() {
     assert_eq!(steps[1].state.length, LengthOffset::On { register: 3, length: Some(75.0) });
     // Elsewhere the kinematics decide.
     assert_eq!(linear(steps[2].end), [None, None, Some(50.0)]);
-    for (on, off) in [("TRAORI", "TRAFOOF"), ("M428", "M429"), ("G234 H3", "G49"), ("G43.4", "G49")]
+    for (on, off) in
+        [("TRAORI G54", "TRAFOOF\nG54"), ("M428", "M429"), ("G234 H3", "G49"), ("G43.4", "G49")]
     {
         let steps = steps_of(&format!("T3 M6\n{on}\nG1 F1 X1 C5\n{off}\nX2"), &setup);
         assert_eq!([steps[0].state.tcp, steps[1].state.tcp], [Tcp::Rotary, Tcp::Off], "{on}");

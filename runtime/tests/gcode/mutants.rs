@@ -19,11 +19,11 @@ const FIVE_AXES: &str = "G21 G90 G17 G94\nT5 M6\nG54\nG0 X0. Y0. Z100. A0. C0.\n
     G90\nM30\n";
 
 const TILTED: &str = "G20 G90\nG55\nT2 M6\n#1 = 2.5\n#<depth> = [0.125 * #1 - 1.]\nG68.2 X1. Y2. Z-0.5 I30. J45. K-90.\n\
-    G53.1\nG0 G43 H2 X0 Y0 Z2.\nG81 X[#1/2] Y.5 Z#<depth> R.1 F10.\nX1.5\nG80\nG69\nG68 X0 Y0 R30.\nG1 X1. F20.\nG69\n\
+    G53.1\nG0 G43 H2 X0 Y0 Z2.\nG81 X[#1/2] Y.5 Z#<depth> R.1 F10.\nX1.5\nG80\nG69\nG68 X0 Y0 R30.\nG1 X1. Y0. F20.\nG69\n\
     G92 X0\nG1 X-.5\nG92.1\nG10 L2 P2 X1. Y1. R10.\nG0 X0 Y0\nM2\n";
 
-const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z100 A0 C0\nTRAORI\n\
-    G1 X10.125 Y5.5 Z2 A10.5 C-20.25 F1000\nX11 Y6 Z1.5 A11 C-21\nG3 X12. Y7. I0.5 J0.5\nTRAFOOF\nG0 Z100\nM30\n";
+const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z100 A0 C0\nTRAORI\nG54\n\
+    G1 X10.125 Y5.5 Z2 A10.5 C-20.25 F1000\nX11 Y6 Z1.5 A11 C-21\nG3 X12. Y7. I0.5 J0.5\nTRAFOOF\nG54\nG0 Z100\nM30\n";
 
 const LINUXCNC: &str = "o<hole> sub\n#3=[#31+1]\nG91 G81 X1 Z-2 R-1 L2 F100\nG80 G90\no<hole> endsub\n#31=2\nG21 G64 P0.01\n\
     G0 X0 Y0 Z5\no<hole> call\nM428\nG1 C90 F500\nG1 A20 X#31\nM429\nG0 Z[SQRT[25]*2]\nG30 Z6\nG19 G2 Y1 Z11 J.5 K.5\nM2\n";
@@ -94,7 +94,8 @@ fn setups() -> [ControlSetup; 2] {
     let rules =
         rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
     let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
-    let rules = rules.with(Rule::Dialect, Choice::Rs274Ngc);
+    let rules =
+        rules.with(Rule::Dialect, Choice::Rs274Ngc).with(Rule::PresetEnd, Choice::EndsPreset);
     let unknown = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
     [ControlSetup { rules, ..known }, ControlSetup { rules: unknown, ..ControlSetup::default() }]
 }

@@ -164,7 +164,9 @@ fn long_programs_are_read_to_their_end() {
         [("three_axis_chips.ngc", 1.0), ("arcspiral.ngc", 25.4), ("five_axis/boat-xyzac.ngc", 1.0)]
     {
         let program = text(&folder.join(file));
-        let (steps, notes) = read(&program, &ControlSetup::default()).expect("a program");
+        let rules = ControlRules::named("linuxcnc").expect("a control");
+        let setup = ControlSetup { rules, ..ControlSetup::default() };
+        let (steps, notes) = read(&program, &setup).expect("a program");
         // A block of parameters has no motion, and its letters are in brackets.
         let body: String = program
             .lines()
@@ -192,7 +194,7 @@ fn long_programs_are_read_to_their_end() {
         }
     }
     let boat = text(&folder.join("five_axis/boat-xyzac.ngc"));
-    let steps = run(&boat).expect("a program");
+    let steps = run_on_linuxcnc(&boat).expect("a program");
     let first = steps.iter().find(|step| step.line == 13).expect("a motion");
     assert_eq!((first.state.tool, first.state.tcp), (Some(1), Tcp::Rotary));
     assert_eq!(first.end, [-49.65, -23.015, 5.0, 0.0, 0.0, 0.0].map(Some));
@@ -203,7 +205,7 @@ fn long_programs_are_read_to_their_end() {
         ("xyzac_switchkins", Err("a word with arguments")),
         ("xyzbc_switchkins", Err("a word with arguments")),
     ] {
-        match (run(&text(&folder.join(format!("five_axis/{file}.ngc")))), expected) {
+        match (run_on_linuxcnc(&text(&folder.join(format!("five_axis/{file}.ngc")))), expected) {
             (Ok(steps), Ok(count)) => assert_eq!(steps.len(), count, "{file}"),
             (Err(error), Err(message)) => {
                 assert!(error.to_string().contains(message), "{file}: {error}");
@@ -274,7 +276,37 @@ fn words_that_are_not_read_are_named() {
         ("G53 X1\nG91 G53 X1", 2, "G53 while G91"),
         ("G43 Z1", 1, "H with the number"),
         ("G43.4 H1\nG53 Z0", 2, "tool centre point control is on"),
-        ("G43.4 H1\nM428", 2, "G43.4, G43.5 or G234 is in force"),
+        ("G43.4 H1\nTRAORI", 2, "G43.4, G43.5 or G234 is in force"),
+        ("M428", 1, "five-axis configurations alone"),
+        ("G0 X1\nG28", 2, "G28 needs the axes that return"),
+        ("G92.3", 1, "a shift that another program may have left"),
+        ("G43 H0", 1, "write G49, or name the control"),
+        ("G68 X0 Y0 R90\nG0 X5", 2, "the first after G68 or G69"),
+        ("G68 X0 Y0 R90\nG0 X5 Y0\nG69\nG91 X1", 4, "the first after G68 or G69"),
+        ("G68 X0 Y0 R90\nG53 G0 Z0", 2, "G53 while a plane is rotated"),
+        ("G68 X0 Y0 R90\nG28 X0 Y0", 2, "G28 while a plane is rotated"),
+        ("G91 G92 X1", 1, "G92 while G91 is in force"),
+        ("G91 G0 X0.0004", 1, "no multiple of the least increment"),
+        (
+            "G52 X1\nG91 G0 X1",
+            2,
+            "X while G91 is in force and its work offset or shift has changed",
+        ),
+        ("G0 X1\nG20 X1", 2, "G20 while the program has lengths in another unit"),
+        ("M3 M8 S1", 1, "M3 while its block has another M word"),
+        ("T1 M6 G43 H1", 1, "G43 while its block has M6"),
+        ("T1 M6 G28 Z0", 1, "G28 while its block has M6"),
+        ("G54 G4 P2", 1, "P beside G54"),
+        ("G2 I1 J0 P2 F1", 1, "a number of turns on LinuxCNC alone"),
+        ("M3 S1\nG2 X2 I1 J0 F1\nG2 I-1 M5", 3, "M5 while its block has a motion at feed rate"),
+        ("S0 M3\nG1 X1 F1 S5", 2, "S while its block has a motion at feed rate"),
+        ("S1\nG84 X1 Z-1 R1 F1", 2, "the spindle does not turn into the thread"),
+        ("S1 M3\nG0 Z5\nG43 H1 G81 X1 Z-1 R1 F1", 3, "changes the length offset, before or after"),
+        ("T1 M6\nTRAORI\nG0 X1", 3, "TRAORI and TRAFOOF deselect it"),
+        ("#1=6/2", 1, "`/` in an expression"),
+        ("M98 P7 #1=2\nM30\nO7\nM99", 1, "M98 while its block has other words"),
+        ("#1=7\nM98 P#1 L2\nM30\nO7\nM99", 2, "M98 while its block has other words"),
+        ("#<a>=1\nM98 P7\nM30\nO7\nG0 X#<a>\nM99", 5, "#<a> has no value here"),
         ("G43.5 H1\nG1 F1 X1 I0 J0 K0", 2, "points nowhere"),
         ("G43.5 H1\nG1 F1 X1 A5", 2, "write the tool vector"),
         ("T1 M6\nTRAORI\nD2", 3, "D1, the only"),
@@ -340,6 +372,8 @@ fn words_of_one_dialect() {
         let rules = ControlRules::named(control).expect("a control");
         read(program, &ControlSetup { rules, ..at_zero() }).map(|(steps, _)| steps.len())
     };
+    let kept = read("G10 L2 P2 X0\nM30", &ControlSetup::default()).expect_err("a rotation");
+    assert!(kept.to_string().contains("LinuxCNC keeps a rotation"), "{kept}");
     let unit = execute("haas", "G70\nM30").expect_err("a bolt circle");
     assert!(unit.to_string().contains("a unit in programs of Sinumerik"), "{unit}");
     assert_eq!(execute("siemens", "G70\nM30"), Ok(0));

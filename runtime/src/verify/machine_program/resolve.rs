@@ -5,9 +5,9 @@ use super::path::{self, Map};
 use super::rapid;
 use crate::gcode::{
     self, Choice, ControlSetup, ControlState, LengthOffset, Position, Rotation, Rule, Step,
-    StepPath, WorkOffset,
+    StepPath, Tcp, WorkOffset,
 };
-use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Setup, Side};
+use crate::machine::{Chain, InverseSolution, JointMotion, Joints, Letter, Machine, Setup, Side};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -75,6 +75,10 @@ pub enum UnknownCause {
     NoPartPosition,
     /// The way of an axis that turns by half a turn.
     HalfTurn,
+    /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
+    TwoPositions,
+    /// Tool centre point control began while the table was turned, and the control takes the part as it stood then.
+    TurnedTable,
 }
 
 impl fmt::Display for UnknownCause {
@@ -108,6 +112,14 @@ impl fmt::Display for UnknownCause {
             UnknownCause::NoPartPosition => f.write_str(
                 "the table turns the part, whose position is not stated: state the origin of G54 in `work_offsets`",
             ),
+            UnknownCause::TwoPositions => f.write_str(
+                "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
+                 one of them before",
+            ),
+            UnknownCause::TurnedTable => f.write_str(
+                "the table is turned where tool centre point control begins, and positions are those of the part as it stands: \
+                 turn it to 0 before, or state `tcp_start` of the control",
+            ),
             UnknownCause::HalfTurn => {
                 f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
             }
@@ -125,8 +137,16 @@ pub(super) struct Resolver<'a> {
     rapid: RapidPath,
     /// The rotary axes A, B, C without limits.
     endless: [bool; 3],
-    /// Set if these go the shorter way to a stated angle.
-    turns_shorter: bool,
+    /// How these go to a stated angle.
+    turning: Option<Choice>,
+    /// Where coordinates lead under tool centre point control that begins while the table is turned.
+    tcp_start: Option<Choice>,
+    /// Set while it is in force.
+    has_tcp: bool,
+    /// Set while it is, if its coordinates are not followed.
+    is_turned_table: bool,
+    /// The register of the first length offset of a program that names no tool: its tool.
+    unnamed_tool: Option<u32>,
     /// The rules of the control on which the steps depend, each with the first line.
     pub(super) asked: BTreeMap<Rule, usize>,
     /// Set if a rotary axis carries the tool.
@@ -178,6 +198,7 @@ impl<'a> Resolver<'a> {
         machine: &'a Machine,
         setup: &'a ControlSetup,
         off_is_tip: bool,
+        unnamed_tool: Option<u32>,
     ) -> Resolver<'a> {
         let origin = setup.work_offsets[0].unwrap_or_default();
         let mut joints = [None; 6];
@@ -199,7 +220,11 @@ impl<'a> Resolver<'a> {
             },
             endless: [Letter::A, Letter::B, Letter::C]
                 .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
-            turns_shorter: setup.rules.get(Rule::Rotary) == Some(Choice::Shortest),
+            turning: setup.rules.get(Rule::Rotary),
+            tcp_start: setup.rules.get(Rule::TcpStart),
+            has_tcp: false,
+            is_turned_table: false,
+            unnamed_tool,
             asked: BTreeMap::new(),
             has_head: has_rotary(Side::Tool),
             is_placed: setup.work_offsets[0].is_some(),
@@ -224,12 +249,23 @@ impl<'a> Resolver<'a> {
             }
             return Ok(Resolved::ToolChange);
         }
+        if self.begins_on_turned_table(step) {
+            self.joints = self.joints.map(|_| None);
+            self.cause = UnknownCause::TurnedTable;
+            return Ok(Resolved::Unknown(self.cause));
+        }
         let frame = match self.frame(&step.state)? {
             Ok(frame) => frame,
             Err(cause) => {
                 // Only the machine knows what positions mean. If it also is where nothing tells, that is the cause.
                 let is_lost = self.joints[2].is_none() && !step.commanded[2];
-                self.joints = self.joints.map(|_| None);
+                self.joints[..3].fill(None);
+                // Angles do not depend on lengths.
+                for k in (3..6).filter(|k| step.commanded[*k]) {
+                    let terms =
+                        [step.end[k], self.rotary_origin(&step.state, k), step.state.shift[k]];
+                    self.joints[k] = terms.into_iter().sum();
+                }
                 self.cause = if is_lost { self.cause } else { cause };
                 return Ok(Resolved::Unknown(self.cause));
             }
@@ -249,8 +285,13 @@ impl<'a> Resolver<'a> {
         if let (Some(axis), Some(end)) = (step.tool_vector, linear_only(&ends[1])) {
             let near = self.joints.map(Option::unwrap_or_default);
             let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
-            let found = frame.chain.inverse(&tip, &Vector3::from(axis), &near)?;
-            (3..6).for_each(|k| ends[1][k] = Some(found.joints[k] - frame.rotary[k - 3]));
+            let found = frame.chain.solutions(&tip, &Vector3::from(axis), &near)?;
+            if !self.is_one_choice(&found) {
+                self.joints = self.joints.map(|_| None);
+                self.cause = UnknownCause::TwoPositions;
+                return Ok(Resolved::Unknown(self.cause));
+            }
+            (3..6).for_each(|k| ends[1][k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
         }
         let is_half = self.turn_shorter(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
@@ -272,8 +313,16 @@ impl<'a> Resolver<'a> {
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined) && !is_half;
         let resolved = match start.filter(|_| is_determined) {
-            Some(start) if step.rapid && !frame.is_tip => {
-                let joints = [start, end].map(|position| frame.joints(position));
+            // In an aligned plane the rotary axes rest, and the others move each by itself.
+            Some(start) if step.rapid && step.state.tcp == Tcp::Off => {
+                let joints = match frame.is_tip {
+                    true => {
+                        let (motion, _) =
+                            frame.motions(&StepPath::Line, [start, end])?.swap_remove(0);
+                        [motion.joints(0.0), motion.joints(1.0)]
+                    }
+                    false => [start, end].map(|position| frame.joints(position)),
+                };
                 let resolved = self.rapid(&frame.chain, joints)?;
                 if matches!((&self.rapid, &resolved), (RapidPath::Rates(_), Resolved::Motions(all)) if all.len() > 1)
                 {
@@ -354,21 +403,54 @@ impl<'a> Resolver<'a> {
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
-    /// Counts the angles at the start so that the ways of endless axes to stated angles are the shorter, if the control goes
-    /// that way. Returns whether one is half a turn, for which both ways are as short.
+    /// Returns whether a step is under tool centre point control that began while the table was turned, if the control takes
+    /// its coordinates as those of the part as it stood then.
+    fn begins_on_turned_table(&mut self, step: &Step) -> bool {
+        let had_tcp = std::mem::replace(&mut self.has_tcp, step.state.tcp != Tcp::Off);
+        if !self.has_tcp {
+            self.is_turned_table = false;
+        } else if !had_tcp {
+            let is_turned = |k: usize| self.joints[k] != Some(self.origin[k]);
+            if self.rotary(Side::Table).any(is_turned) {
+                self.asked.entry(Rule::TcpStart).or_insert(step.line);
+                self.is_turned_table = self.tcp_start == Some(Choice::TableAsItStands);
+            }
+        }
+        self.is_turned_table
+    }
+
+    /// Returns whether all controls take the first of some solutions: where no other one turns a rotary axis by less, and the
+    /// axes are known.
+    fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
+        let [first, others @ ..] = solutions else { return true };
+        others.iter().all(|other| {
+            (3..6).all(|k| {
+                let turn = |of: &InverseSolution| Some((of.joints[k] - self.joints[k]?).abs());
+                matches!((turn(first), turn(other)), (Some(first), Some(other)) if first <= other + ANGLE_INCREMENT)
+            })
+        })
+    }
+
+    /// Counts the angles at the start so that the ways of endless axes to stated angles are those of the control. Returns
+    /// whether one is half a turn, for which both ways are as short.
     fn turn_shorter(&mut self, step: &Step, [start, end]: &mut [Position; 2]) -> bool {
         let mut is_half = false;
         for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && self.endless[k - 3]) {
             let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
             let turn = to - from;
-            if turn.abs() < 180.0 - ANGLE_INCREMENT {
+            let within = to.rem_euclid(360.0) - from.rem_euclid(360.0);
+            if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
             self.asked.entry(Rule::Rotary).or_insert(step.line);
-            if self.turns_shorter {
-                let shorter = turn - 360.0 * (turn / 360.0).round();
-                start[k] = Some(to - shorter);
-                is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
+            match self.turning {
+                Some(Choice::Shortest) => {
+                    let shorter = turn - 360.0 * (turn / 360.0).round();
+                    start[k] = Some(to - shorter);
+                    is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
+                }
+                Some(Choice::WithinTurn) => start[k] = Some(to - within),
+                _ => {}
             }
         }
         is_half
@@ -383,7 +465,16 @@ impl<'a> Resolver<'a> {
         let near = self.joints.map(Option::unwrap_or_default);
         // The angles do not depend on the tip, whose linear joints are not those of the machine at rest.
         let chain = frame.chain.without_linear_limits();
-        let found = chain.inverse(&Point3::origin(), &axis, &near)?.joints;
+        let found = chain.solutions(&Point3::origin(), &axis, &near)?;
+        if !self.is_one_choice(&found) {
+            let is_known = (3..6).all(|k| self.joints[k].is_some());
+            self.joints = self.joints.map(|_| None);
+            if is_known {
+                self.cause = UnknownCause::TwoPositions;
+            }
+            return Ok(Resolved::Unknown(self.cause));
+        }
+        let found = found[0].joints;
         let before = known(&self.joints);
         (3..6).for_each(|k| self.joints[k] = Some(found[k]));
         let Some(joints) = before else { return Ok(Resolved::Unknown(self.cause)) };
@@ -403,6 +494,14 @@ impl<'a> Resolver<'a> {
         let axes = self.machine.axes().iter();
         axes.filter(move |axis| axis.letter.is_rotary() && axis.side == side)
             .map(|axis| axis.letter.index())
+    }
+
+    /// Returns the origin of a work offset along a rotary axis, if it is known.
+    fn rotary_origin(&self, state: &ControlState, axis: usize) -> Option<f64> {
+        match state.work_offset == WorkOffset::Standard(1) {
+            true => Some(self.origin[axis]),
+            false => state.origin[axis],
+        }
     }
 
     /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
@@ -483,11 +582,12 @@ impl<'a> Resolver<'a> {
     /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
     /// for a program that names no tool: Z of the work offset is then that of the tip.
     fn lengths(&self, state: &ControlState) -> Result<Result<Lengths, UnknownCause>, StepFault> {
-        let known = state.tool.and_then(|tool| self.lengths.get(&tool).copied());
+        let tool = state.tool.or(self.unnamed_tool);
+        let known = tool.and_then(|tool| self.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
-            (LengthOffset::Off, None) => match state.tool {
+            (LengthOffset::Off, None) => match tool {
                 Some(tool) if !self.off_is_tip => {
                     return Ok(Err(UnknownCause::NoOffset { tool }));
                 }
@@ -497,7 +597,7 @@ impl<'a> Resolver<'a> {
                 of(length, offset, true)
             }
             (LengthOffset::On { register, length: offset }, length) => {
-                if let Some(tool) = state.tool.filter(|tool| *tool != register) {
+                if let Some(tool) = tool.filter(|tool| *tool != register) {
                     return Ok(Err(UnknownCause::OtherOffset { tool, register }));
                 }
                 let known = offset.or(length);
@@ -517,7 +617,7 @@ impl<'a> Resolver<'a> {
     /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.
     pub(super) fn other_length(&self, state: &ControlState) -> Option<(u32, u32)> {
         let (LengthOffset::On { register, length: Some(offset) }, Some(tool)) =
-            (state.length, state.tool)
+            (state.length, state.tool.or(self.unnamed_tool))
         else {
             return None;
         };
