@@ -1,6 +1,5 @@
 //! Cost of a tool: splits of its plan, operations of its code, and compile time.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 use syn::visit::{self, Visit};
 use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
@@ -83,8 +82,8 @@ pub struct ToolStats {
     pub tests: usize,
     /// Mean number of tests per point: within 2 % of the largest radius from the surface, and in the tool's box.
     pub splits: [f64; 2],
-    /// Number of operations in the lane code, by evaluator.
-    pub operations: BTreeMap<String, usize>,
+    /// Number of operations in the code for lanes.
+    pub operations: usize,
 }
 
 /// Compiles a tool and collects its statistics.
@@ -178,21 +177,22 @@ impl<'ast> Visit<'ast> for Count {
     }
 }
 
-fn operations(code: &str) -> BTreeMap<String, usize> {
-    struct Functions(BTreeMap<String, usize>);
-    impl<'ast> Visit<'ast> for Functions {
+/// Counts the operations of the code for lanes.
+///
+/// # Panics
+/// If the generated code has none.
+fn operations(code: &str) -> usize {
+    struct Lanes(Option<usize>);
+    impl<'ast> Visit<'ast> for Lanes {
         fn visit_impl_item_fn(&mut self, function: &'ast syn::ImplItemFn) {
-            let name = function.sig.ident.to_string();
-            if let Some(name) = name.strip_suffix("_lanes") {
+            if function.sig.ident == "evaluate_lanes" {
                 let mut count = Count::default();
                 count.visit_block(&function.block);
-                self.0.insert(name.to_owned(), count.0);
+                self.0 = Some(count.0);
             }
         }
     }
-    let mut functions = Functions(BTreeMap::new());
-    if let Ok(file) = syn::parse_file(code) {
-        functions.visit_file(&file);
-    }
-    functions.0
+    let mut lanes = Lanes(None);
+    lanes.visit_file(&syn::parse_file(code).expect("generated code"));
+    lanes.0.expect("the code for lanes")
 }

@@ -4,7 +4,6 @@
 mod output;
 
 mod arguments;
-mod bench;
 mod check;
 mod controls;
 mod demo;
@@ -52,7 +51,6 @@ fn main() -> ExitCode {
         Command::Map(arguments) => postures::map::map(&arguments, json).map(success),
         Command::Path(arguments) => postures::path::path(&arguments, json).map(success),
         Command::Sample(arguments) => part::sample(&arguments, json).map(success),
-        Command::Bench(arguments) => bench::bench(&arguments, json).map(success),
         Command::Import(arguments) => import::import(&arguments, json),
         Command::Export(arguments) => export::export(&arguments, json),
         Command::Tools(arguments) => tools::tools(&arguments, json).map(success),

@@ -40,8 +40,9 @@ impl Compile {
         let mut rows = String::new();
         for source in sources() {
             let release = compile_times(&source, COUNTS[0]);
-            let debug = unoptimised.get(tool_file_name(&source.name)).copied().unwrap_or_default();
-            rows += &row(&tool_stats(&source), release, debug);
+            let name = tool_file_name(&source.name);
+            let debug = unoptimised.get(name).ok_or_else(|| format!("no times of {name}"))?;
+            rows += &row(&tool_stats(&source), release, *debug);
         }
         Ok(Some(Page {
             name: "compile",
@@ -91,12 +92,11 @@ fn unoptimised() -> Result<BTreeMap<String, CompileTimes>, Box<dyn Error>> {
 
 fn row(stats: &ToolStats, release: CompileTimes, debug: CompileTimes) -> String {
     let segments = stats.segments.map_or_else(|| "by hand".to_owned(), |n| n.to_string());
-    let operations = |name: &str| stats.operations.get(name).copied().unwrap_or(0);
     let mut row = format!(
         "| {} | {segments} | {} | {} | {} | {:.1} | {:.1} |",
         stats.name, stats.regions, stats.curves, stats.tests, stats.splits[0], stats.splits[1],
     );
-    row += &format!(" {} |", operations("evaluate_lanes"));
+    row += &format!(" {} |", stats.operations);
     for times in [release, debug] {
         for time in [times.best, times.median, times.worst] {
             row += &format!(" {:.1} |", 1e3 * time);

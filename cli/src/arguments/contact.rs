@@ -1,4 +1,4 @@
-//! The arguments of the commands that compute contact: `run`, `verify`, `report`, `haptic`, `live`, `sample` and `bench`.
+//! The arguments of the commands that compute contact: `run`, `verify`, `report`, `haptic`, `live` and `sample`.
 
 use super::values::{allowance, core, count, length, point, positive, rate};
 use super::{PartFile, ToolArguments};
@@ -239,28 +239,4 @@ impl DeviceKind {
             DeviceKind::Spacenav => "spacenav",
         }
     }
-}
-
-#[derive(Args)]
-pub(crate) struct Bench {
-    /// Use fewer and smaller clouds, for a run of some seconds.
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// Seed of the clouds.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = count)]
-    pub(crate) seed: u64,
-    /// Part: a mesh in STL, PLY or OBJ [default: the thesis's tube, with its tool and path].
-    #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "program"])]
-    pub(crate) part: Option<PathBuf>,
-    /// Unit of the part: `mm`, `inch` or `m`.
-    #[arg(long, requires = "part")]
-    pub(crate) unit: Option<Unit>,
-    /// Built-in tool by name (`touchoff tools` lists them), or any `.tool` file.
-    #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
-    pub(crate) tool: Option<OsString>,
-    #[command(flatten)]
-    pub(crate) params: ToolArguments,
-    /// Program of the tool along the part: APT-CL, or a table of poses, in the part's unit.
-    #[arg(long, value_name = "FILE", requires = "part")]
-    pub(crate) program: Option<PathBuf>,
 }

@@ -98,13 +98,6 @@ Examples:
   Write the cutter of a tool as a CUTTER statement of APT:
     touchoff export D2Ball -o cutter.apt";
 
-pub(super) const BENCH: &str = "\
-Examples:
-  The thesis's tube, in some seconds:
-    touchoff bench --quick
-  A part of your own, in mm:
-    touchoff bench --quick --part part.stl --unit mm --tool D2Ball --program program.apt";
-
 pub(super) const TOOLS: &str = "\
 Examples:
   List the built-in tools:

@@ -9,7 +9,7 @@ mod values;
 
 pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
 pub(crate) use contact::{
-    Bench, CheckArguments, DeviceKind, Haptic, Live, Report, Run, Sample, Verify,
+    CheckArguments, DeviceKind, Haptic, Live, Report, Run, Sample, Verify,
 };
 pub(crate) use tools::{
     Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
@@ -98,13 +98,6 @@ pub(crate) enum Command {
     /// Sample points of a part, and save them for later runs.
     #[command(after_help = examples::SAMPLE)]
     Sample(Box<Sample>),
-    /// Measure run time against error: clouds by their number of points, certified depth by its tolerance.
-    ///
-    /// Prints one row per method: median and 99th percentile of the times of single queries, relative errors of
-    /// force and torque (root mean squares, against a larger cloud), the largest error of a depth (against
-    /// certified depth) and its bound.
-    #[command(after_help = examples::BENCH)]
-    Bench(Box<Bench>),
     /// Import the tools of a CAM system's library as `.tool` files, with a proof of each.
     ///
     /// Cutters and holders become files of their own, which the tool mounts. The exit status is 3 if a tool was left out.

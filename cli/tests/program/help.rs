@@ -4,9 +4,9 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 20] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample", "bench",
+    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample",
     "import", "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand",
     "draw",
 ];
@@ -37,7 +37,7 @@ fn examples(help: &str) -> Vec<Vec<&str>> {
 /// options and then shows the help text.
 pub(super) fn parsed(bench: &Bench, mut arguments: Vec<&str>, partial: bool) -> Output {
     let command = arguments.first().copied().unwrap_or("demo");
-    if partial || ["demo", "bench", "haptic", "live"].contains(&command) {
+    if partial || ["demo", "haptic", "live"].contains(&command) {
         arguments.push("--help");
     }
     let mut program = Command::new(env!("CARGO_BIN_EXE_touchoff"));

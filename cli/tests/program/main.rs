@@ -11,7 +11,6 @@ mod import;
 mod job;
 mod keys;
 mod live;
-mod measured;
 mod mistakes;
 mod output;
 mod params;

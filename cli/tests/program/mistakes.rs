@@ -50,7 +50,7 @@ const FILES: [(&str, &str); 21] = [
 ];
 
 /// Command lines, without `touchoff`. `PART` stands for `--part part.stl --unit mm`.
-const MISTAKES: [&str; 84] = [
+const MISTAKES: [&str; 83] = [
     // The command and its options.
     "verfy PART",
     "run --part part.stl --tool D2Ball --program program.apt",
@@ -64,7 +64,6 @@ const MISTAKES: [&str; 84] = [
     "tools part.stl",
     "export D2Ball -o tool.step",
     "export Fig73 -o tool.json",
-    "bench --part part.stl",
     "haptic PART --tool D2Ball --device glove",
     "haptic PART --tool D2Ball --device playback",
     "haptic PART --tool D2Ball --program program.apt",

@@ -387,7 +387,6 @@ fn old_options_are_refused() {
         "path --step 1",
         "verify --allow-distant",
         "sample --tolerance 1",
-        "bench --path a",
     ] {
         let output = touchoff(&line.split(' ').collect::<Vec<_>>());
         let said = stderr(&output);
