@@ -8,9 +8,7 @@ mod tools;
 mod values;
 
 pub(crate) use common::{MeshFile, ParamArguments, PartFile, ToolArguments};
-pub(crate) use contact::{
-    CheckArguments, DeviceKind, Haptic, Live, Report, Run, Sample, Verify,
-};
+pub(crate) use contact::{CheckArguments, DeviceKind, Haptic, Live, Report, Run, Sample, Verify};
 pub(crate) use tools::{
     Check, Draw, Expand, Explain, Export, Fmt, Import, Stage, Tools, ToolsCommand,
 };

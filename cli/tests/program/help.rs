@@ -6,9 +6,8 @@ use std::process::{Command, Output};
 
 const COMMANDS: [&str; 20] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample",
-    "import", "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand",
-    "draw",
+    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample", "import",
+    "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand", "draw",
 ];
 
 const TOOL: &str = "tool My {

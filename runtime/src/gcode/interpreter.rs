@@ -11,7 +11,6 @@ use super::modal::{FeedMode, Motion};
 use super::motion::Control;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
-use super::state::{Rotation, WorkOffset};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
@@ -225,19 +224,6 @@ impl Iterator for Interpreter<'_> {
 
 impl std::iter::FusedIterator for Interpreter<'_> {}
 
-/// Returns whether a word means something else in DIN/ISO programs of Heidenhain.
-fn is_other_word(code: Code) -> bool {
-    match (code.letter, code.tenths) {
-        ('G', tenths) => matches!(
-            tenths,
-            100 | 200 | 210 | 280 | 300 | 430..=449 | 490 | 520..=599 | 680..=699 | 730 | 740 | 810..=869 | 890 | 920..=929
-                | 980 | 990
-        ),
-        ('M', tenths) => matches!(tenths, 890 | 980 | 990),
-        _ => false,
-    }
-}
-
 /// Returns the text after the first semicolon outside comments in brackets.
 fn after_semicolon(text: &str) -> Option<&str> {
     let mut depth = 0;
@@ -273,8 +259,7 @@ impl Control {
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
         self.note_words(block);
-        self.check_dialect(block)?;
-        check_axis_words(block)?;
+        self.check_block(block)?;
         self.feed(block)?;
         self.tool(block)?;
         dwell(block)?;
@@ -307,93 +292,6 @@ impl Control {
         }
         self.rely(block);
         self.motion(block)
-    }
-
-    /// Notes what a block takes for granted that the program has not stated.
-    fn rely(&mut self, block: &Block) {
-        if !is_programmed(block) {
-            return;
-        }
-        let modal = &self.modal;
-        let has_plane = matches!(modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_)));
-        self.relies.distance |= !modal.distance_stated;
-        self.relies.plane |= has_plane && !modal.plane_stated;
-        if !modal.unit_stated {
-            self.relies.unit.get_or_insert(modal.unit);
-        }
-        self.relies.offset |= !self.offset_stated;
-    }
-
-    /// Notes what the program leaves otherwise than it takes it for granted: the control may keep it for the next run.
-    fn note_left_modes(&mut self) {
-        let (modal, relies, state) = (&self.modal, self.relies, &self.state);
-        let shifts = state.shift != [Some(0.0); 6] || state.rotation != Rotation::Off;
-        let differs = relies.distance && modal.incremental
-            || relies.plane && modal.plane != Plane::Xy
-            || relies.unit.is_some_and(|unit| unit != modal.unit)
-            || relies.offset && state.work_offset != WorkOffset::Standard(1)
-            || shifts;
-        // LinuxCNC sets its modes at the end of a program, and keeps shifts by G92.
-        if differs && (shifts || self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)) {
-            self.notes.add(self.line, Subject::LeftModes);
-        }
-    }
-
-    /// Refuses words that mean something else in the dialect of the control.
-    fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        if let (Some(Choice::Iso | Choice::Rs274Ngc), Some(code)) =
-            (self.stated(Rule::Dialect), block.code_of(Group::Units))
-            && code.tenths > 210
-        {
-            let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
-            let remedy = "write G20 or G21";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
-        }
-        let other = block.codes().find(|code| is_other_word(*code));
-        if let Some(code) = other
-            && self.choice(Rule::Dialect) == Choice::Heidenhain
-        {
-            let meaning = "another word in DIN/ISO programs of Heidenhain";
-            let remedy = "post the program for this control, or state another `dialect`";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
-        }
-        let dialect = self.stated(Rule::Dialect);
-        if let Some(code) = block.code_of(Group::Kinematics)
-            && dialect != Some(Choice::Rs274Ngc)
-        {
-            let meaning = "tool centre point control of LinuxCNC's five-axis configurations alone";
-            let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
-            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
-        }
-        if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
-            return Err(GcodeFault::Combination {
-                word: "G90 or G91".to_owned(),
-                condition: "a coordinate stands before it in the block",
-                remedy: "write it first: on Heidenhain it holds for the coordinates after it",
-            });
-        }
-        let is_m = |code: &Code| code.letter == 'M';
-        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60);
-        if matches!(dialect, None | Some(Choice::Iso))
-            && block.codes().filter(is_m).nth(1).is_some()
-            && let Some(code) = block.codes().filter(is_m).find(acts)
-        {
-            return Err(GcodeFault::Combination {
-                word: code.to_string(),
-                condition: "its block has another M word, of which Haas and Fanuc as delivered execute one",
-                remedy: "write them in two blocks",
-            });
-        }
-        if block.has('P')
-            && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
-        {
-            return Err(GcodeFault::Combination {
-                word: format!("P beside {code}"),
-                condition: "it selects another work offset on Fanuc and Siemens",
-                remedy: "write it in a block of its own",
-            });
-        }
-        Ok(())
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
@@ -559,25 +457,4 @@ fn dwell(block: &mut Block) -> Result<(), GcodeFault> {
         block.take('X');
     }
     Ok(())
-}
-
-/// Refuses two words that would use the axis words of a block.
-fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
-    let one_shot = block
-        .code_of(Group::OneShot)
-        .filter(|code| matches!(code.tenths, 100 | 280 | 300 | 520 | 920));
-    let rotation = block.code_of(Group::Rotation).filter(|code| code.tenths != 690);
-    let machine = block.code_of(Group::Machine);
-    let motion = block.code_of(Group::Motion);
-    // `G0 G28` and `G0 G53` are common: the motion word only sets the mode.
-    let is_return = one_shot.is_some_and(|code| matches!(code.tenths, 280 | 300));
-    let is_plain = motion.is_some_and(|code| matches!(code.tenths, 0 | 10));
-    let motion = motion.filter(|_| !(is_plain && (is_return || machine.is_some())));
-    let mut users = [one_shot, rotation, machine, motion].into_iter().flatten();
-    match (users.next(), users.next()) {
-        (Some(first), Some(second)) => {
-            Err(GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() })
-        }
-        _ => Ok(()),
-    }
 }

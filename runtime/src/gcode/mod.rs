@@ -62,6 +62,7 @@ mod label;
 mod modal;
 mod motion;
 mod note;
+mod refuse;
 mod rules;
 mod spindle;
 mod state;

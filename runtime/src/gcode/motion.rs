@@ -7,11 +7,11 @@ use super::code::Group;
 use super::cycle::Cycle;
 use super::modal::{FeedMode, Modal, Motion};
 use super::note::{Notes, Subject};
+use super::refuse::Relies;
 use super::rules::{Choice, ControlRules, Rule};
 use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 use super::{ControlSetup, GcodeFault, Step, StepPath};
-use crate::unit::Unit;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -25,18 +25,6 @@ const RADII_TOLERANCE: f64 = 5e-3;
 /// Returns two coordinates of a position, if both are known.
 fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
     Some([position[axes[0]]?, position[axes[1]]?])
-}
-
-/// What a program takes for granted, before it states it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Relies {
-    /// G90.
-    pub(super) distance: bool,
-    /// G17.
-    pub(super) plane: bool,
-    pub(super) unit: Option<Unit>,
-    /// G54.
-    pub(super) offset: bool,
 }
 
 /// A control: everything that blocks change and motions depend on.
@@ -342,65 +330,6 @@ impl Control {
         Ok(turns.unwrap_or(1))
     }
 
-    /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
-    pub(super) fn check_position(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        let dialect = self.stated(Rule::Dialect);
-        let is_incremental = self.modal.incremental;
-        let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
-        if length_changed && is_incremental {
-            let condition = "G91 is in force and the length offset has changed";
-            let remedy = "write it in G90";
-            return Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy });
-        }
-        for (axis, letter) in AXES.into_iter().enumerate() {
-            let Some(value) = block.value(letter).filter(|value| *value != 0.0 || !is_incremental)
-            else {
-                continue;
-            };
-            let is_shifted = std::mem::take(&mut self.origin_changed[axis]) && is_incremental;
-            if is_shifted && matches!(dialect, None | Some(Choice::Sinumerik)) {
-                return Err(GcodeFault::Combination {
-                    word: letter.to_string(),
-                    condition: "G91 is in force and its work offset or shift has changed, which Sinumerik adds",
-                    remedy: "write it in G90",
-                });
-            }
-            let steps = value / self.modal.increment();
-            if is_incremental
-                && axis < 3
-                && dialect != Some(Choice::Rs274Ngc)
-                && (steps - steps.round()).abs() > 1e-6
-            {
-                return Err(GcodeFault::Combination {
-                    word: format!("{letter}{value}"),
-                    condition: "G91 is in force, and it is no multiple of the least increment, to which controls round each",
-                    remedy: "write it in G90",
-                });
-            }
-        }
-        self.check_after_rotation(block)
-    }
-
-    /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
-    fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        let is_absolute = !self.modal.incremental;
-        let moves = |value: f64| is_absolute || value != 0.0;
-        let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
-        if !self.rotation_changed || given == [false; 2] {
-            return Ok(());
-        }
-        let is_rotated = self.state.rotation != Rotation::Off;
-        if self.modal.incremental || is_rotated && given != [true; 2] {
-            return Err(GcodeFault::Combination {
-                word: "a position".to_owned(),
-                condition: "it is the first after G68 or G69, and not of both axes of the plane in G90",
-                remedy: "write both in G90",
-            });
-        }
-        self.rotation_changed = given != [true; 2];
-        Ok(())
-    }
-
     /// Refuses an arc that is a full circle where coordinates are rounded, and notes one that is no circle.
     fn check_radii(&mut self, path: &StepPath, end: &Position) -> Result<(), GcodeFault> {
         let StepPath::Arc { plane, centre, .. } = path else { return Ok(()) };
@@ -442,27 +371,6 @@ impl Control {
             Some(_) => Ok(()),
             None => Err(GcodeFault::NoFeed { word: word.to_owned(), inverse }),
         }
-    }
-
-    /// Refuses motions in a tilted plane whose meaning depends on G53.1.
-    pub(super) fn check_tilted(&self, block: &Block) -> Result<(), GcodeFault> {
-        let Rotation::Tilted { aligned, .. } = self.state.rotation else { return Ok(()) };
-        let moved = AXES.into_iter().filter(|letter| block.has(*letter));
-        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
-        for letter in moved {
-            let is_rotary = AXES[3..].contains(&letter);
-            let (condition, remedy) = match (aligned, is_rotary) {
-                (true, true) => {
-                    ("a tilted plane is aligned (G53.1)", "end the plane with G69 before")
-                }
-                (false, false) if !at_zero && self.state.tcp == Tcp::Off => {
-                    ("a tilted plane is not aligned", "write G53.1 after G68.2")
-                }
-                _ => continue,
-            };
-            return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
-        }
-        Ok(())
     }
 
     /// Executes G53.

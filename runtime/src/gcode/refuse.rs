@@ -1,0 +1,241 @@
+//! Words and positions that controls execute in different ways, and that are refused or noted for it.
+//!
+//! `docs/controls.md` lists them with what each control does.
+
+use super::block::Block;
+use super::code::{Code, Group};
+use super::coordinates::is_programmed;
+use super::modal::Motion;
+use super::motion::{AXES, Control};
+use super::note::Subject;
+use super::rules::{Choice, Rule};
+use super::state::{Rotation, Tcp, WorkOffset};
+use super::{GcodeFault, Plane};
+use crate::unit::Unit;
+
+/// What a program takes for granted, before it states it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Relies {
+    /// G90.
+    pub(super) distance: bool,
+    /// G17.
+    pub(super) plane: bool,
+    pub(super) unit: Option<Unit>,
+    /// G54.
+    pub(super) offset: bool,
+}
+
+impl Control {
+    /// Refuses a block that controls read in different ways, as far as its words tell.
+    pub(super) fn check_block(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        self.check_dialect(block)?;
+        self.check_words(block)
+    }
+
+    /// Refuses words that mean something else in the dialect of the control.
+    fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        if let (Some(Choice::Iso | Choice::Rs274Ngc), Some(code)) =
+            (self.stated(Rule::Dialect), block.code_of(Group::Units))
+            && code.tenths > 210
+        {
+            let meaning = "a unit in programs of Sinumerik and Heidenhain, and a cycle elsewhere";
+            let remedy = "write G20 or G21";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
+        let other = block.codes().find(|code| is_other_word(*code));
+        if let Some(code) = other
+            && self.choice(Rule::Dialect) == Choice::Heidenhain
+        {
+            let meaning = "another word in DIN/ISO programs of Heidenhain";
+            let remedy = "post the program for this control, or state another `dialect`";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
+        let dialect = self.stated(Rule::Dialect);
+        if let Some(code) = block.code_of(Group::Kinematics)
+            && dialect != Some(Choice::Rs274Ngc)
+        {
+            let meaning = "tool centre point control of LinuxCNC's five-axis configurations alone";
+            let remedy = "write G43.4 H and G49, or state `dialect = \"rs274ngc\"` of the control";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
+        if block.distance_after_coordinate && dialect == Some(Choice::Heidenhain) {
+            return Err(GcodeFault::Combination {
+                word: "G90 or G91".to_owned(),
+                condition: "a coordinate stands before it in the block",
+                remedy: "write it first: on Heidenhain it holds for the coordinates after it",
+            });
+        }
+        Ok(())
+    }
+
+    /// Refuses words of a block that controls combine in different ways.
+    fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
+        let dialect = self.stated(Rule::Dialect);
+        let is_m = |code: &Code| code.letter == 'M';
+        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60);
+        if matches!(dialect, None | Some(Choice::Iso))
+            && block.codes().filter(is_m).nth(1).is_some()
+            && let Some(code) = block.codes().filter(is_m).find(acts)
+        {
+            return Err(GcodeFault::Combination {
+                word: code.to_string(),
+                condition: "its block has another M word, of which Haas and Fanuc as delivered execute one",
+                remedy: "write them in two blocks",
+            });
+        }
+        if block.has('P')
+            && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
+        {
+            return Err(GcodeFault::Combination {
+                word: format!("P beside {code}"),
+                condition: "it selects another work offset on Fanuc and Siemens",
+                remedy: "write it in a block of its own",
+            });
+        }
+        check_axis_words(block)
+    }
+
+    /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
+    pub(super) fn check_position(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let dialect = self.stated(Rule::Dialect);
+        let is_incremental = self.modal.incremental;
+        let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
+        if length_changed && is_incremental {
+            let condition = "G91 is in force and the length offset has changed";
+            let remedy = "write it in G90";
+            return Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy });
+        }
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let Some(value) = block.value(letter).filter(|value| *value != 0.0 || !is_incremental)
+            else {
+                continue;
+            };
+            let is_shifted = std::mem::take(&mut self.origin_changed[axis]) && is_incremental;
+            if is_shifted && matches!(dialect, None | Some(Choice::Sinumerik)) {
+                return Err(GcodeFault::Combination {
+                    word: letter.to_string(),
+                    condition: "G91 is in force and its work offset or shift has changed, which Sinumerik adds",
+                    remedy: "write it in G90",
+                });
+            }
+            let steps = value / self.modal.increment();
+            if is_incremental
+                && axis < 3
+                && dialect != Some(Choice::Rs274Ngc)
+                && (steps - steps.round()).abs() > 1e-6
+            {
+                return Err(GcodeFault::Combination {
+                    word: format!("{letter}{value}"),
+                    condition: "G91 is in force, and it is no multiple of the least increment, to which controls round each",
+                    remedy: "write it in G90",
+                });
+            }
+        }
+        self.check_after_rotation(block)
+    }
+
+    /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
+    fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        let is_absolute = !self.modal.incremental;
+        let moves = |value: f64| is_absolute || value != 0.0;
+        let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
+        if !self.rotation_changed || given == [false; 2] {
+            return Ok(());
+        }
+        let is_rotated = self.state.rotation != Rotation::Off;
+        if self.modal.incremental || is_rotated && given != [true; 2] {
+            return Err(GcodeFault::Combination {
+                word: "a position".to_owned(),
+                condition: "it is the first after G68 or G69, and not of both axes of the plane in G90",
+                remedy: "write both in G90",
+            });
+        }
+        self.rotation_changed = given != [true; 2];
+        Ok(())
+    }
+
+    /// Refuses motions in a tilted plane whose meaning depends on G53.1.
+    pub(super) fn check_tilted(&self, block: &Block) -> Result<(), GcodeFault> {
+        let Rotation::Tilted { aligned, .. } = self.state.rotation else { return Ok(()) };
+        let moved = AXES.into_iter().filter(|letter| block.has(*letter));
+        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+        for letter in moved {
+            let is_rotary = AXES[3..].contains(&letter);
+            let (condition, remedy) = match (aligned, is_rotary) {
+                (true, true) => {
+                    ("a tilted plane is aligned (G53.1)", "end the plane with G69 before")
+                }
+                (false, false) if !at_zero && self.state.tcp == Tcp::Off => {
+                    ("a tilted plane is not aligned", "write G53.1 after G68.2")
+                }
+                _ => continue,
+            };
+            return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
+        }
+        Ok(())
+    }
+
+    /// Notes what a block takes for granted that the program has not stated.
+    pub(super) fn rely(&mut self, block: &Block) {
+        if !is_programmed(block) {
+            return;
+        }
+        let modal = &self.modal;
+        let has_plane = matches!(modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_)));
+        self.relies.distance |= !modal.distance_stated;
+        self.relies.plane |= has_plane && !modal.plane_stated;
+        if !modal.unit_stated {
+            self.relies.unit.get_or_insert(modal.unit);
+        }
+        self.relies.offset |= !self.offset_stated;
+    }
+
+    /// Notes what the program leaves otherwise than it takes it for granted: the control may keep it for the next run.
+    pub(super) fn note_left_modes(&mut self) {
+        let (modal, relies, state) = (&self.modal, self.relies, &self.state);
+        let shifts = state.shift != [Some(0.0); 6] || state.rotation != Rotation::Off;
+        let differs = relies.distance && modal.incremental
+            || relies.plane && modal.plane != Plane::Xy
+            || relies.unit.is_some_and(|unit| unit != modal.unit)
+            || relies.offset && state.work_offset != WorkOffset::Standard(1)
+            || shifts;
+        // LinuxCNC sets its modes at the end of a program, and keeps shifts by G92.
+        if differs && (shifts || self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)) {
+            self.notes.add(self.line, Subject::LeftModes);
+        }
+    }
+}
+
+/// Returns whether a word means something else in DIN/ISO programs of Heidenhain.
+fn is_other_word(code: Code) -> bool {
+    match (code.letter, code.tenths) {
+        ('G', tenths) => matches!(
+            tenths,
+            100 | 200 | 210 | 280 | 300 | 430..=449 | 490 | 520..=599 | 680..=699 | 730 | 740 | 810..=869 | 890 | 920..=929
+                | 980 | 990
+        ),
+        ('M', tenths) => matches!(tenths, 890 | 980 | 990),
+        _ => false,
+    }
+}
+
+/// Refuses two words that would use the axis words of a block.
+fn check_axis_words(block: &Block) -> Result<(), GcodeFault> {
+    let one_shot = block
+        .code_of(Group::OneShot)
+        .filter(|code| matches!(code.tenths, 100 | 280 | 300 | 520 | 920));
+    let rotation = block.code_of(Group::Rotation).filter(|code| code.tenths != 690);
+    let machine = block.code_of(Group::Machine);
+    let motion = block.code_of(Group::Motion);
+    // `G0 G28` and `G0 G53` are common: the motion word only sets the mode.
+    let is_return = one_shot.is_some_and(|code| matches!(code.tenths, 280 | 300));
+    let is_plain = motion.is_some_and(|code| matches!(code.tenths, 0 | 10));
+    let motion = motion.filter(|_| !(is_plain && (is_return || machine.is_some())));
+    let mut users = [one_shot, rotation, machine, motion].into_iter().flatten();
+    match (users.next(), users.next()) {
+        (Some(first), Some(second)) => {
+            Err(GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() })
+        }
+        _ => Ok(()),
+    }
+}
