@@ -1,8 +1,7 @@
-//! The runtime: evaluators, queries, scenes, imported tools and the haptic loop.
+//! The runtime: evaluators, queries, scenes and tools in other units.
 
 mod closed_forms;
 mod evaluators;
-mod import;
 mod levels;
 mod query;
 mod scene;

@@ -1,7 +1,7 @@
 //! Exported tools, imported again, are the same solids: by depth at random points, not by the outlines that the export
 //! compares itself.
 
-use super::notations::{assert_same_solid, load};
+use crate::notations::{assert_same_solid, load};
 use touchoff::Tool;
 use touchoff::tool::Interpreted;
 use touchoff_import::export::{Export, Format, export};

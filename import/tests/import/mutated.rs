@@ -1,7 +1,7 @@
 //! Mutated tool libraries. The reader must not panic, a tool that it returns loads or is refused with a reason, and
 //! each dimension of it follows from numbers of the file.
 //!
-//! `MUTANTS=100000 cargo test --workspace --test engine mutated -- --nocapture` runs 10⁵ mutants of each format, `mutated_tables`
+//! `MUTANTS=100000 cargo test -p touchoff-import --test import mutated -- --nocapture` runs 10⁵ mutants of each format, `mutated_tables`
 //! instead of `mutated` those of one.
 
 use std::collections::HashSet;
