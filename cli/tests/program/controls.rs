@@ -64,7 +64,9 @@ impl Scene {
     /// As [`Scene::gives`], on a Sinumerik that reads native programs.
     fn gives_natively(&self, status: i32, words: &[&str]) {
         let siemens = ControlRules::named("siemens").expect("a control");
-        let native = siemens.with(Rule::ToolLength, Choice::Always).to_toml();
+        let native = siemens.with(Rule::ToolLength, Choice::Always);
+        let native = native.with(Rule::Rotary, Choice::WithinTurn);
+        let native = native.with(Rule::ToolOrientation, Choice::ByAxes).to_toml();
         let control = self.bench.write("native.toml", native);
         self.gives(&["--control", &control], status, words);
     }
@@ -479,7 +481,8 @@ fn controls_and_machines_are_listed() {
         let open = match row["name"].as_str() {
             Some("fanuc") => 3,
             Some("haas") => 2,
-            Some("siemens" | "heidenhain") => 1,
+            Some("siemens") => 3,
+            Some("heidenhain") => 1,
             _ => 0,
         };
         assert_eq!(stated, keys - open, "{row}");
@@ -622,6 +625,27 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     scene(&at_zero).gives(&FANUC, 0, &[]);
 }
 
+/// Under TRAORI the tool axis turns by the axes, or on a great circle, which is not followed.
+#[test]
+fn an_orientation_under_traori_is_stated() {
+    let blocks = "T1 M6\nS9000 M3\nG0 A0. C0.\nTRAORI\nG54\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20. A-10. C20.\nTRAFOOF\nG54";
+    let scene = Scene::new(blocks).placed().with("machine = \"mine.toml\"");
+    let machine = stdout(&touchoff(&["machines", "A-C trunnion"]));
+    let machine = machine.replace("name = ", "tool_change = \"stays\"\nname = ");
+    scene.bench.write("mine.toml", machine);
+    scene.gives(&SIEMENS, 2, &["ORIVECT", "great circle"]);
+    scene.gives_natively(0, &[]);
+}
+
+/// A rotary axis without limits returns in a direction of the machine's.
+#[test]
+fn a_return_of_a_rotary_axis_is_not_the_shorter_way() {
+    let blocks = "G43 H1 G0 X-6. Y0. Z20. A0. C10.\nG1 X-4. Z1.\nG0 Z50.\nG91 G28 C0.\nG90";
+    let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"");
+    scene.gives(&FANUC, 2, &["in a direction of the machine's"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
 /// Two positions of the rotary axes align the tool, and the nearer of one axis is not that of the other.
 #[test]
 fn an_alignment_that_controls_choose_in_different_ways_is_not_followed() {
@@ -671,6 +695,9 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&LINUXCNC, 0, &[]);
     Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(&FANUC, 0, &[]);
     Scene::of(&format!("{begin}G52 X1.\nM30\n")).gives(&LINUXCNC, 2, &[word]);
+    Scene::of(&format!("%\n{begin}G91 G0 Z1.\n%\n")).gives(&LINUXCNC, 2, &[word]);
+    let cycles = "G81 X-4. Y0. Z1. R3.\nG80\nG99 G81 X-5. Z1. R3.\nG80\nG0 Z20.\nG90\nM30\n";
+    Scene::of(&format!("{begin}{cycles}")).gives(&FANUC, 2, &[word]);
 }
 
 /// Words of Heidenhain whose order in a block matters, or that keep what they leave out.

@@ -40,6 +40,18 @@ impl Control {
             self.staged = Some(tool);
         }
         if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
+            let is_changing = has_tool || block.code_of(Group::ToolChange).is_some();
+            let is_staged = self.staged.is_some() && self.staged != self.state.tool;
+            if edge != 1
+                && (is_changing || is_staged)
+                && self.choice(Rule::ToolLength) == Choice::Always
+            {
+                return Err(GcodeFault::Combination {
+                    word: format!("D{edge}"),
+                    condition: "a tool is about to be changed, for which it counts",
+                    remedy: "write it after the change",
+                });
+            }
             self.edge = Some(edge);
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
             self.edge_length(edge)?;
@@ -81,6 +93,7 @@ impl Control {
             });
         }
         if has_change {
+            self.spindle.end_rigid();
             self.stop_spindle();
         }
         match self.staged {
@@ -245,16 +258,16 @@ impl Control {
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         (self.returned, self.length_implicit) = (None, false);
-        let off = |transformed| if transformed { Tcp::Rotary } else { Tcp::Off };
+        let off = if self.transformed { self.state.tcp } else { Tcp::Off };
         if code.tenths == 490 {
-            let tcp = off(self.transformed);
+            let tcp = off;
             self.vector = None;
             self.length_cancelled = true;
             self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, tcp));
             return Ok(());
         }
         let tcp = match code.tenths {
-            430 => off(self.transformed),
+            430 => off,
             _ if self.transformed => {
                 return Err(combination(code, "M428 or TRAORI is in force", "end it before"));
             }
@@ -361,7 +374,8 @@ impl Control {
             length = self.registered(tool);
         }
         self.transformed = true;
-        self.change(|state| (state.length, state.tcp) = (length, Tcp::Rotary));
+        let tcp = if block.keyword.is_some() { Tcp::Transformation } else { Tcp::Rotary };
+        self.change(|state| (state.length, state.tcp) = (length, tcp));
         self.check_edge()
     }
 
@@ -472,6 +486,7 @@ impl Control {
         }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
+        self.relies.changed_offset |= self.used_offsets.contains(&offset);
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {

@@ -271,7 +271,7 @@ impl Control {
             _ => self.move_along(axis, true, clear),
         }
         if matches!(number, 74 | 84) {
-            self.end_tapping();
+            self.end_tapping(number);
         }
     }
 }

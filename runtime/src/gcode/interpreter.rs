@@ -80,6 +80,7 @@ impl<'a> Interpreter<'a> {
         let located = |(line, fault)| GcodeError { line, fault };
         let Some((line, text)) = self.flow.next_line().map_err(located)? else {
             self.finished = true;
+            self.control.note_left_modes(false);
             return Ok(());
         };
         let mut block = mem::take(&mut self.block);
@@ -184,7 +185,7 @@ impl<'a> Interpreter<'a> {
         match block.code_of(Group::Stop).map(|code| code.tenths) {
             Some(20 | 300) => {
                 self.finished = true;
-                self.control.note_left_modes();
+                self.control.note_left_modes(true);
                 if let Some(line) = self.flow.text_after_end() {
                     self.control.notes.add(line, Subject::TextAfterEnd);
                 }

@@ -156,6 +156,8 @@ pub struct Step {
     pub absolute: bool,
     /// Set if the end is stated in machine coordinates: under G53, and to a reference position.
     pub in_machine: bool,
+    /// Set for the motion to a reference position (G28, G30).
+    pub is_return: bool,
     /// The spindle during the motion.
     pub spindle: Spindle,
     /// State of the control, shared by steps until it changes.

@@ -78,6 +78,8 @@ pub(super) struct Control {
     /// Set once the program has a length.
     pub(super) unit_used: bool,
     pub(super) relies: Relies,
+    /// Work offsets in which a position was stated.
+    pub(super) used_offsets: Vec<WorkOffset>,
     /// Set if the length offset is that of the tool in the spindle without a word.
     pub(super) length_implicit: bool,
     /// Set by G49, until the next tool change.
@@ -134,6 +136,7 @@ impl Control {
             offset_deselected: false,
             unit_used: false,
             relies: Relies::default(),
+            used_offsets: Vec::new(),
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::new(),
@@ -177,6 +180,12 @@ impl Control {
         }
         if !matches!(self.modal.motion, Some(Motion::Cycle(_))) {
             self.cycle = None;
+        }
+        let is_tapping = matches!(self.modal.motion, Some(Motion::Cycle(74 | 84)));
+        let has_motion =
+            [Group::CycleOff, Group::Motion].map(|group| block.code_of(group).is_some());
+        if has_motion.contains(&true) && !is_tapping {
+            self.spindle.end_rigid();
         }
     }
 
@@ -452,6 +461,7 @@ impl Control {
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, StepPath::Line);
+        self.pending.back_mut().expect("the step that was added").is_return = true;
         self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }
@@ -519,6 +529,7 @@ impl Control {
             spindle,
             absolute: !self.modal.incremental,
             in_machine: false,
+            is_return: false,
             state,
         });
     }

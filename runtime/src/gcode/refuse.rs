@@ -23,6 +23,10 @@ pub(super) struct Relies {
     pub(super) unit: Option<Unit>,
     /// G54.
     pub(super) offset: bool,
+    /// G98 or G99, by the control.
+    pub(super) retract: bool,
+    /// The origin of a work offset that G10 sets after it was used.
+    pub(super) changed_offset: bool,
 }
 
 impl Control {
@@ -72,7 +76,7 @@ impl Control {
     fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
         let dialect = self.stated(Rule::Dialect);
         let is_m = |code: &Code| code.letter == 'M';
-        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60);
+        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60 | 290);
         if matches!(dialect, None | Some(Choice::Iso))
             && block.codes().filter(is_m).nth(1).is_some()
             && let Some(code) = block.codes().filter(is_m).find(acts)
@@ -118,9 +122,9 @@ impl Control {
                     remedy: "write it in G90",
                 });
             }
-            let steps = value / self.modal.increment();
+            let increment = if axis < 3 { self.modal.increment() } else { 1e-3 };
+            let steps = value / increment;
             if is_incremental
-                && axis < 3
                 && dialect != Some(Choice::Rs274Ngc)
                 && (steps - steps.round()).abs() > 1e-6
             {
@@ -181,7 +185,13 @@ impl Control {
             return;
         }
         let modal = &self.modal;
-        let has_plane = matches!(modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_)));
+        let is_cycle = matches!(modal.motion, Some(Motion::Cycle(_)));
+        let rotates = block.code_of(Group::Rotation).is_some_and(|code| code.tenths == 680);
+        let has_plane = is_cycle || rotates || matches!(modal.motion, Some(Motion::Arc { .. }));
+        self.relies.retract |= is_cycle && modal.retract_to_r.is_none();
+        if self.used_offsets.last() != Some(&self.state.work_offset) {
+            self.used_offsets.push(self.state.work_offset);
+        }
         self.relies.distance |= !modal.distance_stated;
         self.relies.plane |= has_plane && !modal.plane_stated;
         if !modal.unit_stated {
@@ -191,16 +201,21 @@ impl Control {
     }
 
     /// Notes what the program leaves otherwise than it takes it for granted: the control may keep it for the next run.
-    pub(super) fn note_left_modes(&mut self) {
+    ///
+    /// `resets` is set for M2 and M30, at which LinuxCNC sets its modes. It keeps shifts, and all after `%`.
+    pub(super) fn note_left_modes(&mut self, resets: bool) {
         let (modal, relies, state) = (&self.modal, self.relies, &self.state);
-        let shifts = state.shift != [Some(0.0); 6] || state.rotation != Rotation::Off;
+        let shifts = state.shift != [Some(0.0); 6]
+            || state.rotation != Rotation::Off
+            || relies.changed_offset;
         let differs = relies.distance && modal.incremental
             || relies.plane && modal.plane != Plane::Xy
             || relies.unit.is_some_and(|unit| unit != modal.unit)
             || relies.offset && state.work_offset != WorkOffset::Standard(1)
+            || relies.retract && modal.retract_to_r.is_some()
             || shifts;
-        // LinuxCNC sets its modes at the end of a program, and keeps shifts by G92.
-        if differs && (shifts || self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)) {
+        let is_reset = resets && self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        if differs && (shifts || !is_reset) {
             self.notes.add(self.line, Subject::LeftModes);
         }
     }

@@ -52,6 +52,8 @@ pub enum Rule {
     WholeRadii,
     /// Coordinates under tool centre point control that begins while the table is turned.
     TcpStart,
+    /// The tool axis between two positions of the rotary axes under `TRAORI`.
+    ToolOrientation,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -104,6 +106,8 @@ pub enum Choice {
     RepeatsByK,
     TableAtZero,
     TableAsItStands,
+    ByAxes,
+    GreatCircle,
     Executed,
     LeftOut,
 }
@@ -117,7 +121,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 21] = [
+const RULES: [Entry; 22] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -329,6 +333,19 @@ const RULES: [Entry; 21] = [
         ],
     },
     Entry {
+        rule: Rule::ToolOrientation,
+        key: "tool_orientation",
+        about: "the tool axis between two positions of the rotary axes under TRAORI",
+        choices: &[
+            (Choice::ByAxes, "by axes", "turns with the axes, each in proportion (ORIAXES)"),
+            (
+                Choice::GreatCircle,
+                "great circle",
+                "turns in the plane of both directions (ORIVECT), and is not followed",
+            ),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -341,7 +358,7 @@ const RULES: [Entry; 21] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 20]); 5] = {
+const CONTROLS: [(&str, [Choice; 21]); 5] = {
     use Choice::*;
     [
         (
@@ -367,6 +384,7 @@ const CONTROLS: [(&str, [Choice; 20]); 5] = {
                 RepeatsByK,
                 Increments,
                 TableAsItStands,
+                ByAxes,
             ],
         ),
         (
@@ -392,6 +410,7 @@ const CONTROLS: [(&str, [Choice; 20]); 5] = {
                 RepeatsByL,
                 Units,
                 TableAtZero,
+                ByAxes,
             ],
         ),
         (
@@ -417,6 +436,7 @@ const CONTROLS: [(&str, [Choice; 20]); 5] = {
                 RepeatsByL,
                 Units,
                 TableAtZero,
+                ByAxes,
             ],
         ),
         (
@@ -442,6 +462,7 @@ const CONTROLS: [(&str, [Choice; 20]); 5] = {
                 RepeatsByK,
                 Units,
                 TableAtZero,
+                ByAxes,
             ],
         ),
         (
@@ -467,13 +488,14 @@ const CONTROLS: [(&str, [Choice; 20]); 5] = {
                 RepeatsByL,
                 Units,
                 TableAtZero,
+                ByAxes,
             ],
         ),
     ]
 };
 
 /// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
-const OPEN: [(&str, Rule); 7] = [
+const OPEN: [(&str, Rule); 9] = [
     ("fanuc", Rule::ReferenceReturn),
     ("fanuc", Rule::LengthChange),
     // K, and L on the Series 15 and in its format.
@@ -483,6 +505,9 @@ const OPEN: [(&str, Rule); 7] = [
     ("haas", Rule::WholeRadii),
     // Native programs have no G43, and those in ISO mode need it.
     ("siemens", Rule::ToolLength),
+    // Within a turn in native programs, the shorter way in ISO mode (MD20734).
+    ("siemens", Rule::Rotary),
+    ("siemens", Rule::ToolOrientation),
     // The display of the axis below 360 degrees, and M126.
     ("heidenhain", Rule::Rotary),
 ];

@@ -31,13 +31,26 @@ pub(super) struct SpindleWords {
     speed: Option<f64>,
     /// Set from a stop on, until the next word about the spindle.
     paused: bool,
-    /// Set by M29: tapping cycles turn the spindle themselves.
+    /// Set by M29: the tapping cycles after it turn the spindle themselves.
     rigid: bool,
+    /// The tapping cycle (G74 or G84) that left the spindle, and found it turning.
+    tapping: Option<u32>,
 }
 
 impl SpindleWords {
     pub(super) fn new() -> SpindleWords {
-        SpindleWords { turn: Spindle::NotStated, speed: None, paused: false, rigid: false }
+        SpindleWords {
+            turn: Spindle::NotStated,
+            speed: None,
+            paused: false,
+            rigid: false,
+            tapping: None,
+        }
+    }
+
+    /// Ends rigid tapping.
+    pub(super) fn end_rigid(&mut self) {
+        self.rigid = false;
     }
 }
 
@@ -56,7 +69,10 @@ impl Control {
             let turn = match (code.letter, code.tenths) {
                 ('M', 30) => Spindle::Clockwise,
                 ('M', 40) => Spindle::CounterClockwise,
-                ('M', 50 | 190) => Spindle::Stopped,
+                ('M', 50 | 190) => {
+                    self.spindle.end_rigid();
+                    Spindle::Stopped
+                }
                 ('M', 290) => {
                     self.spindle.rigid = true;
                     continue;
@@ -64,6 +80,7 @@ impl Control {
                 _ => continue,
             };
             (self.spindle.turn, self.spindle.paused) = (turn, false);
+            self.spindle.tapping = None;
             if (turn, false) != (before.turn, before.paused) {
                 word = Some(code.to_string());
             }
@@ -77,20 +94,22 @@ impl Control {
     }
 
     /// Returns whether a tapping cycle finds the spindle as it needs it: turning into its thread, unless the cycle turns it itself
-    /// (M29), or a tapping cycle was before.
+    /// (M29), or the same cycle was before.
     pub(super) fn can_tap(&mut self, number: u32) -> bool {
         let wanted = if number == 84 { Spindle::Clockwise } else { Spindle::CounterClockwise };
         let spindle = self.spindle(false);
-        self.spindle.rigid || spindle == wanted || spindle == Spindle::AfterTapping
+        self.spindle.rigid || spindle == wanted || self.spindle.tapping == Some(number)
     }
 
     /// Notes the end of a tapping cycle.
-    pub(super) fn end_tapping(&mut self) {
+    pub(super) fn end_tapping(&mut self, number: u32) {
         self.spindle.turn = Spindle::AfterTapping;
+        self.spindle.tapping = Some(number).filter(|_| !self.spindle.rigid);
     }
 
     /// Stops the spindle for a tool change. It stays unstated if it was.
     pub(super) fn stop_spindle(&mut self) {
+        self.spindle.tapping = None;
         if self.spindle.turn != Spindle::NotStated {
             self.spindle.turn = Spindle::Stopped;
         }

@@ -88,8 +88,10 @@ impl fmt::Display for WorkOffset {
 pub enum Tcp {
     /// Off: the linear axes do not follow the rotary axes.
     Off,
-    /// On, with rotary axes in the program (G43.4, G234, `TRAORI`, M428).
+    /// On, with rotary axes in the program (G43.4, G234, M428).
     Rotary,
+    /// On, by `TRAORI` of Sinumerik, with rotary axes in the program.
+    Transformation,
     /// On, with tool vectors in the program (G43.5).
     Vector,
 }

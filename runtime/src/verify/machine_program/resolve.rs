@@ -77,6 +77,10 @@ pub enum UnknownCause {
     HalfTurn,
     /// The tool axis is reached by two positions of the rotary axes, of which controls choose in different ways.
     TwoPositions,
+    /// A rotary axis without limits returns to its reference position, in a direction of the machine's.
+    ReturnWay,
+    /// The tool axis turns on a great circle, which is not followed.
+    GreatCircle,
     /// Tool centre point control began while the table was turned, and the control takes the part as it stood then.
     TurnedTable,
 }
@@ -116,6 +120,14 @@ impl fmt::Display for UnknownCause {
                 "two positions of the rotary axes give the tool axis, and controls choose in different ways: turn the axes near to \
                  one of them before",
             ),
+            UnknownCause::ReturnWay => f.write_str(
+                "a rotary axis without limits returns to its reference position in a direction of the machine's: turn it there by \
+                 G0 before",
+            ),
+            UnknownCause::GreatCircle => f.write_str(
+                "the tool axis turns on a great circle under TRAORI (ORIVECT): write ORIAXES and state `tool_orientation` of the \
+                 control",
+            ),
             UnknownCause::TurnedTable => f.write_str(
                 "the table is turned where tool centre point control begins, and positions are those of the part as it stands: \
                  turn it to 0 before, or state `tcp_start` of the control",
@@ -141,6 +153,8 @@ pub(super) struct Resolver<'a> {
     turning: Option<Choice>,
     /// Where coordinates lead under tool centre point control that begins while the table is turned.
     tcp_start: Option<Choice>,
+    /// How the tool axis turns under `TRAORI`.
+    tool_orientation: Option<Choice>,
     /// Set while it is in force.
     has_tcp: bool,
     /// Set while it is, if its coordinates are not followed.
@@ -222,6 +236,7 @@ impl<'a> Resolver<'a> {
                 .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
             turning: setup.rules.get(Rule::Rotary),
             tcp_start: setup.rules.get(Rule::TcpStart),
+            tool_orientation: setup.rules.get(Rule::ToolOrientation),
             has_tcp: false,
             is_turned_table: false,
             unnamed_tool,
@@ -293,7 +308,7 @@ impl<'a> Resolver<'a> {
             }
             (3..6).for_each(|k| ends[1][k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
         }
-        let is_half = self.turn_shorter(step, &mut ends);
+        let mut way = self.turn_shorter(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
@@ -311,7 +326,14 @@ impl<'a> Resolver<'a> {
         if !frame.is_tip && frame.has_unknown_lever && turns(Side::Tool) {
             return Err(StepFault::NoLength);
         }
-        let is_determined = !matches!(step.path, StepPath::Undetermined) && !is_half;
+        let turned = |start: [f64; 6]| (3..6).any(|k| start[k] != end[k]);
+        if step.state.tcp == Tcp::Transformation && start.is_some_and(turned) {
+            self.asked.entry(Rule::ToolOrientation).or_insert(step.line);
+            if self.tool_orientation == Some(Choice::GreatCircle) {
+                way = Some(UnknownCause::GreatCircle);
+            }
+        }
+        let is_determined = !matches!(step.path, StepPath::Undetermined) && way.is_none();
         let resolved = match start.filter(|_| is_determined) {
             // In an aligned plane the rotary axes rest, and the others move each by itself.
             Some(start) if step.rapid && step.state.tcp == Tcp::Off => {
@@ -334,7 +356,7 @@ impl<'a> Resolver<'a> {
             None => {
                 let mut motions = frame.motions(&StepPath::Line, [end, end])?;
                 let (rest, _) = motions.swap_remove(0);
-                let cause = if is_half { UnknownCause::HalfTurn } else { self.cause };
+                let cause = way.unwrap_or(self.cause);
                 Resolved::Arrival(Box::new(rest), cause)
             }
         };
@@ -432,12 +454,23 @@ impl<'a> Resolver<'a> {
     }
 
     /// Counts the angles at the start so that the ways of endless axes to stated angles are those of the control. Returns
-    /// whether one is half a turn, for which both ways are as short.
-    fn turn_shorter(&mut self, step: &Step, [start, end]: &mut [Position; 2]) -> bool {
-        let mut is_half = false;
+    /// the cause for which one is not known.
+    fn turn_shorter(
+        &mut self,
+        step: &Step,
+        [start, end]: &mut [Position; 2],
+    ) -> Option<UnknownCause> {
+        let mut cause = None;
         for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && self.endless[k - 3]) {
             let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
             let turn = to - from;
+            if step.is_return && turn.abs() >= ANGLE_INCREMENT {
+                self.asked.entry(Rule::Rotary).or_insert(step.line);
+                if self.turning != Some(Choice::Counts) {
+                    cause = Some(UnknownCause::ReturnWay);
+                    continue;
+                }
+            }
             let within = to.rem_euclid(360.0) - from.rem_euclid(360.0);
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
@@ -447,13 +480,15 @@ impl<'a> Resolver<'a> {
                 Some(Choice::Shortest) => {
                     let shorter = turn - 360.0 * (turn / 360.0).round();
                     start[k] = Some(to - shorter);
-                    is_half |= shorter.abs() >= 180.0 - ANGLE_INCREMENT;
+                    if shorter.abs() >= 180.0 - ANGLE_INCREMENT {
+                        cause = Some(UnknownCause::HalfTurn);
+                    }
                 }
                 Some(Choice::WithinTurn) => start[k] = Some(to - within),
                 _ => {}
             }
         }
-        is_half
+        cause
     }
 
     /// Resolves the rotation that aligns the tool with z of a tilted plane, with the linear joints at rest.
