@@ -770,7 +770,10 @@ mod tests {
         );
         assert_eq!(
             refused("\"counts\"", "true"),
-            format!("c.toml:{}: `rotary` is one of \"counts\", \"shortest\"", line("rotary ="))
+            format!(
+                "c.toml:{}: `rotary` is one of \"counts\", \"shortest\", \"within a turn\"",
+                line("rotary =")
+            )
         );
         assert!(refused("stop = ", "# stop = ").contains("the rule `stop` is missing"));
         assert!(refused("\"straight\"", "\"straight").starts_with("c.toml:"));
