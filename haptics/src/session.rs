@@ -148,7 +148,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
     /// Fails if a setting, a limit of the device or the compliance centre is out of its range, such as a
     /// rate of 0 or a stiffness of NaN.
     pub fn new(
-        probe: Probe<'a, T>,
+        mut probe: Probe<'a, T>,
         settings: &SessionSettings,
         limits: DeviceLimits,
     ) -> Result<Session<'a, T>, SettingError> {
@@ -157,7 +157,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         let period = setting::period(settings.rate)?;
         let (centre, unit) = (probe.centre(), probe.unit().factor_to(Unit::Millimetre));
         setting::centre(&centre)?;
-        let probe = probe.with_reserved_memory();
+        probe.reserve();
         let coupled = || Rendering::Coupled(Coupling::of(&limits));
         Ok(Session {
             newtons: settings.stiffness,

@@ -138,7 +138,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     }
 
     /// Reserves memory for all queries but [`Probe::contacts`]: 127 bytes per point.
-    pub(crate) fn reserve(&mut self) {
+    pub fn reserve(&mut self) {
         self.state.reserve();
         let QueryState { tree, evaluations, scratch, .. } = &mut self.state;
         evaluations.reserve_for(tree.leaves.len() * WIDTH, Everything::OUTPUTS);
