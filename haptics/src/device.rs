@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 use std::fmt;
-use touchoff::{Motion, MotionError};
-use touchoff::{Pose, PoseError};
+use touchoff::{Motion, MotionError, Pose, PoseError};
 
 /// A force in N and a torque in N·mm about the tool's compliance centre, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -8,8 +8,7 @@ use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::fmt;
-use touchoff::Unit;
-use touchoff::{Pose, PoseError};
+use touchoff::{Pose, PoseError, Unit};
 
 /// Impedance of a handle and the hand that holds it: a mass, a damper to ground and a spring to the
 /// commanded position; likewise in rotation.

@@ -9,11 +9,8 @@ use super::{Device, DeviceAxes, DeviceLimits, DeviceWrench};
 use nalgebra::{Matrix6, Vector6};
 use std::fmt;
 use std::time::Duration;
-use touchoff::Pose;
-use touchoff::Tool;
-use touchoff::Unit;
 use touchoff::tool::BatchEvaluator;
-use touchoff::{Law, Probe, Stiffness, Wrench};
+use touchoff::{Law, Pose, Probe, Stiffness, Tool, Unit, Wrench};
 
 /// Methods of computing the device's wrench from contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,8 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
-use touchoff::Pose;
-use touchoff::Unit;
+use touchoff::{Pose, Unit};
 
 /// The socket of `spacenavd`.
 pub const SOCKET: &str = "/run/spnav.sock";

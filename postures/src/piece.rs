@@ -2,8 +2,7 @@
 
 use nalgebra::{Point3, center};
 use std::collections::HashSet;
-use touchoff::Mesh;
-use touchoff::TriangleId;
+use touchoff::{Mesh, TriangleId};
 
 /// A piece of a triangle: the whole triangle, or half of another piece, which was cut from the middle of its longest
 /// edge to the opposite corner. Triangles that share an edge cut it at the same points.

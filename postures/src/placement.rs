@@ -2,10 +2,8 @@
 
 use super::contact::ContactSites;
 use nalgebra::{Point3, Vector3};
-use touchoff::Level;
-use touchoff::Tool;
-use touchoff::Unit;
 use touchoff::tool::{Evaluations, Outputs, PointBatch};
+use touchoff::{Level, Tool, Unit};
 
 /// A point of contact on the part's surface.
 #[derive(Clone, Copy, Debug)]

@@ -3,14 +3,8 @@
 use super::{MapError, PostureMap, PostureRecord, ToolFingerprint, Validator, ValidatorError};
 use std::fmt;
 use std::time::{Duration, Instant};
-use touchoff::Escaped;
-use touchoff::Part;
-use touchoff::Pose;
-use touchoff::Probe;
-use touchoff::Tool;
-use touchoff::TriangleId;
-use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
+use touchoff::{Escaped, Part, Pose, Probe, Tool, TriangleId, Unit};
 use touchoff_haptics::{SessionState, StateStream};
 
 /// Takes the states of a running loop, and records those poses that are nice and proved acceptable.

@@ -3,12 +3,9 @@
 use super::PostureRecord;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use touchoff::Escaped;
-use touchoff::Pose;
-use touchoff::SurfaceId;
-use touchoff::Tool;
 use touchoff::certify::{AllowanceError, Certifier, NotCertifiable, PoseVerdict, TriangleBvh};
 use touchoff::tool::Symmetry;
+use touchoff::{Escaped, Pose, SurfaceId, Tool};
 
 /// Rules that a posture has to meet to be accepted. Lengths are in the part's unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -686,7 +686,7 @@ fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
     other.gives(&LINUXCNC, 2, &["with the length offset H7 of another tool"]);
 }
 
-/// What a program leaves at its end is what its next run begins with, on some controls.
+/// The state at the end of a program is that in which its next run begins, on some controls.
 #[test]
 fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";

@@ -3,9 +3,7 @@
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use touchoff::Level;
-use touchoff::Tool;
-use touchoff::Unit;
+use touchoff::{Level, Tool, Unit};
 
 use touchoff::tool::{Evaluations, Outputs, PointBatch};
 

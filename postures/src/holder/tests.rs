@@ -3,12 +3,9 @@
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use touchoff::Mesh;
-use touchoff::Tool;
-use touchoff::TriangleId;
-use touchoff::Unit;
 use touchoff::mesh::shapes;
 use touchoff::tool::Surface;
+use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 touchoff::tool! {
     tool Disc "a ball in a holder with a flat face" {

@@ -6,8 +6,7 @@ use crate::{Accessibility, MapRow, Piece, PostureRecord, Rules};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::io::{self, Write};
-use touchoff::Mesh;
-use touchoff::TriangleId;
+use touchoff::{Mesh, TriangleId};
 
 /// The columns of the CSV export.
 const COLUMNS: &str =

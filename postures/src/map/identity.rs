@@ -7,12 +7,8 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::hash::Hasher;
 use std::num::NonZeroU16;
-use touchoff::Escaped;
-use touchoff::Mesh;
-use touchoff::Tool;
-use touchoff::TriangleId;
-use touchoff::Unit;
 use touchoff::tool::ToolInfo;
+use touchoff::{Escaped, Mesh, Tool, TriangleId, Unit};
 
 /// Fingerprint of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,8 +6,7 @@ use crate::Directions;
 use crate::directions::contains;
 use crate::placement::SurfacePoint;
 use nalgebra::{Point3, Vector3};
-use touchoff::Mesh;
-use touchoff::Pose;
+use touchoff::{Mesh, Pose};
 
 /// A posture of a path.
 #[derive(Clone, Copy, Debug)]

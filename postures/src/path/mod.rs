@@ -29,11 +29,8 @@ use retract::RetractSphere;
 use slice::{SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
-use touchoff::Mesh;
-use touchoff::Motion;
-use touchoff::Pose;
-use touchoff::Tool;
 use touchoff::certify::{MotionVerdict, TriangleBvh};
+use touchoff::{Mesh, Motion, Pose, Tool};
 
 /// The pattern of lines that covers a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

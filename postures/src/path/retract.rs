@@ -3,8 +3,7 @@
 use super::PathPlanner;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_3;
-use touchoff::Mesh;
-use touchoff::Pose;
+use touchoff::{Mesh, Pose};
 
 /// A sphere about the part, twice as large as one that holds the tips of all tools that touch the part. A tool
 /// that has moved there along its axis has that axis within 30 degrees of the outward direction, and the whole

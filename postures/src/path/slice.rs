@@ -3,8 +3,7 @@
 use crate::placement::SurfacePoint;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
-use touchoff::Mesh;
-use touchoff::TriangleId;
+use touchoff::{Mesh, TriangleId};
 
 /// The segment of a line within one triangle.
 #[derive(Clone, Copy, Debug)]

@@ -23,10 +23,8 @@ use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use touchoff::Mesh;
-use touchoff::Tool;
-use touchoff::TriangleId;
 use touchoff::certify::TriangleBvh;
+use touchoff::{Mesh, Tool, TriangleId};
 use worker::Worker;
 
 /// Number of neighbouring triangles, or pieces of them, in a batch of rows.

@@ -8,10 +8,7 @@ use crate::MapRow;
 use crate::piece::{Piece, add_ancestors, longest_edge, tiling};
 use nalgebra::{Point3, center};
 use std::collections::{HashMap, HashSet};
-use touchoff::Mesh;
-use touchoff::Tool;
-use touchoff::TriangleId;
-use touchoff::Unit;
+use touchoff::{Mesh, Tool, TriangleId, Unit};
 
 /// Lengths of edges at which triangles are divided, in the part's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

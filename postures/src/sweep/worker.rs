@@ -7,9 +7,8 @@ use crate::map::merge;
 use crate::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Validator};
 use nalgebra::{Point3, Vector3};
-use touchoff::Pose;
-use touchoff::Tool;
 use touchoff::certify::{ContactVerdict, Containment, Location};
+use touchoff::{Pose, Tool};
 
 /// Number of recent obstructions that are kept per direction, the latest first.
 const MAX_OBSTRUCTIONS: usize = 8;

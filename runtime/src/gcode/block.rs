@@ -247,10 +247,14 @@ impl Block {
         letters.chars().any(|letter| self.has(letter))
     }
 
-    /// Returns whether one of the letters, which no word has used, has no decimal point.
-    pub(super) fn has_whole(&self, letters: &str) -> bool {
-        let is_whole = |letter: char| self.whole & (1 << (letter as u8 - b'A')) != 0;
-        letters.chars().any(|letter| self.has(letter) && is_whole(letter))
+    /// Returns whether a coordinate that no word has used has no decimal point.
+    pub(super) fn has_whole(&self) -> bool {
+        self.whole & self.unused != 0
+    }
+
+    /// Returns whether the coordinate after a letter, which no word has used, has no decimal point.
+    pub(super) fn is_whole(&self, letter: char) -> bool {
+        self.whole & self.unused & (1 << (letter as u8 - b'A')) != 0
     }
 
     /// Multiplies the coordinates without a decimal point by a factor of their letter.
@@ -272,10 +276,11 @@ impl Block {
     /// repeats the call computes them again.
     pub(super) fn has_more_than_call(&self) -> bool {
         let call = 1 << (b'P' - b'A') | 1 << (b'L' - b'A');
-        if self.assigns || self.computed & self.unused & call != 0 && self.has('L') {
-            return true;
-        }
-        self.unused & !call != 0 || self.codes().nth(1).is_some() || self.keyword.is_some()
+        self.unused & !call != 0
+            || self.computed & self.unused & call != 0 && self.has('L')
+            || self.assigns
+            || self.codes().nth(1).is_some()
+            || self.keyword.is_some()
     }
 
     /// Returns whether a word of the block can name axes without moving them, or by a path of its own. What it leaves of the axis

@@ -36,14 +36,14 @@ impl Control {
     pub(super) fn tool(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         let expected = "a whole number from 0";
         let (has_tool, before) = (block.has('T'), self.staged);
+        let has_change = block.code_of(Group::ToolChange).is_some();
         if let Some(tool) = block.take_whole('T', 0, MAX_REGISTER, expected)? {
             self.staged = Some(tool);
         }
         if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
-            let is_changing = has_tool || block.code_of(Group::ToolChange).is_some();
             let is_staged = self.staged.is_some() && self.staged != self.state.tool;
             if edge != 1
-                && (is_changing || is_staged)
+                && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always
             {
                 return Err(GcodeFault::Combination {
@@ -56,23 +56,15 @@ impl Control {
             self.notes.add(self.line, Subject::PassedOver(Code { letter: 'D', tenths: 0 }));
             self.edge_length(edge)?;
         }
-        let has_change = block.code_of(Group::ToolChange).is_some();
         let changes = match self.stated(Rule::Dialect) {
             // T changes the tool at once, and an M6 after it finds it in the spindle.
             Some(Choice::Heidenhain) => has_tool || has_change && self.staged != self.state.tool,
             _ => has_change,
         };
-        let groups = [Group::OneShot, Group::Machine, Group::Length];
-        let is_other = |group: &Group| block.code_of(*group).is_some();
-        if has_change
-            && let Some(group) = groups.iter().find(|group| is_other(group))
-            && let Some(code) = block.code_of(*group)
-        {
-            return Err(combination(
-                code,
-                "its block has M6",
-                "write it in a block before or after",
-            ));
+        let mut groups = [Group::OneShot, Group::Machine, Group::Length].into_iter();
+        if has_change && let Some(code) = groups.find_map(|group| block.code_of(group)) {
+            let remedy = "write it in a block before or after";
+            return Err(combination(code, "its block has M6", remedy));
         }
         if (has_change || changes) && block.has_any("XYZABCIJK") {
             return Err(GcodeFault::Combination {
@@ -92,8 +84,7 @@ impl Control {
                 remedy: "write T in a block before M6",
             });
         }
-        if has_change {
-            self.spindle.end_rigid();
+        if has_change || changes {
             self.stop_spindle();
         }
         match self.staged {
@@ -110,7 +101,6 @@ impl Control {
     /// Changes the tool.
     fn change_tool(&mut self, tool: u32) {
         self.notes.add(self.line, Subject::ToolChange);
-        self.stop_spindle();
         // The tool before the first change may be the same.
         self.leave_for_change(self.state.tool.is_none_or(|before| before == tool));
         self.length_cancelled = false;
@@ -258,16 +248,16 @@ impl Control {
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         (self.returned, self.length_implicit) = (None, false);
-        let off = if self.transformed { self.state.tcp } else { Tcp::Off };
+        // G43 and G49 do not end a transformation.
+        let kept = if self.transformed { self.state.tcp } else { Tcp::Off };
         if code.tenths == 490 {
-            let tcp = off;
             self.vector = None;
             self.length_cancelled = true;
-            self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, tcp));
+            self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, kept));
             return Ok(());
         }
         let tcp = match code.tenths {
-            430 => off,
+            430 => kept,
             _ if self.transformed => {
                 return Err(combination(code, "M428 or TRAORI is in force", "end it before"));
             }

@@ -260,7 +260,8 @@ impl Control {
     pub(super) fn execute(&mut self, line: usize, block: &mut Block) -> Result<(), GcodeFault> {
         self.line = line;
         self.note_words(block);
-        self.check_block(block)?;
+        self.check_dialect(block)?;
+        self.check_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
         dwell(block)?;
@@ -297,18 +298,19 @@ impl Control {
 
     /// Gives the numbers of a block the unit that the control gives them.
     fn numbers(&mut self, block: &mut Block) {
-        self.unit_used |= block.is_nonzero("XYZIJKRQ");
-        if !self.modal.unit_stated && block.is_nonzero("XYZIJKRQ") {
+        let has_length = block.is_nonzero("XYZIJKRQ");
+        self.unit_used |= has_length;
+        if !self.modal.unit_stated && has_length {
             self.modal.unit = match self.choice(Rule::Unit) {
                 Choice::Inch => Unit::Inch,
                 _ => Unit::Millimetre,
             };
         }
-        if block.has_whole("XYZABCIJKRQ") && self.choice(Rule::WholeNumbers) == Choice::Increments {
+        if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
             let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
-            let keeps_radii =
-                block.has_whole("RQ") && self.choice(Rule::WholeRadii) == Choice::Units;
+            let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
+            let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
             block.scale_whole(|letter| match letter {
                 'R' | 'Q' if keeps_radii => 1.0,
                 'A' | 'B' | 'C' => 1e-3,

@@ -13,7 +13,7 @@ use super::state::{Rotation, Tcp, WorkOffset};
 use super::{GcodeFault, Plane};
 use crate::unit::Unit;
 
-/// What a program takes for granted, before it states it.
+/// The state that a program takes for granted, before it states it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Relies {
     /// G90.
@@ -30,14 +30,8 @@ pub(super) struct Relies {
 }
 
 impl Control {
-    /// Refuses a block that controls read in different ways, as far as its words tell.
-    pub(super) fn check_block(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        self.check_dialect(block)?;
-        self.check_words(block)
-    }
-
     /// Refuses words that mean something else in the dialect of the control.
-    fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
+    pub(super) fn check_dialect(&mut self, block: &Block) -> Result<(), GcodeFault> {
         if let (Some(Choice::Iso | Choice::Rs274Ngc), Some(code)) =
             (self.stated(Rule::Dialect), block.code_of(Group::Units))
             && code.tenths > 210
@@ -73,7 +67,7 @@ impl Control {
     }
 
     /// Refuses words of a block that controls combine in different ways.
-    fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
+    pub(super) fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
         let dialect = self.stated(Rule::Dialect);
         let is_m = |code: &Code| code.letter == 'M';
         let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60 | 290);

@@ -109,6 +109,7 @@ impl Control {
 
     /// Stops the spindle for a tool change. It stays unstated if it was.
     pub(super) fn stop_spindle(&mut self) {
+        self.spindle.end_rigid();
         self.spindle.tapping = None;
         if self.spindle.turn != Spindle::NotStated {
             self.spindle.turn = Spindle::Stopped;

@@ -368,7 +368,7 @@ fn words_that_are_not_read_are_named() {
     }
 }
 
-/// What a program may say depends on the dialect that its control states.
+/// Words of a program that the dialect of its control decides.
 #[test]
 fn words_of_one_dialect() {
     let turned = "G10 L2 P1 X0 Y0 Z0 R30\nG0 X1\nG28 X0\nM30";

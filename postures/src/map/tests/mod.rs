@@ -15,10 +15,8 @@ use std::fs::{self, File};
 use std::io;
 use std::num::NonZeroU16;
 use tempfile::TempDir;
-use touchoff::Mesh;
-use touchoff::TriangleId;
-use touchoff::Unit;
 use touchoff::mesh::shapes;
+use touchoff::{Mesh, TriangleId, Unit};
 
 touchoff::tool! {
     tool Ball "a ball on a straight shank" {

@@ -142,22 +142,16 @@ impl fmt::Display for UnknownCause {
 /// Resolves the steps of a program in their order.
 pub(super) struct Resolver<'a> {
     machine: &'a Machine,
-    lengths: &'a BTreeMap<u32, f64>,
+    setup: &'a ControlSetup,
     off_is_tip: bool,
     /// Origin of the part in machine coordinates.
     origin: [f64; 6],
     rapid: RapidPath,
     /// The rotary axes A, B, C without limits.
     endless: [bool; 3],
-    /// How these go to a stated angle.
-    turning: Option<Choice>,
-    /// Where coordinates lead under tool centre point control that begins while the table is turned.
-    tcp_start: Option<Choice>,
-    /// How the tool axis turns under `TRAORI`.
-    tool_orientation: Option<Choice>,
-    /// Set while it is in force.
+    /// Set while tool centre point control is in force.
     has_tcp: bool,
-    /// Set while it is, if its coordinates are not followed.
+    /// Set while it is, if it began on a turned table and its coordinates are not followed.
     is_turned_table: bool,
     /// The register of the first length offset of a program that names no tool: its tool.
     unnamed_tool: Option<u32>,
@@ -224,7 +218,7 @@ impl<'a> Resolver<'a> {
         };
         Resolver {
             machine,
-            lengths: &setup.lengths,
+            setup,
             off_is_tip,
             origin,
             rapid: match (setup.rules.get(Rule::Rapid), rapid::rates(machine)) {
@@ -234,9 +228,6 @@ impl<'a> Resolver<'a> {
             },
             endless: [Letter::A, Letter::B, Letter::C]
                 .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
-            turning: setup.rules.get(Rule::Rotary),
-            tcp_start: setup.rules.get(Rule::TcpStart),
-            tool_orientation: setup.rules.get(Rule::ToolOrientation),
             has_tcp: false,
             is_turned_table: false,
             unnamed_tool,
@@ -265,9 +256,7 @@ impl<'a> Resolver<'a> {
             return Ok(Resolved::ToolChange);
         }
         if self.begins_on_turned_table(step) {
-            self.joints = self.joints.map(|_| None);
-            self.cause = UnknownCause::TurnedTable;
-            return Ok(Resolved::Unknown(self.cause));
+            return Ok(self.lose(UnknownCause::TurnedTable));
         }
         let frame = match self.frame(&step.state)? {
             Ok(frame) => frame,
@@ -302,13 +291,11 @@ impl<'a> Resolver<'a> {
             let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
             let found = frame.chain.solutions(&tip, &Vector3::from(axis), &near)?;
             if !self.is_one_choice(&found) {
-                self.joints = self.joints.map(|_| None);
-                self.cause = UnknownCause::TwoPositions;
-                return Ok(Resolved::Unknown(self.cause));
+                return Ok(self.lose(UnknownCause::TwoPositions));
             }
             (3..6).for_each(|k| ends[1][k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
         }
-        let mut way = self.turn_shorter(step, &mut ends);
+        let mut way = self.turn_endless(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
@@ -328,8 +315,7 @@ impl<'a> Resolver<'a> {
         }
         let turned = |start: [f64; 6]| (3..6).any(|k| start[k] != end[k]);
         if step.state.tcp == Tcp::Transformation && start.is_some_and(turned) {
-            self.asked.entry(Rule::ToolOrientation).or_insert(step.line);
-            if self.tool_orientation == Some(Choice::GreatCircle) {
+            if self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle) {
                 way = Some(UnknownCause::GreatCircle);
             }
         }
@@ -348,7 +334,7 @@ impl<'a> Resolver<'a> {
                 let resolved = self.rapid(&frame.chain, joints)?;
                 if matches!((&self.rapid, &resolved), (RapidPath::Rates(_), Resolved::Motions(all)) if all.len() > 1)
                 {
-                    self.asked.entry(Rule::Rapid).or_insert(step.line);
+                    self.ask(Rule::Rapid, step);
                 }
                 resolved
             }
@@ -425,6 +411,19 @@ impl<'a> Resolver<'a> {
         Ok(Resolved::Motions(motions.into_iter().map(|motion| (motion, 0.0)).collect()))
     }
 
+    /// Returns what the control does under a rule, if that is stated, and notes that a step depends on it.
+    fn ask(&mut self, rule: Rule, step: &Step) -> Option<Choice> {
+        self.asked.entry(rule).or_insert(step.line);
+        self.setup.rules.get(rule)
+    }
+
+    /// Notes that nothing tells where the axes are.
+    fn lose(&mut self, cause: UnknownCause) -> Resolved {
+        self.joints = [None; 6];
+        self.cause = cause;
+        Resolved::Unknown(cause)
+    }
+
     /// Returns whether a step is under tool centre point control that began while the table was turned, if the control takes
     /// its coordinates as those of the part as it stood then.
     fn begins_on_turned_table(&mut self, step: &Step) -> bool {
@@ -434,8 +433,8 @@ impl<'a> Resolver<'a> {
         } else if !had_tcp {
             let is_turned = |k: usize| self.joints[k] != Some(self.origin[k]);
             if self.rotary(Side::Table).any(is_turned) {
-                self.asked.entry(Rule::TcpStart).or_insert(step.line);
-                self.is_turned_table = self.tcp_start == Some(Choice::TableAsItStands);
+                let start = self.ask(Rule::TcpStart, step);
+                self.is_turned_table = start == Some(Choice::TableAsItStands);
             }
         }
         self.is_turned_table
@@ -455,28 +454,28 @@ impl<'a> Resolver<'a> {
 
     /// Counts the angles at the start so that the ways of endless axes to stated angles are those of the control. Returns
     /// the cause for which one is not known.
-    fn turn_shorter(
+    fn turn_endless(
         &mut self,
         step: &Step,
         [start, end]: &mut [Position; 2],
     ) -> Option<UnknownCause> {
         let mut cause = None;
-        for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && self.endless[k - 3]) {
+        let endless = self.endless;
+        for k in (3..6).filter(|k| step.absolute && step.commanded[*k] && endless[k - 3]) {
             let (Some(from), Some(to)) = (start[k], end[k]) else { continue };
             let turn = to - from;
-            if step.is_return && turn.abs() >= ANGLE_INCREMENT {
-                self.asked.entry(Rule::Rotary).or_insert(step.line);
-                if self.turning != Some(Choice::Counts) {
-                    cause = Some(UnknownCause::ReturnWay);
-                    continue;
-                }
+            if step.is_return
+                && turn.abs() >= ANGLE_INCREMENT
+                && self.ask(Rule::Rotary, step) != Some(Choice::Counts)
+            {
+                cause = Some(UnknownCause::ReturnWay);
+                continue;
             }
             let within = to.rem_euclid(360.0) - from.rem_euclid(360.0);
             if turn.abs() < 180.0 - ANGLE_INCREMENT && (within - turn).abs() < ANGLE_INCREMENT {
                 continue;
             }
-            self.asked.entry(Rule::Rotary).or_insert(step.line);
-            match self.turning {
+            match self.ask(Rule::Rotary, step) {
                 Some(Choice::Shortest) => {
                     let shorter = turn - 360.0 * (turn / 360.0).round();
                     start[k] = Some(to - shorter);
@@ -503,11 +502,8 @@ impl<'a> Resolver<'a> {
         let found = chain.solutions(&Point3::origin(), &axis, &near)?;
         if !self.is_one_choice(&found) {
             let is_known = (3..6).all(|k| self.joints[k].is_some());
-            self.joints = self.joints.map(|_| None);
-            if is_known {
-                self.cause = UnknownCause::TwoPositions;
-            }
-            return Ok(Resolved::Unknown(self.cause));
+            let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
+            return Ok(self.lose(cause));
         }
         let found = found[0].joints;
         let before = known(&self.joints);
@@ -618,7 +614,7 @@ impl<'a> Resolver<'a> {
     /// for a program that names no tool: Z of the work offset is then that of the tip.
     fn lengths(&self, state: &ControlState) -> Result<Result<Lengths, UnknownCause>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
-        let known = tool.and_then(|tool| self.lengths.get(&tool).copied());
+        let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
@@ -656,7 +652,7 @@ impl<'a> Resolver<'a> {
         else {
             return None;
         };
-        let length = self.lengths.get(&tool)?;
+        let length = self.setup.lengths.get(&tool)?;
         ((length - offset).abs() > LENGTH_TOLERANCE).then_some((register, tool))
     }
 
