@@ -314,10 +314,11 @@ impl<'a> Resolver<'a> {
             return Err(StepFault::NoLength);
         }
         let turned = |start: [f64; 6]| (3..6).any(|k| start[k] != end[k]);
-        if step.state.tcp == Tcp::Transformation && start.is_some_and(turned) {
-            if self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle) {
-                way = Some(UnknownCause::GreatCircle);
-            }
+        if step.state.tcp == Tcp::Transformation
+            && start.is_some_and(turned)
+            && self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle)
+        {
+            way = Some(UnknownCause::GreatCircle);
         }
         let is_determined = !matches!(step.path, StepPath::Undetermined) && way.is_none();
         let resolved = match start.filter(|_| is_determined) {
