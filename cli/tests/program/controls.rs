@@ -690,7 +690,7 @@ fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
 #[test]
 fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
-    let word = "can keep for the next run";
+    let word = "which a control can keep, and its next run is another";
     Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&FANUC, 2, &[word]);
     Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&LINUXCNC, 0, &[]);
     Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(&FANUC, 0, &[]);
@@ -698,6 +698,14 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     Scene::of(&format!("%\n{begin}G91 G0 Z1.\n%\n")).gives(&LINUXCNC, 2, &[word]);
     let cycles = "G81 X-4. Y0. Z1. R3.\nG80\nG99 G81 X-5. Z1. R3.\nG80\nG0 Z20.\nG90\nM30\n";
     Scene::of(&format!("{begin}{cycles}")).gives(&FANUC, 2, &[word]);
+    // LinuxCNC keeps the unit and the length offset, of all that M30 leaves.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let unit = format!("G90 G54 S900 M3 F100.\nG43 H1\n{moves}\nG20\nM30\n");
+    Scene::of(&unit).gives(&LINUXCNC, 2, &["line 3: the program ends with G20"]);
+    let length = format!("{begin}G43 H1\nG0 Z20.\nM30\n");
+    Scene::of(&length).gives(&LINUXCNC, 2, &["line 2: the program ends with G43 H1"]);
+    let stated = format!("{begin}G0 G90 Z20.\nG20 G55\nM30\n");
+    Scene::of(&stated).gives(&LINUXCNC, 0, &[]);
 }
 
 /// Words of Heidenhain whose order in a block matters, or that keep what they leave out.
@@ -898,6 +906,8 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
         ("G0 Z20.\nT2\nT3 M6", "another tool is staged"),
         ("G0 Z20.\nT1 M6 X5.", "M6 while its block has axis words"),
         ("M98 P7 G0 Z20.\nM30\nO7\nM99", "M98 while its block has other words"),
+        (";py,self.execute(\"G0 X5\")", "a comment whose Python LinuxCNC executes"),
+        ("( PY,a=1)", "a comment whose Python LinuxCNC executes"),
         // Rigid tapping leaves the spindle standing.
         ("G0 Z20.\nG84 X4. Z1. R2.\nG80\nG1 X5.", "write M3 after G80"),
     ] {

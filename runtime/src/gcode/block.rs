@@ -31,7 +31,7 @@ const DECISIONS: [&str; 14] = [
 ];
 
 /// The words of a block. Words that no other word uses remain in it, and are refused at its end.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     values: [f64; 26],
     /// Letters that the block has and that no word has used, as bits from A.
@@ -48,6 +48,8 @@ pub(super) struct Block {
     computed: u32,
     /// Set if the block has an assignment.
     pub(super) assigns: bool,
+    /// Set if the block has an assignment, and another value that is computed.
+    pub(super) assigns_beside_value: bool,
     /// Set if the line begins with `/`.
     pub(super) deletable: bool,
     /// Set if G90 or G91 stands after a coordinate.
@@ -82,9 +84,16 @@ impl Block {
         self.clear();
         let (deletable, mut cursor) = begin(line);
         self.deletable = deletable;
+        // The assignments whose value depends on a parameter.
+        let mut uses = 0;
         while let Some(byte) = next(&mut cursor)? {
             match byte {
-                b'#' => self.assignments.push(assignment(&mut cursor, parameters)?),
+                b'#' => {
+                    let start = cursor.rest();
+                    self.assignments.push(assignment(&mut cursor, parameters)?);
+                    let written = &start[1..start.len() - cursor.rest().len()];
+                    uses += usize::from(written.contains('#'));
+                }
                 b'O' | b'o' if self.is_empty() => {
                     self.label = Some(o_word(&mut cursor, parameters)?);
                 }
@@ -100,6 +109,8 @@ impl Block {
             }
         }
         self.assigns = !self.assignments.is_empty();
+        self.assigns_beside_value =
+            self.assigns && self.computed != 0 || uses > 0 && self.assignments.len() > 1;
         for (parameter, value) in self.assignments.drain(..) {
             parameters.assign(parameter, value);
         }
@@ -113,7 +124,8 @@ impl Block {
         self.label = None;
         self.keyword = None;
         self.assignments.clear();
-        (self.whole, self.computed, self.assigns) = (0, 0, false);
+        (self.whole, self.computed) = (0, 0);
+        (self.assigns, self.assigns_beside_value) = (false, false);
         self.distance_after_coordinate = false;
     }
 
@@ -353,13 +365,31 @@ pub(super) fn next(cursor: &mut Cursor) -> Result<Option<u8>, GcodeFault> {
                 if comment[1..].contains('(') {
                     return Err(GcodeFault::OpenComment);
                 }
+                check_comment(&comment[1..])?;
             }
-            Some(b';') | None => return Ok(None),
+            Some(b';') => {
+                check_comment(&cursor.rest()[1..])?;
+                return Ok(None);
+            }
+            None => return Ok(None),
             // The end of a block in DIN/ISO programs of Heidenhain.
             Some(b'*') if cursor.rest()[1..].trim().is_empty() => return Ok(None),
             Some(byte) => return Ok(Some(byte)),
         }
     }
+}
+
+/// Refuses a comment that LinuxCNC executes.
+fn check_comment(comment: &str) -> Result<(), GcodeFault> {
+    let start = comment.trim_start().as_bytes();
+    let begins =
+        |text: &[u8]| start.get(..text.len()).is_some_and(|start| start.eq_ignore_ascii_case(text));
+    if begins(b"py,") || begins(b"pyrun,") {
+        let meaning = "a comment whose Python LinuxCNC executes";
+        let remedy = "remove it, or write a blank before the comma";
+        return Err(GcodeFault::NotRead { word: "py,".to_owned(), meaning, remedy });
+    }
+    Ok(())
 }
 
 /// Returns the fault of a character that begins no word.

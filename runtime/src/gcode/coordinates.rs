@@ -7,7 +7,7 @@ use super::modal::Motion;
 use super::motion::{AXES, Control};
 use super::note::Subject;
 use super::rules::{Choice, Rule};
-use super::state::{ControlState, Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
+use super::state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about};
 use super::{GcodeFault, StepPath};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -418,12 +418,16 @@ impl Control {
     }
 
     fn activate(&mut self, offset: WorkOffset) {
-        let (origin, rotation) = self.origins.get(&offset).copied().unwrap_or(([None; 6], 0.0));
+        let origin = self.origin_of(offset);
         self.change(|state| {
             state.work_offset = offset;
-            state.origin = origin;
-            state.origin_rotation = rotation;
+            (state.origin, state.origin_rotation) = origin;
         });
+    }
+
+    /// Returns the origin of a work offset in machine coordinates, and its rotation about z in degrees.
+    pub(super) fn origin_of(&self, offset: WorkOffset) -> (Position, f64) {
+        self.origins.get(&offset).copied().unwrap_or(([None; 6], 0.0))
     }
 
     fn check_unrotated(&self, code: Code) -> Result<(), GcodeFault> {
@@ -476,7 +480,6 @@ impl Control {
         }
         let axes = self.take_axes(block);
         let offset = WorkOffset::Standard(number as u8);
-        self.relies.changed_offset |= self.used_offsets.contains(&offset);
         let is_turned = self.origins.get(&offset).is_some_and(|(_, rotation)| *rotation != 0.0);
         let is_shifted = self.state.shift != [Some(0.0); 6];
         if self.state.work_offset == offset && is_shifted && (turn.is_some() || is_turned) {

@@ -19,7 +19,7 @@ use crate::unit::Unit;
 use std::sync::Arc;
 
 /// Words that stay in force from one cycle to the next, lengths in millimetres as given.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cycle {
     retract: f64,
     depth: f64,

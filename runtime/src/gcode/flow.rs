@@ -8,7 +8,7 @@ use super::text::{self, Extent};
 use super::{GcodeFault, MAX_CALLS, MAX_REPEATED};
 
 /// A subprogram that is being executed.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Call {
     label: Label,
     subprogram: Subprogram,
@@ -20,7 +20,7 @@ struct Call {
 }
 
 /// The place of execution in a text.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Flow<'a> {
     text: &'a str,
     place: Place,

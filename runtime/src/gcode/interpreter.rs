@@ -9,6 +9,7 @@ use super::flow::Flow;
 use super::label::{Label, Role};
 use super::modal::{FeedMode, Motion};
 use super::motion::Control;
+use super::next_run::{self, Difference};
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
@@ -20,15 +21,17 @@ use std::mem;
 ///
 /// It holds the state of the control and the steps of one block, so memory does not grow with the program.
 /// After an error it returns no more steps.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Interpreter<'a> {
     flow: Flow<'a>,
     parameters: Parameters,
     block: Block,
-    control: Control,
+    pub(super) control: Control,
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
     finished: bool,
+    /// Itself before the first block, until the end.
+    first: Option<Box<Interpreter<'a>>>,
 }
 
 impl<'a> Interpreter<'a> {
@@ -55,14 +58,16 @@ impl<'a> Interpreter<'a> {
             let subject = if has_blocks { Subject::OtherProgram } else { Subject::TextAfterEnd };
             control.notes.add(line, subject);
         }
-        Ok(Interpreter {
+        let first = Interpreter {
             flow,
             parameters: Parameters::default(),
             block: Block::default(),
             control,
             switch: None,
             finished: false,
-        })
+            first: None,
+        };
+        Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
     }
 
     /// Returns the notes about the blocks that were executed so far, by line.
@@ -79,14 +84,30 @@ impl<'a> Interpreter<'a> {
     fn advance(&mut self) -> Result<(), GcodeError> {
         let located = |(line, fault)| GcodeError { line, fault };
         let Some((line, text)) = self.flow.next_line().map_err(located)? else {
-            self.finished = true;
-            self.control.note_left_modes(false);
+            self.finish(false);
             return Ok(());
         };
         let mut block = mem::take(&mut self.block);
         let result = self.blocks(line, text, &mut block);
         self.block = block;
         result.map_err(|fault| GcodeError { line, fault })
+    }
+
+    /// Executes the next line, and returns whether the program goes on.
+    pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
+        self.advance()?;
+        Ok(!self.finished)
+    }
+
+    /// Ends the program, and notes what it leaves for its next run. `resets` is set for an end by M2 or M30.
+    fn finish(&mut self, resets: bool) {
+        self.finished = true;
+        let first = self.first.take();
+        let difference =
+            first.and_then(|first| next_run::difference(&first, &self.control, resets));
+        if let Some(Difference { line, words }) = difference {
+            self.control.notes.left_modes = Some((line, words));
+        }
     }
 
     /// Executes the block of a line, and those after semicolons if they end a block.
@@ -148,6 +169,7 @@ impl<'a> Interpreter<'a> {
             return Ok(());
         }
         block.parse(text, &mut self.parameters)?;
+        self.control.check_assignment(block)?;
         if is_optional {
             self.control.notes.add(line, Subject::ExecutedOptionalBlock);
         }
@@ -184,8 +206,7 @@ impl<'a> Interpreter<'a> {
         }
         match block.code_of(Group::Stop).map(|code| code.tenths) {
             Some(20 | 300) => {
-                self.finished = true;
-                self.control.note_left_modes(true);
+                self.finish(true);
                 if let Some(line) = self.flow.text_after_end() {
                     self.control.notes.add(line, Subject::TextAfterEnd);
                 }
@@ -292,7 +313,6 @@ impl Control {
             let needed = "a work offset (G54) before, since this control starts without one";
             return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
         }
-        self.rely(block);
         self.motion(block)
     }
 
@@ -384,7 +404,6 @@ impl Control {
         }
         if let Some(distance) = tenths(Group::Distance) {
             self.modal.incremental = distance == 910;
-            self.modal.distance_stated = true;
         }
         if let Some(distance) = tenths(Group::ArcDistance) {
             self.modal.absolute_centres = Some(distance == 901);
@@ -405,7 +424,6 @@ impl Control {
                 180 => Plane::Zx,
                 _ => Plane::Yz,
             })?;
-            self.modal.plane_stated = true;
         }
         if let Some(code) = block.code_of(Group::PathControl) {
             path_control(block, code)?;

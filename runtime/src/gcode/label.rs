@@ -99,7 +99,7 @@ pub(super) struct Subprogram {
 }
 
 /// The subprograms of a file.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Subprograms {
     known: HashMap<Label, Subprogram>,
 }

@@ -61,6 +61,7 @@ mod interpreter;
 mod label;
 mod modal;
 mod motion;
+mod next_run;
 mod note;
 mod refuse;
 mod rules;

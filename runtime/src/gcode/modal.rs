@@ -44,10 +44,6 @@ pub(super) struct Modal {
     pub(super) unit_stated: bool,
     /// G91.
     pub(super) incremental: bool,
-    /// Set by G90 and G91.
-    pub(super) distance_stated: bool,
-    /// Set by G17 to G19.
-    pub(super) plane_stated: bool,
     /// G90.1 or G91.1; `None` before either.
     pub(super) absolute_centres: Option<bool>,
     pub(super) feed_mode: FeedMode,
@@ -66,8 +62,6 @@ impl Modal {
             unit: Unit::Millimetre,
             unit_stated: false,
             incremental: false,
-            distance_stated: false,
-            plane_stated: false,
             absolute_centres: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,

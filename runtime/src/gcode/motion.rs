@@ -7,7 +7,6 @@ use super::code::Group;
 use super::cycle::Cycle;
 use super::modal::{FeedMode, Modal, Motion};
 use super::note::{Notes, Subject};
-use super::refuse::Relies;
 use super::rules::{Choice, ControlRules, Rule};
 use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -28,7 +27,7 @@ fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
 }
 
 /// A control: everything that blocks change and motions depend on.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Control {
     pub(super) line: usize,
     pub(super) modal: Modal,
@@ -77,9 +76,6 @@ pub(super) struct Control {
     pub(super) offset_deselected: bool,
     /// Set once the program has a length.
     pub(super) unit_used: bool,
-    pub(super) relies: Relies,
-    /// Work offsets in which a position was stated.
-    pub(super) used_offsets: Vec<WorkOffset>,
     /// Set if the length offset is that of the tool in the spindle without a word.
     pub(super) length_implicit: bool,
     /// Set by G49, until the next tool change.
@@ -135,8 +131,6 @@ impl Control {
             rotation_changed: false,
             offset_deselected: false,
             unit_used: false,
-            relies: Relies::default(),
-            used_offsets: Vec::new(),
             length_implicit: false,
             length_cancelled: false,
             spindle: SpindleWords::new(),

@@ -45,8 +45,11 @@ pub enum NoteKind {
     OptionalSwitches,
     /// An arc whose radii at its start and end differ by more than rounding. It is read as a spiral.
     TwoRadii,
-    /// The end of a program in another state than it takes for granted at its start.
-    LeftModes,
+    /// A motion that differs in the next run of the program, if the control keeps modes from the end of the run before.
+    LeftModes {
+        /// The words that left them, as a list.
+        words: String,
+    },
 }
 
 impl fmt::Display for ProgramNote {
@@ -80,10 +83,10 @@ impl fmt::Display for NoteKind {
             NoteKind::TwoRadii => f.write_str(
                 "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc",
             ),
-            NoteKind::LeftModes => f.write_str(
-                "the program ends with another unit, plane, distance mode or offset than it takes for granted at its start, or \
-                 with a shift or a rotation, which a control can keep for the next run: state them at the start (G21 G17 G90 \
-                 G54), and end shifts and rotations",
+            NoteKind::LeftModes { words } => write!(
+                f,
+                "the program ends with {words}, which a control can keep, and its next run is another from here on: write \
+                 before what this motion needs, or end the program as it starts"
             ),
             NoteKind::OtherProgram => f.write_str(
                 "another program begins here, and is not checked: give a file per program",
@@ -106,7 +109,6 @@ pub(super) enum Subject {
     OtherProgram,
     OptionalSwitches,
     TwoRadii,
-    LeftModes,
 }
 
 /// The notes of a program.
@@ -114,6 +116,8 @@ pub(super) enum Subject {
 pub(super) struct Notes {
     /// First line and number.
     found: BTreeMap<Subject, (usize, usize)>,
+    /// The line and the words of [`NoteKind::LeftModes`].
+    pub(super) left_modes: Option<(usize, String)>,
 }
 
 impl Notes {
@@ -133,7 +137,12 @@ impl Notes {
             count: *count,
             kind: subject.kind(),
         };
-        let mut notes: Vec<ProgramNote> = self.found.iter().map(note).collect();
+        let left = self.left_modes.iter().map(|(line, words)| ProgramNote {
+            line: *line,
+            count: 1,
+            kind: NoteKind::LeftModes { words: words.clone() },
+        });
+        let mut notes: Vec<ProgramNote> = self.found.iter().map(note).chain(left).collect();
         notes.sort_by_key(|note| note.line);
         notes
     }
@@ -157,7 +166,6 @@ impl Subject {
             Subject::OtherProgram => NoteKind::OtherProgram,
             Subject::OptionalSwitches => NoteKind::OptionalSwitches,
             Subject::TwoRadii => NoteKind::TwoRadii,
-            Subject::LeftModes => NoteKind::LeftModes,
         }
     }
 }

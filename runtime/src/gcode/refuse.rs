@@ -2,32 +2,12 @@
 //!
 //! `docs/controls.md` lists them with what each control does.
 
+use super::GcodeFault;
 use super::block::Block;
 use super::code::{Code, Group};
-use super::coordinates::is_programmed;
-use super::modal::Motion;
 use super::motion::{AXES, Control};
-use super::note::Subject;
 use super::rules::{Choice, Rule};
-use super::state::{Rotation, Tcp, WorkOffset};
-use super::{GcodeFault, Plane};
-use crate::unit::Unit;
-
-/// The state that a program takes for granted, before it states it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Relies {
-    /// G90.
-    pub(super) distance: bool,
-    /// G17.
-    pub(super) plane: bool,
-    pub(super) unit: Option<Unit>,
-    /// G54.
-    pub(super) offset: bool,
-    /// G98 or G99, by the control.
-    pub(super) retract: bool,
-    /// The origin of a work offset that G10 sets after it was used.
-    pub(super) changed_offset: bool,
-}
+use super::state::{Rotation, Tcp};
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -64,6 +44,18 @@ impl Control {
             });
         }
         Ok(())
+    }
+
+    /// Refuses values that depend on when the assignment of their block takes effect.
+    pub(super) fn check_assignment(&self, block: &Block) -> Result<(), GcodeFault> {
+        match block.assigns_beside_value && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            true => Err(GcodeFault::Combination {
+                word: "an assignment".to_owned(),
+                condition: "its block has another computed value, which LinuxCNC computes before it",
+                remedy: "write it in a block before",
+            }),
+            false => Ok(()),
+        }
     }
 
     /// Refuses words of a block that controls combine in different ways.
@@ -171,47 +163,6 @@ impl Control {
             return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
         }
         Ok(())
-    }
-
-    /// Notes what a block takes for granted that the program has not stated.
-    pub(super) fn rely(&mut self, block: &Block) {
-        if !is_programmed(block) {
-            return;
-        }
-        let modal = &self.modal;
-        let is_cycle = matches!(modal.motion, Some(Motion::Cycle(_)));
-        let rotates = block.code_of(Group::Rotation).is_some_and(|code| code.tenths == 680);
-        let has_plane = is_cycle || rotates || matches!(modal.motion, Some(Motion::Arc { .. }));
-        self.relies.retract |= is_cycle && modal.retract_to_r.is_none();
-        if self.used_offsets.last() != Some(&self.state.work_offset) {
-            self.used_offsets.push(self.state.work_offset);
-        }
-        self.relies.distance |= !modal.distance_stated;
-        self.relies.plane |= has_plane && !modal.plane_stated;
-        if !modal.unit_stated {
-            self.relies.unit.get_or_insert(modal.unit);
-        }
-        self.relies.offset |= !self.offset_stated;
-    }
-
-    /// Notes what the program leaves otherwise than it takes it for granted: the control may keep it for the next run.
-    ///
-    /// `resets` is set for M2 and M30, at which LinuxCNC sets its modes. It keeps shifts, and all after `%`.
-    pub(super) fn note_left_modes(&mut self, resets: bool) {
-        let (modal, relies, state) = (&self.modal, self.relies, &self.state);
-        let shifts = state.shift != [Some(0.0); 6]
-            || state.rotation != Rotation::Off
-            || relies.changed_offset;
-        let differs = relies.distance && modal.incremental
-            || relies.plane && modal.plane != Plane::Xy
-            || relies.unit.is_some_and(|unit| unit != modal.unit)
-            || relies.offset && state.work_offset != WorkOffset::Standard(1)
-            || relies.retract && modal.retract_to_r.is_some()
-            || shifts;
-        let is_reset = resets && self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
-        if differs && (shifts || !is_reset) {
-            self.notes.add(self.line, Subject::LeftModes);
-        }
     }
 }
 

@@ -4,4 +4,5 @@ mod common;
 mod expected;
 mod geometry;
 mod mutants;
+mod next_run;
 mod refusals;

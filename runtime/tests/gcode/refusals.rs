@@ -386,6 +386,12 @@ fn words_of_one_dialect() {
     assert!(unit.to_string().contains("a unit in programs of Sinumerik"), "{unit}");
     assert_eq!(execute("siemens", "G70\nM30"), Ok(0));
     assert_eq!(execute("fanuc", "M98 P7\nM30\nO7\nG0 X1. M99"), Ok(1));
+    for assigned in ["#1=1.\n#1=2. G0 X#1\nM30", "#1=1.\n#1=2. #2=#1\nG0 X#2\nM30"] {
+        let error = execute("haas", assigned).expect_err("an order of assignments");
+        assert!(error.to_string().contains("line 2: an assignment while its block"), "{error}");
+        let steps = run_on_linuxcnc(assigned).expect("values before the block");
+        assert_eq!(steps[0].end[0], Some(1.0));
+    }
 }
 
 #[test]

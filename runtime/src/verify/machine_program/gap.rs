@@ -140,7 +140,7 @@ impl MachineSummary {
                     | NoteKind::OptionalSwitches
                     | NoteKind::TwoRadii
                     | NoteKind::OffsetOrShift
-                    | NoteKind::LeftModes
+                    | NoteKind::LeftModes { .. }
             );
             let times =
                 if note.count > 1 { format!(" ({} times)", note.count) } else { String::new() };
