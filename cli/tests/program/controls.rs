@@ -623,6 +623,46 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     scene(&turned).gives(&LINUXCNC, 0, &[]);
     let at_zero = blocks.replace("G43.4 H1", "G0 A0. C0.\nG43.4 H1");
     scene(&at_zero).gives(&FANUC, 0, &[]);
+    let in_its_block = at_zero.replace("G43.4 H1", "G43.4 H1 C90.");
+    scene(&in_its_block).gives(&FANUC, 2, &["`tcp_start`"]);
+    // An offset of the table turns the part, or does not.
+    let mut offset = scene(&at_zero);
+    offset.job = offset.job.replace("-400]", "-400, 0, 0, 30]");
+    offset.gives(&FANUC, 0, &[]);
+    for control in [&LINUXCNC[..], &HAAS, &[]] {
+        offset.gives(control, 2, &["G54 turns the table"]);
+    }
+}
+
+/// A control computes tips with the length offset that is in force, also under tool centre point control.
+#[test]
+fn tool_centre_point_control_needs_a_length_offset() {
+    let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z50.";
+    let scene = |blocks: &str| {
+        let scene = Scene::new(&format!("T1 M6\nS9000 M3\nG0 A0. C0.\n{blocks}")).placed();
+        scene.with("machine = \"A-C trunnion\"\nanyway = true")
+    };
+    let word = ["and no length offset"];
+    for (control, start) in [
+        (&FANUC, "G43.4 H0"),
+        (&FANUC, "G43.4"),
+        (&FANUC, "G43.5 H0"),
+        (&FANUC, "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
+        (&HAAS, "G234 H0"),
+        (&LINUXCNC, "M428"),
+        (&LINUXCNC, "G43 H1\nM428\nG49"),
+    ] {
+        scene(&format!("{start}\n{moves}")).gives(control, 2, &word);
+    }
+    let unknown = Scene::new(&format!("T1 M6\nS9000 M3\nG0 A0. C0.\nM428\n{moves}"));
+    unknown.with("machine = \"A-C trunnion\"").gives(&LINUXCNC, 2, &word);
+    for (control, start) in [
+        (&FANUC, "G43.4 H1"),
+        (&FANUC, "G43 H1 Z60.\nG68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
+        (&LINUXCNC, "G43 H1\nM428"),
+    ] {
+        scene(&format!("{start}\n{moves}")).gives(control, 0, &[]);
+    }
 }
 
 /// Under TRAORI the tool axis turns by the axes, or on a great circle, which is not followed.
@@ -706,6 +746,15 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     Scene::of(&length).gives(&LINUXCNC, 2, &["line 2: the program ends with G43 H1"]);
     let stated = format!("{begin}G0 G90 Z20.\nG20 G55\nM30\n");
     Scene::of(&stated).gives(&LINUXCNC, 0, &[]);
+    // G49 at the start moves Z by the length that the run before has left.
+    let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
+    Scene::of(cancels).gives(&FANUC, 2, &["line 1: the program ends with G43 H1"]);
+    Scene::of(&cancels.replace("M30", "G49\nM30")).gives(&LINUXCNC, 0, &[]);
+    // The operator can turn the switch for optional blocks between two runs.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";
+    let switched = Scene::new(&format!("/G52 X0\n{moves}\n/G52 X-8."));
+    switched.gives(&LINUXCNC, 2, &["line 3: the program ends with G52"]);
+    Scene::new(&format!("/G52 X0\n{moves}")).gives(&LINUXCNC, 0, &[]);
 }
 
 /// Words of Heidenhain whose order in a block matters, or that keep what they leave out.

@@ -154,7 +154,10 @@ impl Control {
                 Choice::Retracts => {
                     let height = self.home.map(|home| home[2]);
                     let present = self.state.to_machine(self.position)[2];
-                    let stays = is_same && present.is_some() && present != height;
+                    if is_same && present.is_none() {
+                        return;
+                    }
+                    let stays = is_same && present != height;
                     let height = height.filter(|_| !stays);
                     let z_alone = [false, false, true, false, false, false];
                     (z_alone, [None, None, height, None, None, None])
@@ -270,7 +273,7 @@ impl Control {
         let mut given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
         let is_zero = given == Some(0) && code.tenths == 430;
         if given.is_none()
-            && code.tenths == 430
+            && (code.tenths == 430 || self.state.length == LengthOffset::Off)
             && self.last_register != self.state.tool
             && self.choice(Rule::LengthRegister) == Choice::LastH
         {
@@ -514,6 +517,9 @@ impl Control {
     fn set_local(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         if self.preset != [Some(0.0); 6] {
             return Err(combination(code, "G92 is in force", "end G92 with G92.1 before"));
+        }
+        if self.modal.incremental && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            return Err(combination(code, "G91 is in force", "write G90 before"));
         }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {

@@ -141,9 +141,13 @@ impl Control {
     /// States the dialect of a program with the head of Heidenhain, which no other control reads, if no other is stated.
     pub(super) fn read_heidenhain(&mut self) {
         if self.stated(Rule::Dialect).is_none() {
-            let rules = std::mem::take(&mut self.rules);
-            self.rules = rules.with(Rule::Dialect, Choice::Heidenhain);
+            self.state_rule(Rule::Dialect, Choice::Heidenhain);
         }
+    }
+
+    /// States what the control does under a rule.
+    pub(super) fn state_rule(&mut self, rule: Rule, choice: Choice) {
+        self.rules = std::mem::take(&mut self.rules).with(rule, choice);
     }
 
     /// Returns what the control does under a rule, if that is stated.

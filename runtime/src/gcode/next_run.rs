@@ -1,8 +1,9 @@
 //! The next run of a program: it starts with what the control keeps from the end of the run before.
 //!
-//! Which modes a control keeps is mostly a parameter of it, so both are executed, block by block: the program as
-//! it starts, and as it starts with all modes that it left. It depends on none of them if its motions are the
-//! same. From the block on in which both controls agree, they are.
+//! Which modes a control keeps is mostly a parameter of it, so both are executed, block by block, from the place at which the
+//! first run ended: the program as it starts, and as it starts with all modes that it left. It depends on none of them if its
+//! motions are the same. From the block on in which both controls agree, they are. The operator may have turned the switch for
+//! optional blocks between the runs.
 
 use super::Plane;
 use super::interpreter::Interpreter;
@@ -79,20 +80,54 @@ pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> O
     Some(Difference { line, words: words.join(", ") })
 }
 
-/// Returns the line of the first block that is executed otherwise if some modes are kept.
+/// Returns the line of the first block that is executed otherwise if some modes are kept, at any position of the switch for
+/// optional blocks, and under all choices of the rules on which the first run did not depend.
 fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Option<usize> {
-    let (mut run, mut next) = (first.clone(), first.clone());
-    next.control.keep(left, kept);
+    let mut start = first.clone();
+    start.control.stand_as(left);
+    let mut starts = vec![start];
+    if left.asked.contains_key(&Rule::OptionalBlocks) {
+        starts = under_each(&starts[0], Rule::OptionalBlocks);
+    }
+    while let Some(start) = starts.pop() {
+        let (mut run, mut next) = (start.clone(), start.clone());
+        next.control.keep(left, kept);
+        let line = run_beside(&mut run, &mut next);
+        if line.is_some() {
+            return line;
+        }
+        let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
+        let is_open = |rule: &&Rule| rule.is_branched() && start.control.stated(**rule).is_none();
+        if let Some(rule) = asked.find(is_open) {
+            starts.extend(under_each(&start, *rule));
+        }
+    }
+    None
+}
+
+/// Returns a program under each choice of a rule.
+fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
+    let under = |choice: Choice| {
+        let mut start = start.clone();
+        start.control.state_rule(rule, choice);
+        start
+    };
+    rule.choices().map(under).collect()
+}
+
+/// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.
+fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
     while !run.control.agrees(&next.control) {
+        // What stops both is the program's, and known from its first run.
         let more = run.execute_line().ok()?;
         let line = run.control.line;
         if next.execute_line().is_err() {
             return Some(line);
         }
-        let steps = [&mut run, &mut next].map(|run| std::mem::take(&mut run.control.pending));
-        let [steps, others] = &steps;
+        let steps = std::mem::take(&mut run.control.pending);
+        let others = std::mem::take(&mut next.control.pending);
         let is_same = steps.len() == others.len()
-            && steps.iter().zip(others).all(|(step, other)| is_same_motion(step, other));
+            && steps.iter().zip(&others).all(|(step, other)| is_same_motion(step, other));
         match (is_same, more) {
             (false, _) => return Some(line),
             (true, false) => return None,
@@ -165,7 +200,16 @@ impl Mode {
 }
 
 impl Control {
-    /// Takes over modes that another run has left. The machine stands where it stood.
+    /// Takes over the position and the tools that another run has left.
+    fn stand_as(&mut self, left: &Control) {
+        let mut state = (*self.state).clone();
+        state.tool = left.state.tool;
+        self.position = left.state.carry_over(&state, left.position);
+        self.staged = left.staged;
+        self.state = Arc::new(state);
+    }
+
+    /// Takes over modes that another run has left, and the position.
     fn keep(&mut self, left: &Control, modes: &[Mode]) {
         let mut state = (*self.state).clone();
         for mode in modes {
@@ -185,7 +229,9 @@ impl Control {
                         (left.local, left.preset, left.state.shift);
                 }
                 Mode::Rotation => state.rotation = left.state.rotation,
-                Mode::Length => state.length = left.state.length,
+                Mode::Length => {
+                    (state.length, self.returned) = (left.state.length, left.returned);
+                }
                 Mode::Register => self.last_register = left.last_register,
                 Mode::Tcp => {
                     (state.tcp, self.transformed) = (left.state.tcp, left.transformed);
@@ -193,7 +239,7 @@ impl Control {
             }
         }
         (state.origin, state.origin_rotation) = self.origin_of(state.work_offset);
-        self.position = self.state.carry_over(&state, self.position);
+        self.position = left.state.carry_over(&state, left.position);
         self.state = Arc::new(state);
     }
 
@@ -228,7 +274,6 @@ fn is_same_motion(step: &Step, other: &Step) -> bool {
     kind(step) == kind(other)
         && path(step) == path(other)
         && turns(step) == turns(other)
-        && is_same_position(&step.state, step.start, &other.state, other.start)
         && is_same_position(&step.state, step.end, &other.state, other.end)
 }
 

@@ -533,6 +533,11 @@ impl Rule {
         self.entry().about
     }
 
+    /// Returns whether each choice is a reading of its own. The other rules are judged by the choice that includes all.
+    pub(crate) fn is_branched(self) -> bool {
+        !matches!(self, Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect)
+    }
+
     /// Returns the choices, of which the first is made where none is stated.
     pub fn choices(self) -> impl Iterator<Item = Choice> {
         self.entry().choices.iter().map(|(choice, ..)| *choice)

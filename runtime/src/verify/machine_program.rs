@@ -70,6 +70,9 @@ pub struct MachineSummary {
     /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
     /// positions are taken as those of the tip.
     pub no_offset: Option<usize>,
+    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
+    /// a tool whose length is not stated.
+    pub tcp_without_length: Option<usize>,
     /// The work offsets of motions at feed rate, each with the line of the first.
     pub work_offsets: Vec<(WorkOffset, usize)>,
     /// Rules of the control on which the program depends and which are not stated, each with the first line.
@@ -189,8 +192,7 @@ impl MachineProgram {
             let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
             let known = branched.len();
             for program in &programs {
-                let open =
-                    program.summary.open_rules.iter().filter(|(rule, _)| is_branched(**rule));
+                let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
                 for (rule, line) in open {
                     branched.entry(*rule).or_insert(*line);
                 }
@@ -346,6 +348,13 @@ impl MachineProgram {
                     offsets.unnamed.get_or_insert(register);
                 }
             }
+            let is_known = number.is_some_and(|tool| self.setup.lengths.contains_key(&tool));
+            if step.state.length == LengthOffset::Off
+                && step.state.turns_with_workpiece()
+                && !is_known
+            {
+                summary.tcp_without_length.get_or_insert(step.line);
+            }
             if !step.rapid {
                 summary.add_feed(&step, self.off_is_tip);
             }
@@ -407,11 +416,6 @@ struct LengthOffsets {
     any: bool,
     /// The register of the first that is in force before a tool is named.
     unnamed: Option<u32>,
-}
-
-/// Returns whether each choice of a rule is a reading of its own. The others are judged by the choice that includes all.
-fn is_branched(rule: Rule) -> bool {
-    !matches!(rule, Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect)
 }
 
 impl MachineSummary {

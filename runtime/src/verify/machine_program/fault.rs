@@ -110,7 +110,8 @@ pub enum StepFault {
     },
     /// A work offset, or a rotary axis by G52 or G92, is turned against the part while the program states tips.
     #[error(
-        "{offset} is turned against G54 while tool centre point control is on, which is not read"
+        "{offset} turns the table, or is turned against G54, while tool centre point control is on: controls take the part at \
+         different angles then, so state offsets of rotary axes as 0, and turn the part in the CAM system"
     )]
     TurnedOffset {
         /// The work offset.

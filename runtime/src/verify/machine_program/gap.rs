@@ -1,6 +1,6 @@
 //! Gaps: everything that a verdict about a program leaves open.
 
-use super::{MachineProgram, MachineSummary, UnknownMotions};
+use super::{MachineProgram, MachineSummary, UnknownCause, UnknownMotions};
 use crate::gcode::{ControlRules, NoteKind, Rule, Spindle};
 
 /// Something that was not checked, or that was taken for granted.
@@ -128,6 +128,11 @@ impl MachineSummary {
                  set with the tool{remedy}"
             );
             add(line, names_tool, reason);
+        }
+        if let Some(line) = self.tcp_without_length {
+            let reason =
+                format!("tips are taken as programmed, but {}", UnknownCause::TcpWithoutLength);
+            add(line, true, reason);
         }
         if self.limits_unchecked {
             let reason = "the limits of X, Y and Z are not checked: state the origin of G54 in `work_offsets`";

@@ -83,6 +83,8 @@ pub enum UnknownCause {
     GreatCircle,
     /// Tool centre point control began while the table was turned, and the control takes the part as it stood then.
     TurnedTable,
+    /// Tool centre point control, or an aligned plane, without a tool length offset.
+    TcpWithoutLength,
 }
 
 impl fmt::Display for UnknownCause {
@@ -131,6 +133,10 @@ impl fmt::Display for UnknownCause {
             UnknownCause::TurnedTable => f.write_str(
                 "the table is turned where tool centre point control begins, and positions are those of the part as it stands: \
                  turn it to 0 before, or state `tcp_start` of the control",
+            ),
+            UnknownCause::TcpWithoutLength => f.write_str(
+                "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
+                 number of the length, or G43 H before",
             ),
             UnknownCause::HalfTurn => {
                 f.write_str("an axis turns by half a turn, for which both ways are as short: write an angle between")
@@ -258,7 +264,7 @@ impl<'a> Resolver<'a> {
         if self.begins_on_turned_table(step) {
             return Ok(self.lose(UnknownCause::TurnedTable));
         }
-        let frame = match self.frame(&step.state)? {
+        let frame = match self.frame(step)? {
             Ok(frame) => frame,
             Err(cause) => {
                 // Only the machine knows what positions mean. If it also is where nothing tells, that is the cause.
@@ -432,7 +438,11 @@ impl<'a> Resolver<'a> {
         if !self.has_tcp {
             self.is_turned_table = false;
         } else if !had_tcp {
-            let is_turned = |k: usize| self.joints[k] != Some(self.origin[k]);
+            // A table that turns in the block counts at its end.
+            let is_turned = |k: usize| {
+                self.joints[k] != Some(self.origin[k])
+                    || step.commanded[k] && step.end[k] != Some(0.0)
+            };
             if self.rotary(Side::Table).any(is_turned) {
                 let start = self.ask(Rule::TcpStart, step);
                 self.is_turned_table = start == Some(Choice::TableAsItStands);
@@ -537,7 +547,8 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
-    fn frame(&mut self, state: &ControlState) -> Result<Result<Frame, UnknownCause>, StepFault> {
+    fn frame(&mut self, step: &Step) -> Result<Result<Frame, UnknownCause>, StepFault> {
+        let state = &*step.state;
         let is_tip = state.turns_with_workpiece();
         let Lengths { length, offset, is_known } = match self.lengths(state)? {
             Ok(lengths) => lengths,
@@ -581,7 +592,10 @@ impl<'a> Resolver<'a> {
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
         if is_tip {
             let is_turned = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
-            if state.origin_rotation != 0.0 || is_turned {
+            // Where the part is that of the table as it stands, it stands at the offset.
+            let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
+                && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
+            if state.origin_rotation != 0.0 || is_turned || is_table_turned {
                 return Err(StepFault::TurnedOffset { offset: offset_name() });
             }
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
@@ -618,6 +632,9 @@ impl<'a> Resolver<'a> {
         let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
+            (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {
+                return Ok(Err(UnknownCause::TcpWithoutLength));
+            }
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
             (LengthOffset::Off, None) => match tool {
                 Some(tool) if !self.off_is_tip => {
