@@ -749,6 +749,7 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     // G49 at the start moves Z by the length that the run before has left.
     let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
     Scene::of(cancels).gives(&FANUC, 2, &["line 1: the program ends with G43 H1"]);
+    Scene::of(cancels).gives(&HAAS, 0, &[]);
     Scene::of(&cancels.replace("M30", "G49\nM30")).gives(&LINUXCNC, 0, &[]);
     // The operator can turn the switch for optional blocks between two runs.
     let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";

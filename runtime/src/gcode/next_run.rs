@@ -9,7 +9,7 @@ use super::Plane;
 use super::interpreter::Interpreter;
 use super::motion::Control;
 use super::rules::{Choice, Rule};
-use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp};
+use super::state::{LengthOffset, Rotation, Tcp};
 use super::{Step, StepPath};
 use crate::unit::Unit;
 use std::sync::Arc;
@@ -61,14 +61,16 @@ pub(super) struct Difference {
 
 /// Returns the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
 ///
-/// `first` is the program before its first block. `resets` is set for an end by M2 or M30, at which LinuxCNC sets some modes
-/// (read: `interp_convert.cc`, `convert_stop`).
+/// `first` is the program before its first block. `resets` is set for an end by M2 or M30, at which some controls set modes.
 pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> Option<Difference> {
-    let is_reset = resets && left.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
-    let keeps = |mode: &Mode| {
-        mode.differs(&first.control, left)
-            && !(is_reset && matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset))
+    let end = left.stated(Rule::ProgramEnd).filter(|_| resets);
+    let is_reset = |mode: Mode| match end {
+        Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
+        Some(Choice::CancelsLength) => mode == Mode::Length,
+        Some(Choice::ResetsModes) => mode != Mode::Origins,
+        _ => false,
     };
+    let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
     let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
     let line = first_difference(first, left, &kept)?;
     let makes_it = |mode: &Mode| first_difference(first, left, &[*mode]).is_some();
@@ -118,14 +120,22 @@ fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
 /// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.
 fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
     while !run.control.agrees(&next.control) {
+        let lengths = [&*run, next].map(|run| run.control.state.length);
         // What stops both is the program's, and known from its first run.
         let more = run.execute_line().ok()?;
         let line = run.control.line;
         if next.execute_line().is_err() {
             return Some(line);
         }
-        let steps = std::mem::take(&mut run.control.pending);
+        let mut steps = std::mem::take(&mut run.control.pending);
         let others = std::mem::take(&mut next.control.pending);
+        // A length that changes moves Z on some controls. One that is in force already does not, and the first position after it is
+        // the same.
+        let changes = [(&*run, lengths[0]), (next, lengths[1])]
+            .map(|(run, before)| run.control.state.length != before);
+        if changes == [true, false] && steps.len() == others.len() + 1 {
+            steps.pop_front();
+        }
         let is_same = steps.len() == others.len()
             && steps.iter().zip(&others).all(|(step, other)| is_same_motion(step, other));
         match (is_same, more) {
@@ -274,27 +284,27 @@ fn is_same_motion(step: &Step, other: &Step) -> bool {
     kind(step) == kind(other)
         && path(step) == path(other)
         && turns(step) == turns(other)
-        && is_same_position(&step.state, step.end, &other.state, other.end)
+        && is_same_end(step, other)
 }
 
-/// Returns whether two positions in program coordinates are one of the machine. Where its coordinates are not known, all that
-/// they depend on has to be the same.
-fn is_same_position(
-    state: &ControlState,
-    position: Position,
-    other: &ControlState,
-    other_position: Position,
-) -> bool {
+/// Returns whether two steps end at one position of the machine, along the axes that they move. Where its coordinates are not
+/// known, all that they depend on has to be the same.
+fn is_same_end(step: &Step, other: &Step) -> bool {
     let is_near = |first: Option<f64>, second: Option<f64>| match (first, second) {
         (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
         (first, second) => first == second,
     };
-    let machine = [state.to_machine(position), other.to_machine(other_position)];
-    let workpiece = [state.to_workpiece(position), other.to_workpiece(other_position)];
+    let [state, other_state] = [step, other].map(|step| &*step.state);
+    let machine = [step, other].map(|step| step.state.to_machine(step.end));
+    let workpiece = [step, other].map(|step| step.state.to_workpiece(step.end));
     let has_same_origin = (state.work_offset, state.origin, state.origin_rotation)
-        == (other.work_offset, other.origin, other.origin_rotation);
-    let has_same_length = state.length == other.length;
-    (0..6).all(|axis| {
+        == (other_state.work_offset, other_state.origin, other_state.origin_rotation);
+    let has_same_length = state.length == other_state.length;
+    // An axis of the program moves several ones of the machine.
+    let is_rotated = state.rotation != Rotation::Off
+        || state.origin_rotation != 0.0
+        || state.turns_with_workpiece();
+    (0..6).filter(|axis| is_rotated || step.commanded[*axis]).all(|axis| {
         if machine.iter().all(|position| position[axis].is_some()) {
             return is_near(machine[0][axis], machine[1][axis]);
         }

@@ -86,7 +86,7 @@ impl fmt::Display for NoteKind {
             NoteKind::LeftModes { words } => write!(
                 f,
                 "the program ends with {words}, which a control can keep, and its next run is another from here on: write \
-                 before what this motion needs, or end the program as it starts"
+                 before what this motion needs, end the program as it starts, or state `program_end` of the control"
             ),
             NoteKind::OtherProgram => f.write_str(
                 "another program begins here, and is not checked: give a file per program",

@@ -54,6 +54,8 @@ pub enum Rule {
     TcpStart,
     /// The tool axis between two positions of the rotary axes under `TRAORI`.
     ToolOrientation,
+    /// Modes and offsets at M2 and M30.
+    ProgramEnd,
     /// Blocks that begin with `/`: the operator's switch, which no control states.
     OptionalBlocks,
 }
@@ -108,6 +110,9 @@ pub enum Choice {
     TableAsItStands,
     ByAxes,
     GreatCircle,
+    KeepsModes,
+    SetsModes,
+    ResetsModes,
     Executed,
     LeftOut,
 }
@@ -121,7 +126,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 22] = [
+const RULES: [Entry; 23] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -346,6 +351,25 @@ const RULES: [Entry; 22] = [
         ],
     },
     Entry {
+        rule: Rule::ProgramEnd,
+        key: "program_end",
+        about: "modes and offsets at M2 and M30",
+        choices: &[
+            (Choice::KeepsModes, "keeps modes", "can all be kept for the next run"),
+            (Choice::SetsModes, "sets modes", "are G17, G90 and G54, and others are kept"),
+            (
+                Choice::CancelsLength,
+                "cancels length",
+                "are without a length offset, and others can be kept",
+            ),
+            (
+                Choice::ResetsModes,
+                "resets modes",
+                "are as at the start, but for offsets that G10 has set",
+            ),
+        ],
+    },
+    Entry {
         rule: Rule::OptionalBlocks,
         key: "optional_blocks",
         about: "blocks that begin with `/`",
@@ -358,7 +382,7 @@ const RULES: [Entry; 22] = [
 
 /// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
 /// a builder can set most of them otherwise.
-const CONTROLS: [(&str, [Choice; 21]); 5] = {
+const CONTROLS: [(&str, [Choice; 22]); 5] = {
     use Choice::*;
     [
         (
@@ -385,6 +409,7 @@ const CONTROLS: [(&str, [Choice; 21]); 5] = {
                 Increments,
                 TableAsItStands,
                 ByAxes,
+                KeepsModes,
             ],
         ),
         (
@@ -411,6 +436,7 @@ const CONTROLS: [(&str, [Choice; 21]); 5] = {
                 Units,
                 TableAtZero,
                 ByAxes,
+                CancelsLength,
             ],
         ),
         (
@@ -437,6 +463,7 @@ const CONTROLS: [(&str, [Choice; 21]); 5] = {
                 Units,
                 TableAtZero,
                 ByAxes,
+                SetsModes,
             ],
         ),
         (
@@ -463,6 +490,7 @@ const CONTROLS: [(&str, [Choice; 21]); 5] = {
                 Units,
                 TableAtZero,
                 ByAxes,
+                KeepsModes,
             ],
         ),
         (
@@ -489,6 +517,7 @@ const CONTROLS: [(&str, [Choice; 21]); 5] = {
                 Units,
                 TableAtZero,
                 ByAxes,
+                KeepsModes,
             ],
         ),
     ]
@@ -535,7 +564,10 @@ impl Rule {
 
     /// Returns whether each choice is a reading of its own. The other rules are judged by the choice that includes all.
     pub(crate) fn is_branched(self) -> bool {
-        !matches!(self, Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect)
+        !matches!(
+            self,
+            Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect | Rule::ProgramEnd
+        )
     }
 
     /// Returns the choices, of which the first is made where none is stated.
