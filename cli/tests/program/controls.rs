@@ -756,6 +756,12 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     let switched = Scene::new(&format!("/G52 X0\n{moves}\n/G52 X-8."));
     switched.gives(&LINUXCNC, 2, &["line 3: the program ends with G52"]);
     Scene::new(&format!("/G52 X0\n{moves}")).gives(&LINUXCNC, 0, &[]);
+    // A new origin and a shift, which cancel each other where both are kept.
+    let both = format!("G43 H1\nG55\n{moves}\nG10 L2 P2 X40. Y0. Z-400.\nG52 X-40.\nG0 X-6.\nG49");
+    let mut both = Scene::new(&both).placed();
+    both.job += "G55 = [0, 0, -400]\n";
+    both.gives(&FANUC, 2, &["the program ends with G10, G52"]);
+    both.gives(&LINUXCNC, 0, &[]);
 }
 
 /// Words of Heidenhain whose order in a block matters, or that keep what they leave out.

@@ -352,7 +352,10 @@ impl Control {
                 remedy: "end it with G49 before",
             });
         }
-        self.offset_deselected |= block.keyword.is_some();
+        if block.keyword.is_some() {
+            let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
+            self.needs_offset = Some(needed);
+        }
         if word == "M429" || word == "TRAFOOF" {
             self.transformed = false;
             self.change(|state| state.tcp = Tcp::Off);
@@ -412,7 +415,7 @@ impl Control {
             }
         }
         self.offset_stated = true;
-        self.offset_deselected = false;
+        self.needs_offset = None;
         if offset != self.state.work_offset {
             self.check_unrotated(code)?;
         }
@@ -509,6 +512,10 @@ impl Control {
         *rotation = turn.unwrap_or(*rotation);
         if self.state.work_offset == offset {
             self.activate(offset);
+            if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik)) {
+                let needed = "its work offset (G54) after G10, since Sinumerik activates the new origin by that word";
+                self.needs_offset = Some(needed);
+            }
         }
         Ok(())
     }
@@ -524,6 +531,16 @@ impl Control {
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });
+        }
+        let keeps = |axis: usize| axes[axis].is_none() && self.local[axis] != 0.0;
+        if matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik)) && (0..6).any(keeps)
+        {
+            let remedy = "name them, too";
+            return Err(combination(
+                code,
+                "it leaves axes out that an earlier one has shifted",
+                remedy,
+            ));
         }
         for (local, value) in self.local.iter_mut().zip(axes) {
             *local = value.unwrap_or(*local);

@@ -302,8 +302,7 @@ impl Control {
         if self.depends_on_length(block) {
             self.length_without_word();
         }
-        if is_programmed(block) && self.offset_deselected {
-            let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
+        if let Some(needed) = self.needs_offset.filter(|_| is_programmed(block)) {
             return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
         }
         if is_programmed(block)

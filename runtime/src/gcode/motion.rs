@@ -72,8 +72,8 @@ pub(super) struct Control {
     pub(super) origin_changed: [bool; 6],
     /// Set by G68 and G69, until a position in the plane is stated.
     pub(super) rotation_changed: bool,
-    /// Set by `TRAORI` and `TRAFOOF`, which deselect the work offset, until one is selected.
-    pub(super) offset_deselected: bool,
+    /// The reason for which a work offset has to be selected before a position.
+    pub(super) needs_offset: Option<&'static str>,
     /// Set once the program has a length.
     pub(super) unit_used: bool,
     /// Set if the length offset is that of the tool in the spindle without a word.
@@ -129,7 +129,7 @@ impl Control {
             length_changed: false,
             origin_changed: [false; 6],
             rotation_changed: false,
-            offset_deselected: false,
+            needs_offset: None,
             unit_used: false,
             length_implicit: false,
             length_cancelled: false,

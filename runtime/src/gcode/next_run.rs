@@ -1,8 +1,8 @@
 //! The next run of a program: it starts with what the control keeps from the end of the run before.
 //!
 //! Which modes a control keeps is mostly a parameter of it, so both are executed, block by block, from the place at which the
-//! first run ended: the program as it starts, and as it starts with all modes that it left. It depends on none of them if its
-//! motions are the same. From the block on in which both controls agree, they are. The operator may have turned the switch for
+//! first run ended: the program as it starts, and as it starts with all modes that it left, or with one of them. It depends on none
+//! of them if its motions are the same. From the block on in which both controls agree, they are. The operator may have turned the switch for
 //! optional blocks between the runs.
 
 use super::Plane;
@@ -34,9 +34,11 @@ enum Mode {
     /// The last H.
     Register,
     Tcp,
+    /// The tool of the last T.
+    Staged,
 }
 
-const MODES: [Mode; 12] = [
+const MODES: [Mode; 13] = [
     Mode::Unit,
     Mode::Plane,
     Mode::Distance,
@@ -49,6 +51,7 @@ const MODES: [Mode; 12] = [
     Mode::Length,
     Mode::Register,
     Mode::Tcp,
+    Mode::Staged,
 ];
 
 /// A block of which the next run makes something else.
@@ -72,12 +75,21 @@ pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> O
     };
     let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
     let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
-    let line = first_difference(first, left, &kept)?;
-    let makes_it = |mode: &Mode| first_difference(first, left, &[*mode]).is_some();
-    let mut guilty: Vec<Mode> = kept.iter().copied().filter(makes_it).collect();
-    if guilty.is_empty() {
-        guilty = kept;
-    }
+    let all = first_difference(first, left, &kept);
+    // Two that cancel each other do so only where the control keeps both.
+    let is_exact = end == Some(Choice::SetsModes) || kept.len() < 2;
+    let alone: Vec<(Mode, usize)> = match all.is_some() || !is_exact {
+        true => kept
+            .iter()
+            .filter_map(|mode| Some((*mode, first_difference(first, left, &[*mode])?)))
+            .collect(),
+        false => Vec::new(),
+    };
+    let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
+    let guilty: Vec<Mode> = match alone.is_empty() {
+        true => kept,
+        false => alone.into_iter().map(|(mode, _)| mode).collect(),
+    };
     let words: Vec<String> = guilty.into_iter().map(|mode| mode.word(left)).collect();
     Some(Difference { line, words: words.join(", ") })
 }
@@ -168,6 +180,7 @@ impl Mode {
             Mode::Length => state.length != others.length,
             Mode::Register => first.last_register != second.last_register,
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
+            Mode::Staged => first.staged != second.staged,
         }
     }
 
@@ -198,6 +211,7 @@ impl Mode {
                 LengthOffset::Off => "G49",
             },
             Mode::Register => return format!("H{}", left.last_register.unwrap_or_default()),
+            Mode::Staged => return format!("T{}", left.staged.unwrap_or_default()),
             Mode::Tcp => match state.tcp {
                 Tcp::Transformation => "TRAORI",
                 Tcp::Vector => "G43.5",
@@ -210,12 +224,11 @@ impl Mode {
 }
 
 impl Control {
-    /// Takes over the position and the tools that another run has left.
+    /// Takes over the position and the tool in the spindle that another run has left.
     fn stand_as(&mut self, left: &Control) {
         let mut state = (*self.state).clone();
         state.tool = left.state.tool;
         self.position = left.state.carry_over(&state, left.position);
-        self.staged = left.staged;
         self.state = Arc::new(state);
     }
 
@@ -243,6 +256,7 @@ impl Control {
                     (state.length, self.returned) = (left.state.length, left.returned);
                 }
                 Mode::Register => self.last_register = left.last_register,
+                Mode::Staged => self.staged = left.staged,
                 Mode::Tcp => {
                     (state.tcp, self.transformed) = (left.state.tcp, left.transformed);
                 }

@@ -282,7 +282,8 @@ fn changes_of_coordinates_do_not_move_the_machine() {
     assert_eq!(linear(steps[2].end), [Some(0.0), Some(0.0), Some(370.0)]);
     assert_eq!(linear(steps[3].end), [Some(-7.0), Some(0.0), Some(320.0)]);
     // A coordinate whose origin does not change stays known, whatever the origin is.
-    let steps = steps_of("G0 X1 Y2 Z3\nG10 L2 P1 X9\nA0", &ControlSetup::default());
+    let unknown = ControlSetup { rules: setup.rules, ..ControlSetup::default() };
+    let steps = steps_of("G0 X1 Y2 Z3\nG10 L2 P1 X9\nA0", &unknown);
     assert_eq!(linear(steps[1].end), [None, Some(2.0), Some(3.0)]);
     // G92 gives the position its coordinates, and G92.1 takes them back.
     let positions = ends("G0 X5\nG92 X1\nX2\nG92.1\nG91 X0\nG90 G52 X10\nG91 X0", &at_zero());

@@ -386,6 +386,14 @@ fn words_of_one_dialect() {
     assert!(unit.to_string().contains("a unit in programs of Sinumerik"), "{unit}");
     assert_eq!(execute("siemens", "G70\nM30"), Ok(0));
     assert_eq!(execute("fanuc", "M98 P7\nM30\nO7\nG0 X1. M99"), Ok(1));
+    for (program, reason) in [
+        ("G55\nG10 L2 P2 X4. Y0. Z0. R0\nG0 X1.\nM30", "its work offset (G54) after G10"),
+        ("G54\nG52 X1. Y2.\nG52 X3.\nM30", "it leaves axes out"),
+    ] {
+        let error = execute("siemens", &program.replace(" R0", "")).expect_err(reason);
+        assert!(error.to_string().contains(reason), "{error}");
+        assert!(run_on_linuxcnc(program).is_ok(), "{program}");
+    }
     for assigned in ["#1=1.\n#1=2. G0 X#1\nM30", "#1=1.\n#1=2. #2=#1\nG0 X#2\nM30"] {
         let error = execute("haas", assigned).expect_err("an order of assignments");
         assert!(error.to_string().contains("line 2: an assignment while its block"), "{error}");
