@@ -576,7 +576,14 @@ fn the_shorter_way_holds_for_every_stated_angle() {
                   G0 A0.\nG0 C345.\nG0 X20. Y0. Z5.\nG0 C15.\nG0 Z50.";
     let scene = Scene::new(tilted).placed().obstacle(post.0, post.1);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
-    scene.gives(&FANUC, 1, &["the clamp"]);
+    let fanuc = ControlRules::named("fanuc").expect("a control");
+    let stated = fanuc
+        .with(Rule::TcpStart, Choice::TableAtZero)
+        .with(Rule::ReferenceReturn, Choice::KeepsLength)
+        .with(Rule::LengthChange, Choice::WithNextZ)
+        .with(Rule::CycleRepeats, Choice::RepeatsByL);
+    let control = scene.bench.write("fanuc.toml", stated.to_toml());
+    scene.gives(&["--control", &control], 1, &["the clamp"]);
 }
 
 /// A tool change changes the length that counts without G43, and D0 ends it.
@@ -625,6 +632,13 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     scene(&at_zero).gives(&FANUC, 0, &[]);
     let in_its_block = at_zero.replace("G43.4 H1", "G43.4 H1 C90.");
     scene(&in_its_block).gives(&FANUC, 2, &["`tcp_start`"]);
+    // It begins anew without a motion between, and so does a plane.
+    let anew = format!("{at_zero}\nG1 C40.\nG49\nG43.4 H1\nG0 X-6. Y0. Z50.\nG49");
+    scene(&anew).gives(&FANUC, 0, &["1 motion not checked", "`tcp_start`"]);
+    let plane = "T1 M6\nS9000 M3\nG0 A0. C90.\nG43 H1 Z60.\nG68.2 X0 Y0 Z0 I0 J0 K0\nG53.1\nG0 X-6. Y0. Z20.";
+    scene(plane).gives(&FANUC, 2, &["`tcp_start`"]);
+    scene(&plane.replace("C90", "C0")).gives(&FANUC, 0, &[]);
+    scene(&format!("{at_zero}\nG49 G0 X-7.")).gives(&FANUC, 2, &["write it in a block of its own"]);
     // An offset of the table turns the part, or does not.
     let mut offset = scene(&at_zero);
     offset.job = offset.job.replace("-400]", "-400, 0, 0, 30]");

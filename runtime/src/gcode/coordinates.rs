@@ -254,6 +254,11 @@ impl Control {
         // G43 and G49 do not end a transformation.
         let kept = if self.transformed { self.state.tcp } else { Tcp::Off };
         if code.tenths == 490 {
+            let is_return = block.code_of(Group::OneShot).is_some();
+            if self.state.tcp != kept && !is_return && block.has_any("XYZABC") {
+                let condition = "its block has a position, and it ends tool centre point control";
+                return Err(combination(code, condition, "write it in a block of its own"));
+            }
             self.vector = None;
             self.length_cancelled = true;
             self.change(|state| (state.length, state.tcp) = (LengthOffset::Off, kept));
@@ -304,7 +309,11 @@ impl Control {
             }
         };
         self.vector = None;
-        self.change(|state| (state.length, state.tcp) = (length, tcp));
+        let is_start = code.tenths != 430;
+        self.change(|state| {
+            (state.length, state.tcp) = (length, tcp);
+            state.tcp_starts += usize::from(is_start);
+        });
         Ok(())
     }
 
@@ -371,7 +380,10 @@ impl Control {
         }
         self.transformed = true;
         let tcp = if block.keyword.is_some() { Tcp::Transformation } else { Tcp::Rotary };
-        self.change(|state| (state.length, state.tcp) = (length, tcp));
+        self.change(|state| {
+            (state.length, state.tcp) = (length, tcp);
+            state.tcp_starts += 1;
+        });
         self.check_edge()
     }
 

@@ -100,6 +100,7 @@ impl Control {
             origin_rotation: 0.0,
             shift: [Some(0.0); 6],
             tcp: Tcp::Off,
+            tcp_starts: 0,
             rotation: Rotation::Off,
         };
         Control {

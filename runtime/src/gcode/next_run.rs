@@ -177,7 +177,10 @@ impl Mode {
                     != (others.shift, second.local, second.preset)
             }
             Mode::Rotation => state.rotation != others.rotation,
-            Mode::Length => state.length != others.length,
+            Mode::Length => {
+                (state.length, first.length_implicit, first.length_cancelled)
+                    != (others.length, second.length_implicit, second.length_cancelled)
+            }
             Mode::Register => first.last_register != second.last_register,
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
             Mode::Staged => first.staged != second.staged,
@@ -254,6 +257,8 @@ impl Control {
                 Mode::Rotation => state.rotation = left.state.rotation,
                 Mode::Length => {
                     (state.length, self.returned) = (left.state.length, left.returned);
+                    (self.length_implicit, self.length_cancelled) =
+                        (left.length_implicit, left.length_cancelled);
                 }
                 Mode::Register => self.last_register = left.last_register,
                 Mode::Staged => self.staged = left.staged,
@@ -280,8 +285,6 @@ impl Control {
             && self.cycle == next.cycle
             && self.vector == next.vector
             && self.returned == next.returned
-            && (self.length_implicit, self.length_cancelled)
-                == (next.length_implicit, next.length_cancelled)
             && changed(self).zip(changed(next)).all(|(changed, next)| changed || !next)
     }
 }

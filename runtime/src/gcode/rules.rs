@@ -327,7 +327,7 @@ const RULES: [Entry; 23] = [
     Entry {
         rule: Rule::TcpStart,
         key: "tcp_start",
-        about: "coordinates under tool centre point control (G43.4) that begins while the table is turned",
+        about: "coordinates under tool centre point control (G43.4) or in a tilted plane (G68.2) that begins while the table is turned",
         choices: &[
             (Choice::TableAtZero, "table at zero", "are those of the part with its axes at 0"),
             (

@@ -46,6 +46,8 @@ pub struct ControlState {
     pub shift: Position,
     /// Tool centre point control.
     pub tcp: Tcp,
+    /// The number of words before that have switched it on.
+    pub tcp_starts: usize,
     /// The rotation of the program's coordinates.
     pub rotation: Rotation,
 }

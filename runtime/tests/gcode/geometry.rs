@@ -346,7 +346,7 @@ fn tool_centre_point_control() {
     let steps = steps_of("T3 M6\nM428\nG43 H3\nG0 X1\nG49 X2", &setup);
     assert_eq!([steps[0].state.tcp, steps[1].state.tcp], [Tcp::Rotary; 2]);
 
-    let steps = steps_of("G43.5 H3\nG1 F1 X1 Y1 Z1\nX2 I3 K4\nX3\nI1\nG49 X4", &setup);
+    let steps = steps_of("G43.5 H3\nG1 F1 X1 Y1 Z1\nX2 I3 K4\nX3\nI1\nG49\nX4", &setup);
     let vectors: Vec<_> = steps.iter().map(|step| step.tool_vector).collect();
     let tilted = Some([0.6, 0.0, 0.8]);
     assert_eq!(vectors, [None, tilted, tilted, Some([1.0, 0.0, 0.0]), None]);

@@ -57,7 +57,7 @@ fn a_shift_at_an_unknown_position_leaves_positions_unknown() {
 
 #[test]
 fn a_program_cannot_move_the_part() {
-    let blocks = "G10 L2 P1 Z-5.\nG0 X0. Y0. Z9.\nG1 X5.";
+    let blocks = "G10 L2 P1 Z-5.\nG54 G0 X0. Y0. Z9.\nG1 X5.";
     for origin in [None, Some([0.0, 0.0, -450.0, 0.0, 0.0, 0.0])] {
         let refused = program("3-axis", origin, &[], blocks).expect_err("it moves the part");
         assert!(refused.contains("the program sets G54"), "{refused}");

@@ -81,7 +81,8 @@ pub enum UnknownCause {
     ReturnWay,
     /// The tool axis turns on a great circle, which is not followed.
     GreatCircle,
-    /// Tool centre point control began while the table was turned, and the control takes the part as it stood then.
+    /// Tool centre point control or a tilted plane began while the table was turned, and the control takes the part as it stood
+    /// then.
     TurnedTable,
     /// Tool centre point control, or an aligned plane, without a tool length offset.
     TcpWithoutLength,
@@ -131,8 +132,8 @@ impl fmt::Display for UnknownCause {
                  control",
             ),
             UnknownCause::TurnedTable => f.write_str(
-                "the table is turned where tool centre point control begins, and positions are those of the part as it stands: \
-                 turn it to 0 before, or state `tcp_start` of the control",
+                "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
+                 part as it stands: turn it to 0 before, or state `tcp_start` of the control",
             ),
             UnknownCause::TcpWithoutLength => f.write_str(
                 "tool centre point control or an aligned plane (G53.1) is in force, and no length offset: write H with the \
@@ -155,9 +156,9 @@ pub(super) struct Resolver<'a> {
     rapid: RapidPath,
     /// The rotary axes A, B, C without limits.
     endless: [bool; 3],
-    /// Set while tool centre point control is in force.
-    has_tcp: bool,
-    /// Set while it is, if it began on a turned table and its coordinates are not followed.
+    /// The start of tool centre point control and of a tilted plane that are in force.
+    turning: Turning,
+    /// Set while they are, if they began on a turned table and the coordinates are not followed.
     is_turned_table: bool,
     /// The register of the first length offset of a program that names no tool: its tool.
     unnamed_tool: Option<u32>,
@@ -184,6 +185,15 @@ enum RapidPath {
     Rates(Joints),
     /// Each axis at a rate that is not known.
     Any,
+}
+
+/// The words by which positions turn with the table.
+#[derive(Clone, Default, PartialEq)]
+struct Turning {
+    /// The start of tool centre point control.
+    tcp: Option<usize>,
+    /// The tilted plane.
+    plane: Option<gcode::Frame>,
 }
 
 /// The mapping of a step's coordinates.
@@ -234,7 +244,7 @@ impl<'a> Resolver<'a> {
             },
             endless: [Letter::A, Letter::B, Letter::C]
                 .map(|letter| machine.axis(letter).is_some_and(|axis| axis.limits.is_none())),
-            has_tcp: false,
+            turning: Turning::default(),
             is_turned_table: false,
             unnamed_tool,
             asked: BTreeMap::new(),
@@ -431,23 +441,30 @@ impl<'a> Resolver<'a> {
         Resolved::Unknown(cause)
     }
 
-    /// Returns whether a step is under tool centre point control that began while the table was turned, if the control takes
-    /// its coordinates as those of the part as it stood then.
+    /// Returns whether a step is under tool centre point control, or in a tilted plane, that began while the table was turned, if
+    /// the control takes its coordinates as those of the part as it stood then.
     fn begins_on_turned_table(&mut self, step: &Step) -> bool {
-        let had_tcp = std::mem::replace(&mut self.has_tcp, step.state.tcp != Tcp::Off);
-        if !self.has_tcp {
+        let state = &*step.state;
+        let turning = Turning {
+            tcp: (state.tcp != Tcp::Off).then_some(state.tcp_starts),
+            plane: match state.rotation {
+                Rotation::Tilted { frame, .. } => Some(frame),
+                Rotation::Off | Rotation::Plane { .. } => None,
+            },
+        };
+        if turning == Turning::default() {
             self.is_turned_table = false;
-        } else if !had_tcp {
-            // A table that turns in the block counts at its end.
+        } else if turning != self.turning {
+            // A table that turns in the block counts at its end, but for the alignment with a plane.
+            let aligns = matches!(step.path, StepPath::Align);
             let is_turned = |k: usize| {
                 self.joints[k] != Some(self.origin[k])
-                    || step.commanded[k] && step.end[k] != Some(0.0)
+                    || !aligns && step.commanded[k] && step.end[k] != Some(0.0)
             };
-            if self.rotary(Side::Table).any(is_turned) {
-                let start = self.ask(Rule::TcpStart, step);
-                self.is_turned_table = start == Some(Choice::TableAsItStands);
-            }
+            self.is_turned_table = self.rotary(Side::Table).any(is_turned)
+                && self.ask(Rule::TcpStart, step) == Some(Choice::TableAsItStands);
         }
+        self.turning = turning;
         self.is_turned_table
     }
 
