@@ -5,8 +5,8 @@ use crate::output::Output;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
-use touchoff::gcode::{ControlRules, Rule};
-use touchoff::machine::{Axis, Machine, Side};
+use touchoff_verify::gcode::{ControlRules, Rule};
+use touchoff_verify::machine::{Axis, Machine, Side};
 
 /// A control as a JSON object.
 #[derive(Serialize)]

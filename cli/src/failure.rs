@@ -1,8 +1,9 @@
 //! Failures of the program, reported once at its end.
 
+use touchoff::CloudError;
 use touchoff::mesh::MeshError;
 use touchoff::tool::ToolError;
-use touchoff::{CloudError, ProgramError};
+use touchoff_verify::ProgramError;
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -168,15 +169,15 @@ pub(crate) enum Failure {
     },
     /// A machine's file is refused, or no machine has that name.
     #[error(transparent)]
-    Machine(#[from] touchoff::machine::MachineError),
+    Machine(#[from] touchoff_verify::machine::MachineError),
     #[error(transparent)]
-    Control(#[from] touchoff::gcode::ControlError),
+    Control(#[from] touchoff_verify::gcode::ControlError),
     /// The stock cannot be made or cut.
     #[error(transparent)]
-    Stock(#[from] touchoff::stock::StockError),
+    Stock(#[from] touchoff_verify::stock::StockError),
     /// G-code cannot be checked on its machine.
     #[error(transparent)]
-    MachineProgram(#[from] touchoff::verify::MachineProgramError),
+    MachineProgram(#[from] touchoff_verify::MachineProgramError),
     /// A tool library has no such tool.
     #[error(
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
@@ -192,7 +193,7 @@ pub(crate) enum Failure {
     Uncertified(#[from] touchoff::certify::NotCertifiable),
     /// A program could not be checked.
     #[error(transparent)]
-    Verify(#[from] touchoff::verify::VerifyError),
+    Verify(#[from] touchoff_verify::VerifyError),
     /// A sweep could not be done.
     #[error(transparent)]
     Sweep(#[from] touchoff_postures::sweep::SweepError),
@@ -234,11 +235,11 @@ pub(crate) enum Failure {
         /// The tool axis.
         axis: [f64; 3],
         /// The reason.
-        source: touchoff::machine::InverseError,
+        source: touchoff_verify::machine::InverseError,
     },
     /// A work offset or a tool length is out of range for a machine, or it has no such link.
     #[error(transparent)]
-    Joint(#[from] touchoff::machine::JointError),
+    Joint(#[from] touchoff_verify::machine::JointError),
     /// An axis of the machine leaves its limits on the way to a cutter location.
     #[error(
         "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
@@ -250,7 +251,7 @@ pub(crate) enum Failure {
         /// The planned cutter location, from 1.
         location: usize,
         /// The axis.
-        letter: touchoff::machine::Letter,
+        letter: touchoff_verify::machine::Letter,
         /// The joint value, in mm or degrees.
         value: f64,
         /// The limit, in mm or degrees.
@@ -258,7 +259,7 @@ pub(crate) enum Failure {
     },
     /// A program could not be written.
     #[error(transparent)]
-    Write(#[from] touchoff::program::WriteError),
+    Write(#[from] touchoff_verify::program::WriteError),
     /// No format of a map has this file extension.
     #[error(
         "a map is written as `.csv`, `.json`, `.ply` or `.png`, and `{file}` is none of them: change its extension"

@@ -5,11 +5,12 @@ use crate::lengths::{format_length, format_point};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
-use touchoff::gcode::ControlRules;
-use touchoff::machine::Machine;
+use touchoff::Unit;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{Approach, VerifyReport};
-use touchoff::{Program, Unit};
+use touchoff_verify::Program;
+use touchoff_verify::gcode::ControlRules;
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{Approach, VerifyReport};
 
 /// Reads a program for a tool and a part in that unit.
 ///

@@ -16,7 +16,8 @@ use std::io::{IsTerminal, Write};
 use std::time::Instant;
 use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
-use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
+use touchoff::{Contact, Part, Probe, Unit, Wrench};
+use touchoff_verify::Program;
 
 #[derive(Serialize)]
 struct Row<'a> {

@@ -8,11 +8,12 @@
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use touchoff::certify::TriangleBvh;
-use touchoff::verify::Verifier;
-use touchoff::{Program, Tool, Unit, mesh::shapes};
+use touchoff::{Tool, Unit, mesh::shapes};
 use touchoff_postures::path::{PathRequest, Pattern};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Directions, Rules};
+use touchoff_verify::Program;
+use touchoff_verify::Verifier;
 
 touchoff::tool! {
     tool Slim "2 mm ball, 25 mm long" {

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Maximum size of a file in bytes, 16 GiB: some 300 million triangles of binary STL.
-pub(crate) const MAX_BYTES: u64 = 1 << 34;
+const MAX_BYTES: u64 = 1 << 34;
 
 /// Opens a regular file of at most [`MAX_BYTES`] bytes and returns it with its length.
 ///
@@ -30,11 +30,12 @@ pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
     }
 }
 
-/// Reads a regular file, up to the length it had when [`open`] opened it.
+/// Reads a regular file, up to the length that it had when it was opened.
 ///
 /// # Errors
-/// Returns the errors of [`open`], and `OutOfMemory` if the file does not fit into memory.
-pub(crate) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
+/// Returns the errors of the operating system, and `OutOfMemory` if the file does not fit into memory. Refuses a file of more
+/// than 16 GiB, and a directory, a pipe, a socket or a device, whose content may be endless.
+pub fn read_regular_file(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
     let mut bytes = Vec::new();
     let capacity =
@@ -55,8 +56,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a");
         fs::write(&path, b"some").expect("written");
-        assert_eq!(read(&path).expect("read"), b"some");
-        let refused = |path: &Path| read(path).expect_err("no regular file").to_string();
+        assert_eq!(read_regular_file(&path).expect("read"), b"some");
+        let refused =
+            |path: &Path| read_regular_file(path).expect_err("no regular file").to_string();
         assert_eq!(refused(folder.path()), "it is no regular file");
         #[cfg(unix)]
         {

@@ -1,5 +1,5 @@
-//! Contact between a cutting tool and a workpiece at any pose, for 5-axis machining: haptics, certified
-//! interference, postures and program verification.
+//! Contact between a cutting tool and a workpiece at any pose, for 5-axis machining: depth, force and certified
+//! interference.
 //!
 //! A tool is written in a small language and compiled into straight-line code by [`include_tool!`], [`tool!`] or
 //! [`tool_library!`]. A workpiece is a triangle mesh: sampled as a weighted point cloud for fast queries, or searched
@@ -43,13 +43,12 @@
 //! ```
 //!
 //! **Certify.** A [`Certifier`](certify::Certifier) bounds depth, clearance and motions over all points of the
-//! triangles. **Verify.** A [`Verifier`](verify::Verifier) checks a [`Program`] with it, motion by motion.
+//! triangles.
 //!
 //! ```
 //! # use nalgebra::{Point3, Vector3};
-//! # use touchoff::{Pose, Program, Unit, mesh::shapes};
+//! # use touchoff::{Pose, Unit, mesh::shapes};
 //! use touchoff::certify::{Certifier, TriangleBvh};
-//! use touchoff::verify::Verifier;
 //! # touchoff::tool! {
 //! #     tool Ball "6 mm ball" {
 //! #         units mm;
@@ -64,20 +63,18 @@
 //! let depth = Certifier::new(&bvh, &Ball)?.deepest(&pose, 1e-9).depth;
 //! // The tip is 0.5 mm below the top face. The interval is as wide as the tolerance and the rounding error bound.
 //! assert!(depth.contains(0.5) && depth.width() < 2e-9);
-//!
-//! // One location per line: tip x, y, z and axis i, j, k. The name is for messages.
-//! let program = Program::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
-//! let report = Verifier::new(&bvh, &Ball)?.with_tolerance(0.01)?.check(&program)?;
-//! assert!(!report.is_clear());
 //! # Ok(()) }
 //! ```
+//!
+//! **Verify.** The package `touchoff-verify` checks programs: tables of locations, APT and G-code, on machines, with
+//! fixtures and stock.
 //!
 //! **Sweep.** The package `touchoff-postures` tries tools at every triangle from every direction, keeps the result, and
 //! plans paths over it.
 //!
 //! **Run the loop.** The package `touchoff-haptics` drives a haptic device at 1 kHz.
 //!
-//! Shorter programs: `examples/first_contact.rs` and `examples/check_program.rs`.
+//! A shorter program: `examples/first_contact.rs`.
 //!
 //! # Main types
 //!
@@ -88,7 +85,6 @@
 //! | [`Pose`], [`Motion`] | the tool's tip and axis or full rotation, and a move between two of them |
 //! | [`Probe`] | contact, depth and force at the points of a part |
 //! | [`TriangleBvh`](certify::TriangleBvh), [`Certifier`](certify::Certifier) | triangles prepared for queries, and proved depth, clearance and motions |
-//! | [`Verifier`](verify::Verifier) | the check of a whole [`Program`] |
 //! | [`Law`], [`Weights`], [`Level`] | options of a probe: force law, weights of points, SIMD level |
 //!
 //! Lengths are in the unit of the part or of the tool's file, as each function states; frames are right-handed, and a
@@ -110,14 +106,10 @@
 #[doc = include_str!("../../README.md")]
 struct Readme;
 
-// The code blocks of these pages are tests, too.
+// The code blocks of this page are tests, too.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/certified.md")]
 struct CertifiedPage;
-
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/verify.md")]
-struct VerifyPage;
 
 // Generated code refers to this crate as `::touchoff`, also inside the crate itself.
 extern crate self as touchoff;
@@ -128,12 +120,10 @@ pub mod certify;
 pub mod cloud;
 mod debug;
 mod escape;
-pub mod gcode;
 mod id;
 mod input;
 mod interval;
 mod keywords;
-pub mod machine;
 pub mod mesh;
 mod motion;
 mod parallel;
@@ -141,21 +131,18 @@ mod part;
 mod point_bvh;
 mod pose;
 mod probe;
-pub mod program;
-mod reach;
 mod scene;
 pub mod scenes;
-pub mod stock;
 mod storage;
 pub mod tool;
 mod unit;
-pub mod verify;
 
 pub use atomic_file::AtomicFile;
 pub use cloud::{Cloud, CloudError, CoveringRadius, Sampling, SamplingMethod};
 pub use escape::{Escaped, EscapedLines};
 pub use fearless_simd::Level;
 pub use id::{SurfaceId, TriangleId};
+pub use input::read_regular_file;
 pub use interval::Interval;
 pub use keywords::ParseEnumError;
 pub use mesh::{Mesh, MeshDiagnostics, MeshError, StlError};
@@ -164,10 +151,9 @@ pub use part::{Part, PartError};
 pub use point_bvh::PointBvh;
 pub use pose::{AXIS_TOLERANCE, MAX_TIP_COORDINATE, Pose, PoseError};
 pub use probe::{
-    BudgetError, Contact, DeepestPoint, Law, LodProbe, LodWrench, Posture, Probe, Stiffness,
-    Summary, Weights, Wrench, WrenchRounding, summary,
+    BudgetError, Contact, DeepestPoint, InsidePoint, InsideQuery, Law, LodProbe, LodWrench,
+    Posture, Probe, Stiffness, Summary, ToolEnvelope, Weights, Wrench, WrenchRounding, summary,
 };
-pub use program::{CutterLocation, Program, ProgramError};
 pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use storage::SavedError;
 pub use tool::Tool;

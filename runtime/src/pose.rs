@@ -97,6 +97,12 @@ impl Pose {
         }
     }
 
+    /// Creates a pose with a known spin from a rotation and a tip that were computed. The caller answers for a matrix that is a
+    /// rotation except for rounding, and for coordinates up to [`MAX_TIP_COORDINATE`].
+    pub fn from_computed(rotation: Matrix3<f64>, tip: Point3<f64>) -> Pose {
+        Pose::turned(rotation, tip, true)
+    }
+
     /// Creates a pose from a matrix that is a rotation except for rounding; `has_spin` states whether its
     /// spin is known.
     pub(crate) fn turned(rotation: Matrix3<f64>, tip: Point3<f64>, has_spin: bool) -> Pose {

@@ -9,10 +9,10 @@ use self_cell::self_cell;
 use std::fmt;
 use std::rc::Rc;
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::machine::Machine;
 use touchoff::tool::Interpreted;
-use touchoff::verify::{Move, Verifier, VerifyError};
 use touchoff::{Mesh, Pose, SurfaceId, Tool};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{Move, Verifier, VerifyError};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// Tolerance of depth at a position, and of clearance, as fractions of the tool's length from its tip.

@@ -1,12 +1,12 @@
 //! Errors that reach the page.
 
 use crate::program::MAX_MOTIONS;
-use touchoff::machine::{JointError, MachineError};
 use touchoff::mesh::{GeometryError, MeshError};
-use touchoff::program::ProgramError;
-use touchoff::verify::{MachineProgramError, VerifyError};
 use touchoff::{CloudError, ParseUnitError, PoseError};
 use touchoff_haptics::SettingError;
+use touchoff_verify::machine::{JointError, MachineError};
+use touchoff_verify::program::ProgramError;
+use touchoff_verify::{MachineProgramError, VerifyError};
 
 /// A request that could not be met. The message is meant for people.
 #[derive(Debug, thiserror::Error)]

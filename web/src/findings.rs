@@ -3,7 +3,7 @@
 use serde::Serialize;
 use touchoff::SurfaceId;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{Finding, FindingGroup, FindingKind, VerifyReport};
+use touchoff_verify::{Finding, FindingGroup, FindingKind, VerifyReport};
 
 /// The result of a check.
 #[derive(Debug, Serialize)]

@@ -2,12 +2,13 @@
 
 use crate::error::EngineError;
 use serde::Serialize;
-use touchoff::gcode::{ControlSetup, Spindle};
-use touchoff::machine::Machine;
-use touchoff::program::ProgramFile;
+use touchoff::Unit;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{MachineProgram, Move, ToolSelection};
-use touchoff::{Program, Unit};
+use touchoff_verify::Program;
+use touchoff_verify::gcode::{ControlSetup, Spindle};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::program::ProgramFile;
+use touchoff_verify::{MachineProgram, Move, ToolSelection};
 
 /// Greatest number of motions that the page holds in memory.
 pub(crate) const MAX_MOTIONS: usize = 200_000;

@@ -8,9 +8,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use touchoff::mesh::Geometry;
 use touchoff::tool::Interpreted;
-use touchoff::{Program, Tool, Unit};
+use touchoff::{Tool, Unit};
 use touchoff_bench::page::Page;
 use touchoff_bench::work_precision::{self, Plan, Row, UserScene};
+use touchoff_verify::Program;
 
 /// The scene name that stands for all scenes.
 const ALL: &str = "all";

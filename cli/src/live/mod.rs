@@ -20,7 +20,7 @@ use std::path::Path;
 use tool_dsl::compile;
 use tools_library::{SOURCES, TOOLS};
 use touchoff::Unit;
-use touchoff::gcode::ControlSetup;
+use touchoff_verify::gcode::ControlSetup;
 
 /// The part and the tool that the page begins with.
 #[derive(Serialize)]

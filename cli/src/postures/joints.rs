@@ -2,7 +2,7 @@
 //! axes travel least.
 
 use nalgebra::{Point3, Vector3};
-use touchoff::machine::{Chain, InverseError, Joints};
+use touchoff_verify::machine::{Chain, InverseError, Joints};
 
 /// A cutter location: the tip in mm and the tool axis, in the frame of the part.
 pub(super) struct Target {
@@ -102,7 +102,7 @@ pub(super) fn rotary_travel(from: &Joints, to: &Joints) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff::machine::{Machine, Setup};
+    use touchoff_verify::machine::{Machine, Setup};
 
     /// An axis that turns about z by more than a turn at a tilt, which only one of both solutions follows within the
     /// limits of A, although the other is nearer to the start.

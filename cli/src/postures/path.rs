@@ -14,11 +14,12 @@ use serde::Serialize;
 use std::io::Write;
 use std::mem;
 use std::path::Path;
+use touchoff::Motion;
 use touchoff::certify::TriangleBvh;
-use touchoff::program::{AptHeader, Cutter, Decimals, apt_unit};
-use touchoff::{Motion, Program};
 use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
+use touchoff_verify::Program;
+use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
 
 #[derive(Serialize)]
 struct Summary {

@@ -9,11 +9,11 @@ use crate::program::read_machine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
-use touchoff::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use touchoff::machine::{Chain, Joints, Letter, Machine, Setup};
-use touchoff::program::Decimals;
-use touchoff::verify::{MachineProgram, ToolSelection};
 use touchoff::{Motion, Pose, Unit};
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff_verify::machine::{Chain, Joints, Letter, Machine, Setup};
+use touchoff_verify::program::Decimals;
+use touchoff_verify::{MachineProgram, ToolSelection};
 
 /// Largest number of times that the motion between two cutter locations is halved.
 const MAX_HALVINGS: u32 = 8;

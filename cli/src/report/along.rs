@@ -5,8 +5,8 @@ use crate::timing::nanoseconds;
 use crate::verify::{CheckedPair, Inputs};
 use std::time::Instant;
 use touchoff::certify::Certifier;
-use touchoff::verify::FindingKind;
 use touchoff::{Cloud, Law, Part, Probe, Sampling, SurfaceId};
+use touchoff_verify::FindingKind;
 
 /// Number of positions per tool at which force and distances are computed.
 const SAMPLES: usize = 2000;

@@ -7,7 +7,7 @@ use crate::verify::{Entry, EntrySource, Inputs};
 use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
 use touchoff::certify::Witness;
-use touchoff::verify::FindingKind;
+use touchoff_verify::FindingKind;
 
 /// The place of a finding, and how to look at it.
 pub(super) struct Place {

@@ -7,9 +7,9 @@ use crate::postures::picture::MapValues;
 use crate::verify::{CutStock, Inputs, Verification};
 use nalgebra::Point3;
 use std::collections::HashMap;
-use touchoff::stock::PartComparison;
-use touchoff::verify::FindingKind;
 use touchoff::{Cloud, Escaped, Mesh, Part, Probe, TriangleId, Unit};
+use touchoff_verify::FindingKind;
+use touchoff_verify::stock::PartComparison;
 
 /// A quantity on a body as it is shown.
 pub(super) struct Layer {

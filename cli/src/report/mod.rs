@@ -37,8 +37,8 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tool_shape::ToolShape;
 use touchoff::Escaped;
-use touchoff::stock::PartComparison;
 use touchoff_postures::PostureMap;
+use touchoff_verify::stock::PartComparison;
 
 /// Side of a view of the part, in pixels.
 const SIDE: usize = 520;

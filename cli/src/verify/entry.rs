@@ -7,7 +7,7 @@ use super::text::describe;
 use super::{CheckedPair, Verification, by_reading, rule};
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
-use touchoff::verify::{Finding, FindingKind};
+use touchoff_verify::{Finding, FindingKind};
 
 /// A finding as it is printed.
 pub(crate) struct Entry<'a> {

@@ -4,7 +4,7 @@ use super::{Remedy, Scope, rule};
 use serde::Serialize;
 use touchoff::certify::Witness;
 use touchoff::tool::Symmetry;
-use touchoff::verify::{FindingGroup, FindingKind};
+use touchoff_verify::{FindingGroup, FindingKind};
 
 /// The findings of consecutive motions.
 #[derive(Serialize)]

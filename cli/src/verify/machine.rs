@@ -4,9 +4,9 @@ use super::entry::Severity;
 use super::job::Hand;
 use super::tools::ProgramTool;
 use serde::Serialize;
-use touchoff::gcode::Spindle;
-use touchoff::machine::Letter;
-use touchoff::verify::MachineProgram;
+use touchoff_verify::MachineProgram;
+use touchoff_verify::gcode::Spindle;
+use touchoff_verify::machine::Letter;
 
 /// A finding about the machine.
 #[derive(Serialize)]

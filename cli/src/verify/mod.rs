@@ -30,8 +30,8 @@ use text::summary;
 pub(crate) use tools::ProgramTool;
 use touchoff::certify::TriangleBvh;
 use touchoff::tool::ToolInfo;
-use touchoff::verify::{FindingGroup, FindingKind, Gap, Move, Tilt, Verifier, VerifyReport};
 use touchoff::{Mesh, Unit};
+use touchoff_verify::{FindingGroup, FindingKind, Gap, Move, Tilt, Verifier, VerifyReport};
 
 /// The exit status if there are findings.
 const FOUND: u8 = 1;

@@ -8,11 +8,12 @@ use crate::failure::Failure;
 use crate::program::{self, read_control, read_machine};
 use std::iter;
 use std::path::Path;
-use touchoff::gcode::{Choice, ControlRules, ControlSetup, Rule};
-use touchoff::machine::{Machine, Side};
-use touchoff::program::ProgramFile;
-use touchoff::verify::{Gap, MachineProgram, Move, ToolSelection};
-use touchoff::{Program, Unit};
+use touchoff::Unit;
+use touchoff_verify::Program;
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff_verify::machine::{Machine, Side};
+use touchoff_verify::program::ProgramFile;
+use touchoff_verify::{Gap, MachineProgram, Move, ToolSelection};
 
 /// The machine of G-code for which none is named.
 pub(crate) const DEFAULT_MACHINE: &str = "3-axis";

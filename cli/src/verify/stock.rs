@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::path::Path;
 use touchoff::Unit;
 use touchoff::certify::TriangleBvh;
-use touchoff::stock::{DeviationPoint, MotionMode, Stock, StockContact};
+use touchoff_verify::stock::{DeviationPoint, MotionMode, Stock, StockContact};
 
 /// Material that a surface touches on consecutive motions.
 #[derive(Serialize)]

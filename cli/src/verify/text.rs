@@ -3,8 +3,8 @@
 use super::{CheckedPair, Remedy, Scope};
 use crate::lengths::{format_length, format_number, format_point};
 use std::fmt::Write as _;
-use touchoff::verify::{Finding, FindingGroup, FindingKind, Tilt};
 use touchoff::{Interval, SurfaceId, Unit};
+use touchoff_verify::{Finding, FindingGroup, FindingKind, Tilt};
 
 /// Describes the findings of consecutive motions.
 ///

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use tool_dsl::Compiled;
 use touchoff::Tool;
-use touchoff::verify::ToolSelection;
+use touchoff_verify::ToolSelection;
 
 /// A tool of a program.
 pub(crate) struct ProgramTool {

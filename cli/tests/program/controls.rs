@@ -4,9 +4,9 @@ use crate::bench::{Bench, objects, stderr, stdout, touchoff};
 use nalgebra::Point3;
 use std::fs;
 use std::process::Output;
-use touchoff::gcode::{Choice, ControlRules, Rule};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
+use touchoff_verify::gcode::{Choice, ControlRules, Rule};
 
 /// A block of 6 × 6 × 2 below z = 0, a tool of 2 mm that ends in a ball, and what is added by a test.
 struct Scene {

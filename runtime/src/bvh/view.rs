@@ -17,6 +17,7 @@ pub(crate) const SLABS: usize = 32;
 /// The setup that the queries of a tool at a part share at all poses. Lengths are in the tool's unit.
 ///
 /// Boxes and points are compared with the tool's envelope in `f32`, with a margin for the rounding errors.
+#[derive(Clone, Debug)]
 pub(crate) struct QuerySetup {
     /// The tool's unit of length in the part's unit.
     pub(crate) length: f64,
@@ -35,6 +36,7 @@ pub(crate) struct QuerySetup {
 }
 
 /// The tool's envelope, widened by the margin.
+#[derive(Clone, Debug)]
 pub(crate) struct ReachBounds {
     /// The low end, high end and squared radius of each slab.
     pub(crate) slabs: [[f32; 3]; SLABS],

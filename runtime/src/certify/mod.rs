@@ -21,6 +21,7 @@ mod bounds;
 mod clearance;
 mod containment;
 mod motion_depth;
+mod nearest;
 mod part;
 mod query;
 mod rounding;
@@ -32,6 +33,7 @@ mod triangle;
 mod verdict;
 
 pub use containment::Containment;
+pub use nearest::NearestTriangle;
 pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use verdict::{
     AllowanceError, Clearance, MotionDepth, MotionVerdict, NoSuchSurface, NotCertifiable,

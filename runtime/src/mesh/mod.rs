@@ -168,7 +168,7 @@ impl Mesh {
     pub fn read_stl(path: impl AsRef<Path>, unit: Unit) -> Result<Mesh, StlError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match input::read(path) {
+        match input::read_regular_file(path) {
             Ok(bytes) => Mesh::from_stl(&bytes, &file, unit),
             Err(source) => Err(StlError::Unreadable { file, source }),
         }
@@ -246,7 +246,7 @@ impl Mesh {
     }
 
     /// Iterates over the corners of every triangle, by id.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = [Point3<f64>; 3]> {
+    pub fn corners(&self) -> impl Iterator<Item = [Point3<f64>; 3]> {
         self.triangles.iter().map(|t| t.map(|vertex| self.vertices[vertex as usize]))
     }
 }

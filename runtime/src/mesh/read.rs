@@ -58,7 +58,7 @@ impl Geometry {
     pub fn read(path: impl AsRef<Path>, unit: Unit) -> Result<Geometry, GeometryError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match input::read(path) {
+        match input::read_regular_file(path) {
             Ok(bytes) => Geometry::from_bytes(&bytes, &file, unit),
             Err(source) => Err(GeometryError::Unreadable { file, source }),
         }

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 
 impl PointBvh {
     /// Removes points, by their tree indices. The other points do not change by a single bit.
-    pub(crate) fn remove(&mut self, slots: impl IntoIterator<Item = usize>) {
+    pub fn remove(&mut self, slots: impl IntoIterator<Item = usize>) {
         let (leaves, attributes) = (&mut self.leaves, &mut self.attributes);
         let mut touched = Vec::new();
         for slot in slots {

@@ -104,6 +104,22 @@ impl PointBvh {
         self.covering_radius
     }
 
+    /// Returns an upper bound on the distance of a stored point from the given one, in each coordinate.
+    pub fn rounding(&self) -> f64 {
+        let frame = &self.frame;
+        let [leaf, size] = [self.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
+        // Per coordinate: the difference from the tree's origin, which is taken first, and an offset in `f32` from the leaf's
+        // centre.
+        let difference = 2.0 * f64::EPSILON * (frame.origin.coords.amax() + size);
+        difference + (leaf / 2f64.powi(24) + 2.0 * f64::EPSILON * size)
+    }
+
+    /// Returns whether a slot has a point that was not removed.
+    pub fn has_point(&self, slot: usize) -> bool {
+        // A slot without a point is NaN.
+        !self.leaves[slot / WIDTH].offset[0][slot % WIDTH].is_nan()
+    }
+
     /// Returns a point as it is stored, by its index in the tree's order, rounded to `f64` in the world's frame.
     /// Queries use the unrounded point. The result is NaN if the point was removed.
     pub fn point(&self, index: usize) -> Point3<f64> {

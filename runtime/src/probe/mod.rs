@@ -7,6 +7,7 @@
 //! ```
 
 mod contacts;
+mod inside;
 mod law;
 mod lod;
 mod posture;
@@ -15,6 +16,7 @@ mod stiffness;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
+pub use inside::{InsidePoint, InsideQuery, ToolEnvelope};
 pub use law::{Law, Weights};
 pub use lod::{BudgetError, LodProbe, LodWrench};
 pub use posture::{DeepestPoint, Posture};

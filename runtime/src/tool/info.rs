@@ -119,6 +119,13 @@ impl ToolInfo {
         })
     }
 
+    /// Returns an upper bound on the distance of the tool's points from its tip, with lengths in `unit`: it bounds the
+    /// travel of the points when the tool turns about the tip.
+    pub fn max_distance_from_tip(&self, unit: Unit) -> f64 {
+        let Interval { low, high } = self.reach();
+        low.abs().max(high.abs()).hypot(self.radius()) * self.unit.factor_to(unit)
+    }
+
     /// Returns an upper bound on the tool's radius about the axis.
     pub fn radius(&self) -> f64 {
         self.envelope.iter().fold(0.0, |radius, slab| radius.max(slab.radius))

@@ -340,6 +340,7 @@ fn the_public_interfaces_are_as_kept() {
         ("runtime", "touchoff"),
         ("haptics", "touchoff_haptics"),
         ("postures", "touchoff_postures"),
+        ("verify", "touchoff_verify"),
         ("import", "touchoff_import"),
     ] {
         insta::assert_snapshot!(name, interface(folder, name));

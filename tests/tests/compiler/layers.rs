@@ -43,10 +43,7 @@ const RUNTIME: &[&str] = &[
     "mesh",
     "pose",
     "motion",
-    "machine",
-    "gcode",
     "tool",
-    "reach",
     "bvh",
     "cloud",
     "point_bvh",
@@ -55,10 +52,7 @@ const RUNTIME: &[&str] = &[
     "storage",
     "scenes",
     "scene",
-    "program",
     "certify",
-    "stock",
-    "verify",
     "lib",
 ];
 

@@ -6,12 +6,12 @@ use std::fmt::Write;
 use std::time::Instant;
 use tools_library::BallEr16;
 use touchoff::certify::TriangleBvh;
-use touchoff::gcode::{ControlRules, ControlSetup};
-use touchoff::machine::Machine;
 use touchoff::mesh::shapes;
-use touchoff::verify::{MachineProgram, ToolSelection, Verifier};
 use touchoff::{Mesh, Unit};
 use touchoff_bench::page::Section;
+use touchoff_verify::gcode::{ControlRules, ControlSetup};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{MachineProgram, ToolSelection, Verifier};
 
 #[derive(Args)]
 pub(super) struct LongPrograms {

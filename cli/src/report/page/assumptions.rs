@@ -8,7 +8,7 @@ use crate::program::ignored_words;
 use crate::verify::CheckedProgram;
 use maud::{Markup, html};
 use touchoff::Unit;
-use touchoff::machine::Machine;
+use touchoff_verify::machine::Machine;
 
 pub(super) fn section(content: &Content<'_>) -> Markup {
     html! {

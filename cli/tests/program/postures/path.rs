@@ -79,7 +79,7 @@ fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
     };
     assert_eq!(free["points_left_out"].as_u64(), Some(sum(&free)), "{free}");
     let lowest = |text: &str| {
-        let program = touchoff::Program::parse(text, "words.apt").expect("a program");
+        let program = touchoff_verify::Program::parse(text, "words.apt").expect("a program");
         program.locations.iter().map(|location| location.pose.axis().z).fold(1.0, f64::min)
     };
     let limit = 30f64.to_radians().cos();
@@ -148,7 +148,7 @@ fn a_path_for_a_machine_is_proved_on_its_joints() {
     let across = |normal: &str, more: &[&str]| {
         object(&path_across(normal, &tube, &output, &[&words[..6], more].concat()))
     };
-    let limited = include_str!("../../../../runtime/src/machine/machines/a-c-trunnion.toml")
+    let limited = include_str!("../../../../verify/src/machine/machines/a-c-trunnion.toml")
         .replace("letter = \"C\"", "letter = \"C\"\nlimits = [-190, 190]");
     let machine = tube.bench.write("limited.toml", &limited);
     let limited = across("0,0,1", &["--machine", &machine, "--max-tilt", "90"]);

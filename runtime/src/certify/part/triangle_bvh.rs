@@ -165,6 +165,11 @@ impl TriangleBvh {
         &self.ids
     }
 
+    /// Iterates over the corners of the triangles in the order of the tree, in the part's frame and unit.
+    pub fn corners(&self) -> impl Iterator<Item = [Point3<f64>; 3]> {
+        self.corners.iter().map(|corners| corners.map(Point3::from))
+    }
+
     /// Visits the triangles in those boxes that the visitor enters, by boxes of boxes.
     pub fn visit(&self, visitor: &mut impl BoxVisitor) {
         let mut stack = vec![(0, 0)];

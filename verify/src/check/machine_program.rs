@@ -1,0 +1,531 @@
+//! G-code programs on a machine: the motions of the tool relative to the part, or to a body of the machine.
+//!
+//! ```text
+//! text ──interpreter──▶ steps, program coordinates ──work offset, tool length──▶ joints ──chain──▶ moves
+//! ```
+//!
+//! The frame of the part is that of one work offset, when the rotary axes stand at its values. A motion whose start or
+//! end only the machine knows is not checked, and listed.
+
+use super::moves::{JointPath, Move, MovePath, RapidBox};
+use crate::gcode::{
+    Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, ProgramNote, Rule,
+    Spindle, Step, WorkOffset,
+};
+use crate::machine::{
+    JointError, JointMotion, Letter, LimitViolation, Machine, Setup, SingularPass,
+};
+use nalgebra::Vector3;
+use resolve::{AnyRapid, Resolved, Resolver};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use touchoff::Motion;
+use touchoff::Unit;
+
+mod fault;
+mod gap;
+mod path;
+mod rapid;
+mod resolve;
+
+pub use fault::{MachineProgramError, StepFault};
+pub use gap::Gap;
+pub use resolve::UnknownCause;
+
+/// Largest number of readings of a program.
+pub const MAX_READINGS: usize = 8;
+
+/// A G-code program on a machine, as one control reads it.
+#[derive(Clone, Debug)]
+pub struct MachineProgram {
+    file: String,
+    text: Arc<str>,
+    machine: Arc<Machine>,
+    setup: ControlSetup,
+    assumed: ControlRules,
+    /// Set if the program has no length offset at all, and a tool whose length is not stated.
+    off_is_tip: bool,
+    /// The register of the first length offset before a tool is named: the tool in the spindle.
+    unnamed_tool: Option<u32>,
+    summary: MachineSummary,
+}
+
+/// Summary of a program on its machine.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MachineSummary {
+    /// The tools in the order of their first motion that is checked.
+    pub tools: Vec<ToolUse>,
+    /// Tools with motions of which none is checked, each with the line of its first. The tool that is in the spindle before
+    /// the first change is not among them.
+    pub unchecked_tools: Vec<(u32, usize)>,
+    /// Motions that are not checked, by their cause.
+    pub unknown: Vec<UnknownMotions>,
+    /// The line of the first motion in rapid traverse of several axes at rates that are not known.
+    pub any_rapid: Option<usize>,
+    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
+    pub any_rotary_rapid: Option<usize>,
+    /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
+    pub spindle: Vec<(usize, Option<u32>, Spindle)>,
+    /// The line of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
+    /// positions are taken as those of the tip.
+    pub no_offset: Option<usize>,
+    /// The line of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
+    /// a tool whose length is not stated.
+    pub tcp_without_length: Option<usize>,
+    /// The work offsets of motions at feed rate, each with the line of the first.
+    pub work_offsets: Vec<(WorkOffset, usize)>,
+    /// Rules of the control on which the program depends and which are not stated, each with the first line.
+    pub open_rules: BTreeMap<Rule, usize>,
+    /// Feed motions with the length offset of another tool: the line of the first, the register and the tool.
+    pub other_lengths: Vec<(usize, u32, u32)>,
+    /// Axes that leave their limits, each with its line: the worst per axis and limit. Those of X, Y and Z are checked if the
+    /// origin of the part on the machine is given.
+    pub limits: Vec<(usize, LimitViolation)>,
+    /// Set if the machine states limits of X, Y or Z that are not checked.
+    pub limits_unchecked: bool,
+    /// Singular passes, each with its line.
+    pub singular: Vec<(usize, SingularPass)>,
+    /// Notes of the interpreter.
+    pub notes: Vec<ProgramNote>,
+}
+
+/// Motions that are not checked for one cause.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UnknownMotions {
+    /// The cause.
+    pub cause: UnknownCause,
+    /// Their number.
+    pub count: usize,
+    /// The line of the first.
+    pub line: usize,
+    /// The line of the first that allows no verdict: one in feed, or one between positions that the program states. The way
+    /// to its first position is the operator's, and that to the reference position the machine's.
+    pub open_line: Option<usize>,
+}
+
+/// A tool's use in a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ToolUse {
+    /// The tool's number; `None` before the first tool change.
+    pub number: Option<u32>,
+    /// Line of its first motion.
+    pub line: usize,
+    /// Number of motions.
+    pub motions: usize,
+}
+
+/// A selection of the motions of a program by their tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToolSelection {
+    /// All motions.
+    All,
+    /// Those with one tool in the spindle; `None`: those before the first tool change.
+    Number(Option<u32>),
+}
+
+impl ToolSelection {
+    /// Returns whether the selection has the motions of a tool.
+    pub fn contains(self, tool: Option<u32>) -> bool {
+        match self {
+            ToolSelection::All => true,
+            ToolSelection::Number(number) => number == tool,
+        }
+    }
+}
+
+impl MachineProgram {
+    /// Interprets a program on a machine. `name` is the program's name in errors.
+    ///
+    /// `setup` states work offsets, tool lengths, and the rules of the control. The frame of the part is that of G54. If its
+    /// origin on the machine is not given, the machine's home and the limits of X, Y and Z have no part, and the table may
+    /// turn under tool centre point control only. If the length of a tool is not given, the tip is where the program says
+    /// under a length offset.
+    ///
+    /// Of a rule that is not stated, M6 moves the axes where only the machine knows, axes in rapid traverse move at any
+    /// rates, and the first choice is made otherwise. [`MachineProgram::readings`] makes the others too.
+    ///
+    /// # Errors
+    /// If a line stops the interpreter, or if a motion is not possible on the machine.
+    pub fn new(
+        name: &str,
+        text: String,
+        machine: Machine,
+        setup: ControlSetup,
+    ) -> Result<MachineProgram, MachineProgramError> {
+        let read = (Arc::from(text), Arc::new(machine));
+        MachineProgram::reading(name, read, setup, ControlRules::default())
+    }
+
+    /// Interprets a program in every way in which a control does, as far as its rules are not stated: a program per
+    /// combination of the choices on which it depends. A result holds if it holds for all.
+    ///
+    /// # Errors
+    /// As for [`MachineProgram::new`], and if there are more than [`MAX_READINGS`].
+    pub fn readings(
+        name: &str,
+        text: String,
+        machine: Machine,
+        setup: &ControlSetup,
+    ) -> Result<Vec<MachineProgram>, MachineProgramError> {
+        let (text, machine): (Arc<str>, _) = (Arc::from(text), Arc::new(machine));
+        let mut branched: BTreeMap<Rule, usize> = BTreeMap::new();
+        loop {
+            let mut assumed = vec![ControlRules::default()];
+            for rule in branched.keys() {
+                let choices =
+                    |rules: ControlRules| rule.choices().map(move |c| rules.clone().with(*rule, c));
+                assumed = assumed.into_iter().flat_map(choices).collect();
+            }
+            if assumed.len() > MAX_READINGS {
+                let rules =
+                    branched.iter().map(|(rule, line)| format!("`{}` (line {line})", rule.key()));
+                let rules = rules.collect::<Vec<_>>().join(", ");
+                return Err(MachineProgramError::Readings { file: name.to_owned(), rules });
+            }
+            let read = |assumed: ControlRules| {
+                let read = (Arc::clone(&text), Arc::clone(&machine));
+                MachineProgram::reading(name, read, setup.clone(), assumed)
+            };
+            let programs = assumed.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+            let known = branched.len();
+            for program in &programs {
+                let open = program.summary.open_rules.iter().filter(|(rule, _)| rule.is_branched());
+                for (rule, line) in open {
+                    branched.entry(*rule).or_insert(*line);
+                }
+            }
+            if branched.len() == known {
+                return Ok(programs);
+            }
+        }
+    }
+
+    /// Interprets a program under the rules of the setup and those that are assumed besides.
+    fn reading(
+        name: &str,
+        (text, machine): (Arc<str>, Arc<Machine>),
+        mut setup: ControlSetup,
+        assumed: ControlRules,
+    ) -> Result<MachineProgram, MachineProgramError> {
+        let stated = setup.rules.clone();
+        setup.rules = stated.clone().and(&assumed);
+        if setup.rules.get(Rule::ToolChange).is_none() {
+            setup.rules = setup.rules.with(Rule::ToolChange, Choice::Moves);
+        }
+        setup.axes = Letter::ALL.map(|letter| machine.axis(letter).is_some());
+        setup.tool_change = machine.tool_change();
+        let is_placed = setup.work_offsets[0].is_some();
+        // The position of the machine before the program is unknown; axes that it lacks are at 0.
+        setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
+        if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
+            setup.home = Some(machine.home().map(Option::unwrap_or_default));
+        }
+        let file = name.to_owned();
+        let summary = MachineSummary::default();
+        let (off_is_tip, unnamed_tool) = (false, None);
+        let mut program = MachineProgram {
+            file,
+            text,
+            machine,
+            setup,
+            assumed,
+            off_is_tip,
+            unnamed_tool,
+            summary,
+        };
+        let mut result = program.run(is_placed);
+        if let Ok((summary, offsets)) = &result {
+            let is_off =
+                |unknown: &UnknownMotions| matches!(unknown.cause, UnknownCause::NoOffset { .. });
+            program.off_is_tip = !offsets.any && summary.unknown.iter().any(is_off);
+            program.unnamed_tool = offsets.unnamed;
+            if program.off_is_tip || program.unnamed_tool.is_some() {
+                result = program.run(is_placed);
+            }
+        }
+        let result = result.map(|(summary, _)| summary);
+        program.summary = result.map_err(|error| match program.assumed {
+            ref assumed if *assumed == ControlRules::default() => error,
+            ref assumed => {
+                MachineProgramError::Under { error: Box::new(error), rules: assumed.to_string() }
+            }
+        })?;
+        let is_open =
+            |rule: &Rule| stated.get(*rule).is_none() && program.assumed.get(*rule).is_none();
+        program.summary.open_rules.retain(|rule, _| is_open(rule));
+        Ok(program)
+    }
+
+    /// Returns the rules that this reading assumes, since they are not stated.
+    pub fn assumed(&self) -> &ControlRules {
+        &self.assumed
+    }
+
+    /// Returns the summary of the program on its machine.
+    pub fn summary(&self) -> &MachineSummary {
+        &self.summary
+    }
+
+    /// Returns the machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Returns the motions with one tool relative to a link of the table (`None` for the part), in a unit of length. Links
+    /// are numbered as by [`Chain::relative_to`](crate::machine::Chain::relative_to). The frame of a link is that of the
+    /// part while all axes, X, Y and Z included, are at 0.
+    ///
+    /// A motion of which only the end is known is given as a rest at that end.
+    ///
+    /// # Errors
+    /// [`JointError::NoLink`] if the machine has no such link.
+    pub fn moves(
+        &self,
+        tool: ToolSelection,
+        link: Option<usize>,
+        unit: Unit,
+    ) -> Result<impl Iterator<Item = Move> + '_, JointError> {
+        if let Some(link) = link {
+            self.machine.chain(&Setup::default())?.relative_to(link)?;
+        }
+        let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
+        let frame = MoveFrame { link, origin: Vector3::new(x, y, z), unit };
+        let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
+        let mut resolver =
+            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
+        let mut from = None;
+        // The first run has read and resolved every step.
+        let steps = steps.map(|step| step.expect("a step that was read before"));
+        Ok(steps.flat_map(move |step| {
+            let resolved = resolver.resolve(&step).expect("a step that was resolved before");
+            if !tool.contains(step.state.tool) {
+                from = None;
+                return Vec::new();
+            }
+            let moves = moves_of(&step, resolved, frame, from);
+            if !moves.is_empty() {
+                from = Some(step.line);
+            }
+            moves
+        }))
+    }
+
+    fn error(&self, error: GcodeError) -> MachineProgramError {
+        let GcodeError { line, fault } = error;
+        MachineProgramError::Gcode { file: self.file.clone(), line, fault }
+    }
+
+    /// Runs the program once. `is_placed` is set if the origin of the part is known.
+    fn run(&self, is_placed: bool) -> Result<(MachineSummary, LengthOffsets), MachineProgramError> {
+        let mut offsets = LengthOffsets::default();
+        let mut summary = MachineSummary::default();
+        let mut uses: BTreeMap<Option<u32>, usize> = BTreeMap::new();
+        let mut seen: Vec<(Option<u32>, usize)> = Vec::new();
+        let mut is_last_singular = false;
+        let mut interpreter =
+            Interpreter::new(&self.text, &self.setup).map_err(|error| self.error(error))?;
+        let mut resolver =
+            Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
+        for step in interpreter.by_ref() {
+            let step = step.map_err(|error| self.error(error))?;
+            let resolved = resolver.resolve(&step).map_err(|fault| MachineProgramError::Step {
+                file: self.file.clone(),
+                line: step.line,
+                fault,
+            })?;
+            let number = step.state.tool;
+            if !matches!(resolved, Resolved::ToolChange)
+                && !seen.iter().any(|(tool, _)| *tool == number)
+            {
+                seen.push((number, step.line));
+            }
+            if let LengthOffset::On { register, .. } = step.state.length {
+                offsets.any = true;
+                if number.is_none() {
+                    offsets.unnamed.get_or_insert(register);
+                }
+            }
+            let is_known = number.is_some_and(|tool| self.setup.lengths.contains_key(&tool));
+            if step.state.length == LengthOffset::Off
+                && step.state.turns_with_workpiece()
+                && !is_known
+            {
+                summary.tcp_without_length.get_or_insert(step.line);
+            }
+            if !step.rapid {
+                summary.add_feed(&step, self.off_is_tip);
+            }
+            let motions = match resolved {
+                Resolved::ToolChange => continue,
+                Resolved::Unknown(cause) | Resolved::Arrival(_, cause) => {
+                    summary.add_unknown(&step, cause);
+                    continue;
+                }
+                Resolved::Motions(motions) => motions,
+                Resolved::AnyRapid(any) => {
+                    let AnyRapid { straight, edges } = *any;
+                    let found = match edges {
+                        Some(_) => &mut summary.any_rapid,
+                        None => &mut summary.any_rotary_rapid,
+                    };
+                    found.get_or_insert(step.line);
+                    vec![(straight, 0.0)]
+                }
+            };
+            let index = *uses.entry(number).or_insert_with(|| {
+                summary.tools.push(ToolUse { number, line: step.line, motions: 0 });
+                summary.tools.len() - 1
+            });
+            summary.tools[index].motions += 1;
+            let other = resolver.other_length(&step.state).filter(|_| !step.rapid);
+            if let Some((register, tool)) = other
+                && !summary.other_lengths.iter().any(|known| (known.1, known.2) == (register, tool))
+            {
+                summary.other_lengths.push((step.line, register, tool));
+            }
+            for (motion, _) in &motions {
+                for violation in motion.check_limits() {
+                    add_violation(&mut summary.limits, step.line, violation);
+                }
+                let pass = motion.singular_pass();
+                if let (false, Some(pass)) = (is_last_singular, pass) {
+                    summary.singular.push((step.line, pass));
+                }
+                is_last_singular = pass.is_some();
+            }
+        }
+        summary.notes = interpreter.notes();
+        summary.open_rules.clone_from(interpreter.asked());
+        summary.open_rules.extend(resolver.asked);
+        let unchecked = seen.into_iter().filter(|(tool, _)| !uses.contains_key(tool));
+        summary.unchecked_tools =
+            unchecked.filter_map(|(tool, line)| Some((tool?, line))).collect();
+        let mut linear = self.machine.axes().iter().filter(|axis| !axis.letter.is_rotary());
+        summary.limits_unchecked = !is_placed && linear.any(|axis| axis.limits.is_some());
+        Ok((summary, offsets))
+    }
+}
+
+/// The length offsets of a program.
+#[derive(Clone, Copy, Default)]
+struct LengthOffsets {
+    /// Set if one is in force in some step.
+    any: bool,
+    /// The register of the first that is in force before a tool is named.
+    unnamed: Option<u32>,
+}
+
+impl MachineSummary {
+    /// Notes what a motion at feed rate needs.
+    fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
+        let tool = step.state.tool;
+        if step.spindle != Spindle::Tapping
+            && !self
+                .spindle
+                .iter()
+                .any(|(_, known, spindle)| (*known, *spindle) == (tool, step.spindle))
+        {
+            self.spindle.push((step.line, tool, step.spindle));
+        }
+        if (tool.is_none() || off_is_tip) && step.state.length == LengthOffset::Off {
+            self.no_offset.get_or_insert(step.line);
+        }
+        let offset = step.state.work_offset;
+        if !self.work_offsets.iter().any(|(known, _)| *known == offset) {
+            self.work_offsets.push((offset, step.line));
+        }
+    }
+
+    fn add_unknown(&mut self, step: &Step, cause: UnknownCause) {
+        let position = self.unknown.iter().position(|known| known.cause == cause);
+        let position = position.unwrap_or_else(|| {
+            let motions = UnknownMotions { cause, count: 0, line: step.line, open_line: None };
+            self.unknown.push(motions);
+            self.unknown.len() - 1
+        });
+        let unknown = &mut self.unknown[position];
+        unknown.count += 1;
+        let is_said = matches!(cause, UnknownCause::Start | UnknownCause::Home);
+        if !step.rapid || !is_said {
+            unknown.open_line.get_or_insert(step.line);
+        }
+    }
+}
+
+/// Adds a violation, or keeps the worse one of the same axis and limit.
+fn add_violation(found: &mut Vec<(usize, LimitViolation)>, line: usize, violation: LimitViolation) {
+    let same = |(_, known): &&mut (usize, LimitViolation)| {
+        known.letter == violation.letter && known.limit == violation.limit
+    };
+    let excess = |violation: &LimitViolation| (violation.value - violation.limit).abs();
+    match found.iter_mut().find(same) {
+        None => found.push((line, violation)),
+        Some(known) if excess(&violation) > excess(&known.1) => *known = (line, violation),
+        Some(_) => (),
+    }
+}
+
+/// The frame of moves.
+#[derive(Clone, Copy)]
+struct MoveFrame {
+    /// The link of the table; `None` for the part.
+    link: Option<usize>,
+    /// Origin of the part in machine coordinates, in mm.
+    origin: Vector3<f64>,
+    unit: Unit,
+}
+
+/// Returns the moves of a step.
+fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
+    let path = |motion: JointMotion, error: f64| match frame.link {
+        Some(link) => {
+            let related = motion.relative_to(link).expect("a link of the machine");
+            JointPath::new(related, frame.unit, error).relative_to(frame.origin)
+        }
+        None => JointPath::new(motion, frame.unit, error),
+    };
+    let as_move = |from: Option<usize>, path: MovePath| Move {
+        line: step.line,
+        from,
+        rapid: step.rapid,
+        tool: step.state.tool,
+        work_offset: Some(step.state.work_offset),
+        path,
+    };
+    let rest = |motion: JointMotion, at: f64| {
+        let pose = path(motion, 0.0).pose(at);
+        Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
+    };
+    match resolved {
+        Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
+        Resolved::AnyRapid(any) => {
+            let AnyRapid { straight, edges } = *any;
+            let Some(edges) = edges else {
+                return moves_of(step, Resolved::Motions(vec![(straight, 0.0)]), frame, from);
+            };
+            let start = from.is_none().then(|| rest(straight, 0.0)).flatten();
+            let start = start.map(|path| as_move(None, path));
+            let corner = path(straight, 0.0).pose(0.0);
+            let way = |edge: JointMotion| path(edge, 0.0).pose(1.0).tip() - corner.tip();
+            let ways = edges.into_iter().map(way).collect();
+            let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
+            start.into_iter().chain([as_move(Some(from.unwrap_or(step.line)), all)]).collect()
+        }
+        Resolved::Arrival(motion, _) => {
+            rest(*motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
+        }
+        Resolved::Motions(motions) => {
+            let start = motions.first().filter(|_| from.is_none());
+            let start = start.and_then(|(motion, _)| rest(*motion, 0.0));
+            let start = start.map(|path| as_move(None, path));
+            let motions = motions.into_iter().map(|(motion, error)| {
+                let path = MovePath::Joints(Box::new(path(motion, error)));
+                as_move(Some(from.unwrap_or(step.line)), path)
+            });
+            start.into_iter().chain(motions).collect()
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! Verification of a program against the finished part: it finds motions in which the tool is deeper in the
+//! part than allowed.
+//!
+//! ```text
+//! program ──two locations──▶ move ──free space──▶ clear
+//! G-code ──machine──────────▶ move     └─check_motion──▶ clear
+//!                                          └──────▶ each surface ──motion_depth──▶ finding
+//! ```
+//!
+//! Every two consecutive positions form a [`Move`], which is checked over its whole length, so that a gouge between
+//! two points is found. A motion that keeps within a region that is known to be free touches nothing. If a motion is
+//! not proved clear, each surface of the tool is queried separately, so that a flute that gouges does not hide a shank
+//! that rubs. There is one finding per motion and surface.
+//!
+//! **Guarantees.** A motion without a finding is nowhere deeper than allowed by more than the
+//! [resolution](Verifier::with_resolution). A finding is deeper than that at the pose it names: its interval
+//! contains the depth there, and its `max_depth` bounds the depth over the whole motion. The depth is that of the
+//! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`](touchoff::Motion) defines
+//! them, rapid ones too.
+//!
+//! **Joint motions.** A motion in which a control interpolates the axes of a machine is split until each piece deviates
+//! from a [`Motion`](touchoff::Motion) by at most a quarter of the resolution, or until nothing is near. Depth changes by
+//! at most the deviation, since its Lipschitz constant is 1, and the allowances are lowered by that. A point within the
+//! deviation of the border between two surfaces may count for either.
+
+mod approach;
+mod checker;
+mod finding;
+mod group;
+mod machine_program;
+mod moves;
+mod remedy;
+
+pub use approach::Approach;
+pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
+pub use group::FindingGroup;
+pub use machine_program::{
+    Gap, MAX_READINGS, MachineProgram, MachineProgramError, MachineSummary, StepFault,
+    ToolSelection, ToolUse, UnknownCause, UnknownMotions,
+};
+pub use moves::{JointPath, Move, MovePath, RapidBox};
+pub use remedy::Tilt;
+
+use crate::program::Program;
+use approach::ApproachSearch;
+use checker::Checker;
+use std::fmt;
+use touchoff::SurfaceId;
+use touchoff::certify::{Certifier, TriangleBvh};
+use touchoff::tool::{Tool, ToolInfo};
+
+/// Checks programs of a tool against a part.
+///
+/// Lengths are in the part's unit. All surfaces may be as deep as the tolerance, unless another depth is
+/// [allowed](Verifier::with_allowance). In rapid traverse nothing may be deeper than the tolerance.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use touchoff::certify::TriangleBvh;
+/// use touchoff_verify::{FindingKind, Verifier};
+/// use touchoff::{Interval, Unit, mesh::shapes};
+/// use touchoff_verify::Program;
+///
+/// touchoff::tool! {
+///     tool Ball "6 mm" {
+///         units mm;
+///         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+///         niceness cutting: 1;
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let (low, high) = (Point3::new(-5., -5., -9.), Point3::new(5., 5., 0.));
+/// let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+/// // Both points are clear of the block; the way between them is not.
+/// let program = Program::parse("-20,0,-0.5,0,0,1\n20,0,-0.5,0,0,1\n", "across.csv")?;
+/// let report = Verifier::new(&block, &Ball)?.with_tolerance(0.01)?.check(&program)?;
+/// let [finding] = &report.findings[..] else { panic!("{report:?}") };
+/// assert_eq!((finding.from, finding.line), (Some(1), 2));
+/// assert!(matches!(finding.kind, FindingKind::Deep { depth: Interval { low, .. }, .. } if low > 0.499));
+/// # Ok(()) }
+/// ```
+pub struct Verifier<'a> {
+    bvh: &'a TriangleBvh,
+    tool: &'a dyn Tool,
+    tolerance: f64,
+    resolution: f64,
+    /// Allowances by the surfaces' indices in the tool's list; `None` where the tolerance applies.
+    allowed: Vec<Option<f64>>,
+    budget: u32,
+}
+
+impl fmt::Debug for Verifier<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Verifier")
+            .field("tool", &self.tool.info().name)
+            .field("tolerance", &self.tolerance)
+            .field("allowed", &self.allowed)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The default resolution in mm, a micrometre: meshes seldom represent their geometry as closely.
+const RESOLUTION: f64 = 1e-3;
+
+/// Number of consecutive motions that share certifiers. It makes results independent of the number of cores.
+const MOVES_PER_TASK: usize = 32;
+
+/// Number of motions that are held in memory at once.
+const MOVES_PER_BATCH: usize = 1 << 13;
+
+impl<'a> Verifier<'a> {
+    /// Creates a verifier of a tool at a part, with a tolerance of 0.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub fn new(bvh: &'a TriangleBvh, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
+        let info = tool.info();
+        Certifier::new(bvh, tool)?;
+        Ok(Verifier {
+            bvh,
+            tool,
+            tolerance: 0.0,
+            resolution: RESOLUTION / bvh.unit().millimetres(),
+            allowed: vec![None; info.surfaces.len()],
+            budget: 1 << 20,
+        })
+    }
+
+    /// Sets the tolerance: the depth, 0 or more, of any surface without an allowance of its own.
+    ///
+    /// # Errors
+    /// If the tolerance is negative, infinite or NaN.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Verifier<'a>, VerifyError> {
+        if !(0.0..f64::INFINITY).contains(&tolerance) {
+            return Err(VerifyError::Tolerance { tolerance });
+        }
+        self.tolerance = tolerance;
+        Ok(self)
+    }
+
+    /// Sets the depth that a surface is allowed where it is the nearest: infinity for any depth, below 0 a
+    /// margin that it has to keep from the whole part.
+    ///
+    /// # Errors
+    /// If there is no such surface, or it cannot have this allowance.
+    pub fn with_allowance(
+        mut self,
+        surface: &str,
+        allowed: f64,
+    ) -> Result<Verifier<'a>, VerifyError> {
+        // Accept exactly what a certifier accepts.
+        Certifier::new(self.bvh, self.tool)?.with_allowance(surface, allowed)?;
+        if let Some(SurfaceId(index)) = self.tool.info().surface_named(surface) {
+            self.allowed[index] = Some(allowed);
+        }
+        Ok(self)
+    }
+
+    /// Sets the resolution: an excess of depth up to this length may or may not be found. A resolution below
+    /// what rounding adds is taken as that. The default is 0.001 mm.
+    ///
+    /// # Errors
+    /// If the resolution is negative, infinite or NaN.
+    pub fn with_resolution(mut self, resolution: f64) -> Result<Verifier<'a>, VerifyError> {
+        if !(0.0..f64::INFINITY).contains(&resolution) {
+            return Err(VerifyError::Tolerance { tolerance: resolution });
+        }
+        self.resolution = resolution;
+        Ok(self)
+    }
+
+    /// Sets the [budget](Certifier::with_budget) of each query.
+    #[must_use]
+    pub fn with_budget(mut self, budget: u32) -> Verifier<'a> {
+        self.budget = budget;
+        self
+    }
+
+    /// Returns the tool's info: the surface of a finding is an index in its list.
+    pub fn info(&self) -> &ToolInfo {
+        self.tool.info()
+    }
+
+    /// Checks a program: its first cutter location, and every motion from one cutter location to the next. With
+    /// the feature `parallel` this uses all cores; the findings are the same, in the program's order.
+    ///
+    /// # Errors
+    /// If the program states another unit than the part's, or another cutter than the tool, or if its poses
+    /// have no spin and the tool is a solid without an axis.
+    pub fn check(&self, program: &Program) -> Result<VerifyReport, VerifyError> {
+        self.check_with_progress(program, &|_| ())
+    }
+
+    /// Checks a program like [`Verifier::check`]. Calls `progress` with the number of cutter locations checked since
+    /// the last call, from any thread and in any order; the numbers add up to all cutter locations.
+    ///
+    /// # Errors
+    /// As for [`Verifier::check`].
+    pub fn check_with_progress(
+        &self,
+        program: &Program,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<VerifyReport, VerifyError> {
+        program.check_unit(self.bvh.unit())?;
+        program.check_poses(self.tool.info())?;
+        program.check_cutter(self.tool.info(), self.bvh.unit())?;
+        let moves = Move::all(program, self.tool.info().symmetry);
+        self.check_moves(moves, progress)
+    }
+
+    /// Checks motions, of which only a bounded number is held in memory. The first is that to the first position, from
+    /// that position. `progress` is called as by [`Verifier::check_with_progress`].
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub fn check_moves(
+        &self,
+        moves: impl IntoIterator<Item = Move>,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<VerifyReport, VerifyError> {
+        let max_depths = self.max_depths()?;
+        let mut approach = ApproachSearch::new(self)?;
+        let mut moves = moves.into_iter();
+        let (mut findings, mut count, mut modes) = (Vec::new(), 0, [false, false]);
+        loop {
+            let batch: Vec<Move> = moves.by_ref().take(MOVES_PER_BATCH).collect();
+            if batch.is_empty() {
+                break;
+            }
+            let found = map_tasks(&batch, |first, moves| {
+                let mut checker = Checker::new(self, &max_depths)?;
+                let numbered = (count + first..).zip(moves);
+                let findings =
+                    numbered.flat_map(|(index, step)| checker.check(index, step)).collect();
+                progress(moves.len());
+                Ok::<Vec<Finding>, VerifyError>(findings)
+            });
+            let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
+            let found: Vec<Finding> = found.into_iter().flatten().collect();
+            approach.add(&batch, &found);
+            batch.iter().for_each(|step| modes[usize::from(step.rapid)] = true);
+            findings.extend(found);
+            count += batch.len();
+        }
+        Ok(VerifyReport {
+            moves: count,
+            motions: count.saturating_sub(1),
+            approach: approach.finish(),
+            findings,
+            inside_known: self.bvh.has_inside(),
+            unrestricted: count > 0 && !self.restricts(modes, &max_depths),
+        })
+    }
+
+    /// Returns the closest approach of motions, without a check of their depths.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub fn approach(&self, moves: impl IntoIterator<Item = Move>) -> Result<Approach, VerifyError> {
+        let mut approach = ApproachSearch::new(self)?;
+        moves.into_iter().for_each(|step| approach.add(&[step], &[]));
+        Ok(approach.finish())
+    }
+
+    /// Returns the greatest depth that each surface can have.
+    fn max_depths(&self) -> Result<Vec<f64>, VerifyError> {
+        let certifier = Certifier::new(self.bvh, self.tool)?;
+        let max_depth = |surface| {
+            let depth = certifier.max_possible_depth(surface).expect("a surface of the tool");
+            depth.unwrap_or(f64::INFINITY)
+        };
+        Ok((0..self.allowed.len()).map(SurfaceId).map(max_depth).collect())
+    }
+
+    /// Returns whether a surface of the tool could violate its limit or its margin in feed or in rapid traverse, as far
+    /// as `modes` has them in this order. `max_depths` has the greatest possible depth of each surface.
+    fn restricts(&self, modes: [bool; 2], max_depths: &[f64]) -> bool {
+        let modes = [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
+        modes
+            .flat_map(|rapid| self.limits(rapid).into_iter().zip(max_depths))
+            .any(|(limit, max_depth)| limit < 0.0 || limit + self.resolution < *max_depth)
+    }
+
+    /// Returns an upper bound on the distance of the tool's points from its tip, in the part's unit.
+    pub fn reach(&self) -> f64 {
+        self.tool.info().max_distance_from_tip(self.bvh.unit())
+    }
+
+    /// Returns a bound on the change of depth per length. Without a profile it is that of the depth function.
+    fn lipschitz(&self) -> f64 {
+        self.tool.info().depth.lipschitz.unwrap_or(1.0).max(1.0)
+    }
+
+    /// Returns the depth that each surface is allowed.
+    fn limits(&self, rapid: bool) -> Vec<f64> {
+        let limit = |allowed: &Option<f64>| {
+            let allowed = allowed.unwrap_or(self.tolerance);
+            if rapid { allowed.min(self.tolerance) } else { allowed }
+        };
+        self.allowed.iter().map(limit).collect()
+    }
+}
+
+/// Applies a function to consecutive moves that share certifiers, with the feature `parallel` on all cores. It is given the index
+/// of the first.
+fn map_tasks<R: Send>(moves: &[Move], map: impl Fn(usize, &[Move]) -> R + Sync) -> Vec<R> {
+    let task = |(task, moves): (usize, &[Move])| map(task * MOVES_PER_TASK, moves);
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        moves.par_chunks(MOVES_PER_TASK).enumerate().map(task).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        moves.chunks(MOVES_PER_TASK).enumerate().map(task).collect()
+    }
+}

@@ -1,0 +1,270 @@
+//! The motions of a program, each with its place in the file.
+
+use crate::gcode::WorkOffset;
+use crate::machine::JointMotion;
+use crate::program::{CutterLocation, Program};
+use nalgebra::{Point3, Vector3};
+use std::iter;
+use touchoff::Pose;
+use touchoff::Unit;
+use touchoff::tool::{Symmetry, ToolInfo};
+use touchoff::{Motion, MotionError};
+
+/// A motion of a program.
+#[derive(Clone, Debug)]
+pub struct Move {
+    /// Line of the block or cutter location at which the motion ends.
+    pub line: usize,
+    /// Line at which it begins; `None` for the first position, which is checked by itself.
+    pub from: Option<usize>,
+    /// Set in rapid traverse.
+    pub rapid: bool,
+    /// Number of the tool in the spindle, if the program states it.
+    pub tool: Option<u32>,
+    /// The work offset, in a program on a machine.
+    pub work_offset: Option<WorkOffset>,
+    /// The path of the tool, in the frame and unit of the part.
+    pub path: MovePath,
+}
+
+/// The path of the tool during a motion.
+#[derive(Clone, Debug)]
+pub enum MovePath {
+    /// The tip moves on a straight line, and the axis turns at constant speed.
+    Straight(Motion),
+    /// The control interpolates the axes of a machine.
+    Joints(Box<JointPath>),
+    /// Each axis moves at a rate that is not known.
+    Box(Box<RapidBox>),
+    /// The rotation is ambiguous. Only the end is known, as a motion of length 0.
+    Ambiguous(MotionError, Motion),
+}
+
+/// The poses of a tool that moves without turning from one position to another, on any path on which each axis moves at
+/// a constant rate until it arrives: those of a box, which the ways of the axes span.
+#[derive(Clone, Debug)]
+pub struct RapidBox {
+    start: Pose,
+    /// The way of each axis, in the frame and unit of the part. They are orthogonal.
+    edges: Vec<Vector3<f64>>,
+}
+
+impl RapidBox {
+    /// Creates the box at a pose with the ways of up to three axes, which are orthogonal.
+    pub fn new(start: Pose, edges: Vec<Vector3<f64>>) -> RapidBox {
+        RapidBox { start, edges }
+    }
+
+    fn at(&self, tip: Point3<f64>) -> Pose {
+        Pose::from_computed(*self.start.rotation(), tip)
+    }
+
+    /// Returns the pose at a fraction of every way.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        self.at(self.start.tip() + fraction * self.edges.iter().sum::<Vector3<f64>>())
+    }
+
+    /// Returns an upper bound on the distance of the box's poses from that in its middle, without rounding.
+    pub(super) fn radius(&self) -> f64 {
+        0.5 * self.edges.iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
+    }
+
+    /// Returns both halves of the box, divided across its longest way.
+    pub(super) fn halves(&self) -> [RapidBox; 2] {
+        let mut half = self.clone();
+        let longest =
+            half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
+        let Some(longest) = longest else { return [half.clone(), half] };
+        *longest *= 0.5;
+        let middle = self.start.tip() + *longest;
+        [half.clone(), RapidBox { start: self.at(middle), ..half }]
+    }
+}
+
+/// A joint motion in the unit of the part.
+#[derive(Clone, Debug)]
+pub struct JointPath {
+    motion: JointMotion,
+    /// Units of the part per millimetre.
+    scale: f64,
+    /// Bound on the distance of the motion from the one that the control makes, in millimetres.
+    error: f64,
+    /// Origin of the frame of poses, in that of the motion and in millimetres.
+    origin: Vector3<f64>,
+}
+
+impl JointPath {
+    /// Creates the path of a joint motion that differs from that of the control by at most `error`, in millimetres.
+    pub fn new(motion: JointMotion, unit: Unit, error: f64) -> JointPath {
+        let (scale, origin) = (Unit::Millimetre.factor_to(unit), Vector3::zeros());
+        JointPath { motion, scale, error, origin }
+    }
+
+    /// Returns the path relative to an origin, in millimetres and the frame of the motion.
+    #[must_use]
+    pub fn relative_to(self, origin: Vector3<f64>) -> JointPath {
+        JointPath { origin, ..self }
+    }
+
+    /// Returns the pose at a fraction of the motion, from 0 to 1.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        let pose = self.motion.pose(fraction);
+        if self.scale == 1.0 && self.origin == Vector3::zeros() {
+            return pose;
+        }
+        Pose::from_computed(*pose.rotation(), (pose.tip() - self.origin) * self.scale)
+    }
+
+    /// Returns the part of the deviation that does not decrease with the length of a span: the error of the motion, and
+    /// rounding.
+    pub(super) fn deviation_floor(&self, reach: f64) -> f64 {
+        let rounding = self.motion.rounding();
+        let unscaled = rounding.tip + 2.0 * rounding.rotation * reach / self.scale;
+        let [from, to] = [0.0, 1.0].map(|at| self.scaled(unscaled, &self.pose(at).tip(), reach));
+        from.max(to)
+    }
+
+    /// Adds to a bound on the deviation, in millimetres, the error of the motion and the rounding of the coordinates.
+    fn scaled(&self, deviation: f64, tip: &Point3<f64>, reach: f64) -> f64 {
+        let size = tip.coords.norm() + reach + self.origin.norm() * self.scale;
+        let rounding = 2.0 * f64::EPSILON * size;
+        (deviation + self.error) * self.scale + rounding
+    }
+}
+
+impl Move {
+    /// Returns the motions of a program: the first cutter location by itself, then from each to the next.
+    ///
+    /// # Panics
+    /// As [`Move::between`].
+    pub fn all(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
+        let locations = &program.locations;
+        let before = iter::once(None).chain(locations.iter().map(Some));
+        before
+            .zip(locations)
+            .map(move |(from, to)| Move { tool: program.tool, ..Move::between(from, to, symmetry) })
+    }
+
+    /// Returns the motion from one cutter location to the next, or the first one by itself. A tool of revolution
+    /// turns about the common normal of both axes, a solid about one fixed axis.
+    ///
+    /// # Panics
+    /// Panics if a solid is given a pose without a spin ([`Program::check_poses`](crate::Program::check_poses)).
+    pub fn between(from: Option<&CutterLocation>, to: &CutterLocation, symmetry: Symmetry) -> Move {
+        let before = from.map_or(&to.pose, |from| &from.pose);
+        let path = match between(before, &to.pose, symmetry) {
+            Ok(motion) => MovePath::Straight(motion),
+            Err(error) => {
+                let rest = between(&to.pose, &to.pose, symmetry);
+                MovePath::Ambiguous(error, rest.expect("a pose with a spin, if the tool needs one"))
+            }
+        };
+        let from = from.map(|from| from.line);
+        Move { line: to.line, from, rapid: to.rapid, tool: None, work_offset: None, path }
+    }
+}
+
+impl MovePath {
+    /// Returns the pose at a fraction of the motion, from 0 to 1.
+    pub fn pose(&self, fraction: f64) -> Pose {
+        match self {
+            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => motion.pose(fraction),
+            MovePath::Joints(path) => path.pose(fraction),
+            MovePath::Box(path) => path.pose(fraction),
+        }
+    }
+
+    /// Returns an upper bound on the speed of any point of a tool, per unit of the motion's time, with lengths in `unit`.
+    pub fn max_speed(&self, tool: &ToolInfo, unit: Unit) -> f64 {
+        let reach = tool.max_distance_from_tip(unit);
+        match self {
+            MovePath::Straight(motion) | MovePath::Ambiguous(_, motion) => travel(motion, reach),
+            MovePath::Joints(path) => path.motion.max_speed(reach / path.scale) * path.scale,
+            MovePath::Box(path) => 2.0 * path.radius(),
+        }
+    }
+
+    /// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
+    pub(super) fn max_travel(&self, reach: f64, symmetry: Symmetry) -> f64 {
+        match self {
+            MovePath::Straight(motion) => travel(motion, reach),
+            MovePath::Joints(path) => span(path, [0.0, 1.0], reach, symmetry).max_travel,
+            MovePath::Box(path) => 2.0 * path.radius(),
+            MovePath::Ambiguous(..) => f64::INFINITY,
+        }
+    }
+}
+
+/// A span of a joint motion, approximated by a motion between its ends.
+pub(super) struct Span {
+    pub(super) motion: Result<Motion, MotionError>,
+    /// Bound on the distance between any point of the tool in the approximation and its true place at the same time.
+    pub(super) deviation: f64,
+    /// Upper bound on the travel of any point of the tool.
+    pub(super) max_travel: f64,
+}
+
+/// Approximates a span of a joint motion for the points within `reach` of the tip.
+///
+/// A tool of revolution may turn on a great circle or about one fixed axis, whichever is nearer to the truth: the first if
+/// the spin about the tool axis is most of the rotation, the second otherwise.
+pub(super) fn span(path: &JointPath, times: [f64; 2], reach: f64, symmetry: Symmetry) -> Span {
+    let [from, to] = times.map(|time| path.pose(time));
+    let unscaled = reach / path.scale;
+    let deviation = path.motion.deviation_with_spin(times[0], times[1], unscaled);
+    let mut span = Span::new(path, Motion::with_spin(&from, &to), deviation, (&from.tip(), reach));
+    if symmetry == Symmetry::Revolved {
+        let deviation = path.motion.deviation(times[0], times[1], unscaled);
+        let revolved = Span::new(path, Motion::new(&from, &to), deviation, (&from.tip(), reach));
+        let max_travel = span.max_travel.min(revolved.max_travel);
+        if span.motion.is_err() || revolved.deviation < span.deviation {
+            span = revolved;
+        }
+        span.max_travel = max_travel;
+    }
+    span
+}
+
+impl Span {
+    fn new(
+        path: &JointPath,
+        motion: Result<Motion, MotionError>,
+        deviation: f64,
+        (tip, reach): (&Point3<f64>, f64),
+    ) -> Span {
+        let deviation = path.scaled(deviation, tip, reach);
+        let max_travel = match &motion {
+            Ok(motion) => travel(motion, reach) + 2.0 * deviation,
+            Err(_) => f64::INFINITY,
+        };
+        Span { motion, deviation, max_travel }
+    }
+}
+
+/// Returns the motion between two poses: about the common normal of both axes for a tool of revolution, about one
+/// fixed axis for a solid.
+pub(super) fn between(from: &Pose, to: &Pose, symmetry: Symmetry) -> Result<Motion, MotionError> {
+    match symmetry {
+        Symmetry::Revolved => Motion::new(from, to),
+        Symmetry::Solid { .. } => Motion::with_spin(from, to),
+    }
+}
+
+/// Returns an upper bound on the travel of any point of the tool within `reach` of the tip.
+fn travel(motion: &Motion, reach: f64) -> f64 {
+    motion.displacement().norm() + motion.angle() * reach
+}
+
+/// Returns an upper bound on the distance between the places of any point of the tool within `reach` of the tip at
+/// two poses. The spin of a tool of revolution does not count.
+pub(super) fn displacement(from: &Pose, to: &Pose, reach: f64, symmetry: Symmetry) -> f64 {
+    // A rotation by an angle a moves a point at distance d by at most 2d sin(a/2). That is the chord between the axes
+    // for d = 1, and the Frobenius norm of the difference of the matrices is √2 times as large.
+    let chord = match symmetry {
+        Symmetry::Revolved => (to.axis() - from.axis()).norm(),
+        Symmetry::Solid { .. } => {
+            (to.rotation() - from.rotation()).norm() * std::f64::consts::FRAC_1_SQRT_2
+        }
+    };
+    (to.tip() - from.tip()).norm() + chord * reach
+}

@@ -1,0 +1,277 @@
+//! Canned cycles: drilling, tapping and boring along the normal of the plane.
+//!
+//! A cycle moves in rapid traverse over its hole, in rapid traverse to the plane R, at feed rate to its
+//! depth, and back: to R (G99), or to the level at which the first cycle of the series began (G98). Under
+//! G91, R is relative to that level and the depth to R. A [rule](Rule::CycleBelowR) of the control decides
+//! whether a tool that begins below R rises to it before it moves sideways.
+//!
+//! The retracts of G73 by an amount that the control holds are left out: they stay on the stroke of the
+//! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
+//! as zero.
+
+use super::block::Block;
+use super::code::Group;
+use super::motion::{AXES, Control};
+use super::rules::{Choice, Rule};
+use super::state::{ControlState, Position, Tcp};
+use super::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
+use std::sync::Arc;
+use touchoff::Unit;
+
+/// Words that stay in force from one cycle to the next, lengths in millimetres as given.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Cycle {
+    retract: f64,
+    depth: f64,
+    peck: Option<f64>,
+    /// Distance mode under which retract and depth were given.
+    incremental: bool,
+    /// Level at the start of the series.
+    initial: Option<f64>,
+    unit: Unit,
+    state: Arc<ControlState>,
+}
+
+/// Returns whether a level is below another.
+fn is_below(level: Option<f64>, other: Option<f64>) -> bool {
+    level.zip(other).is_some_and(|(level, other)| level < other)
+}
+
+/// The levels of a cycle along the normal. Unknown if they depend on an unknown position.
+#[derive(Clone, Copy)]
+struct Levels {
+    retract: Option<f64>,
+    depth: Option<f64>,
+    clear: Option<f64>,
+}
+
+impl Control {
+    /// Executes a canned cycle.
+    pub(super) fn canned_cycle(
+        &mut self,
+        block: &mut Block,
+        number: u32,
+    ) -> Result<(), GcodeFault> {
+        let word = format!("G{number}");
+        self.check_cycle(block, &word)?;
+        if self.modal.plane != Plane::Xy && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
+                remedy: "write G17 before, or state `dialect = \"rs274ngc\"` of the control",
+            });
+        }
+        if block.code_of(Group::Length).is_some() {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "its block changes the length offset, before or after its initial level is taken",
+                remedy: "write G43 or G49 in a block before",
+            });
+        }
+        if matches!(number, 74 | 84) && !self.can_tap(number) {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "the spindle does not turn into the thread, which some controls start themselves",
+                remedy: "write M3 before G84, M4 before G74, or M29 for rigid tapping",
+            });
+        }
+        self.check_feed(&word)?;
+        self.check_tilted(block)?;
+        self.check_position(block)?;
+        let normal = self.modal.plane.normal();
+        let cycle = self.cycle_words(block, number, &word)?;
+        let levels = self.levels(&cycle)?;
+        let repeats = self.repeats(block)?;
+        let strokes = match (number, cycle.peck, levels.retract.zip(levels.depth)) {
+            (83, Some(peck), Some((retract, depth))) => ((retract - depth) / peck).ceil().max(1.0),
+            _ => 1.0,
+        };
+        if f64::from(repeats) * (3.0 * strokes + 3.0) > MAX_CYCLE_STEPS as f64 {
+            return Err(GcodeFault::CycleTooLong);
+        }
+        let axes = self.take_axes(block);
+        // LinuxCNC compares the initial level, and not the present one, with R.
+        if repeats > 0
+            && is_below(cycle.initial, levels.retract)
+            && self.position[normal] != levels.retract
+            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
+        {
+            self.move_along(normal, true, levels.retract);
+        }
+        for _ in 0..repeats {
+            self.move_over(axes, levels);
+            if self.position[normal] != levels.retract || levels.retract.is_none() {
+                self.move_along(normal, true, levels.retract);
+            }
+            self.stroke(number, normal, cycle.peck, levels, strokes);
+        }
+        self.cycle = Some(cycle);
+        Ok(())
+    }
+
+    /// Returns how often the cycle is executed. The word that is not that of the control says nothing.
+    fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
+        let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
+        let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
+        if by_l == by_k {
+            return Ok(by_l);
+        }
+        Ok(match self.choice(Rule::CycleRepeats) {
+            Choice::RepeatsByK => by_k,
+            _ => by_l,
+        })
+    }
+
+    fn check_cycle(&self, block: &Block, word: &str) -> Result<(), GcodeFault> {
+        let rotary = AXES[3..].iter().find(|letter| block.has(**letter));
+        let is_other = |cycle: &Cycle| *cycle.state != *self.state || cycle.unit != self.modal.unit;
+        let changed = self.cycle.as_ref().is_some_and(is_other);
+        let (word, condition, remedy) = match rotary {
+            Some(letter) => (
+                letter.to_string(),
+                "a canned cycle is in force",
+                "turn the axis in a block before, with G80",
+            ),
+            None if self.state.tcp != Tcp::Off => {
+                (word.to_owned(), "tool centre point control is on", self.tcp_remedy())
+            }
+            None if changed => (
+                word.to_owned(),
+                "coordinates, unit or tool have changed since the series of cycles began",
+                "write G80 before, and all words of the cycle again",
+            ),
+            None => return Ok(()),
+        };
+        Err(GcodeFault::Combination { word, condition, remedy })
+    }
+
+    /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
+    fn cycle_words(&self, block: &mut Block, number: u32, word: &str) -> Result<Cycle, GcodeFault> {
+        let known = self.cycle.as_ref();
+        let incremental = self.modal.incremental;
+        let usable = known.filter(|cycle| cycle.incremental == incremental);
+        let normal = self.modal.plane.normal();
+        let length = |value: f64| self.modal.millimetres(value);
+        let missing = |needed| GcodeFault::Missing { word: word.to_owned(), needed };
+        let depth = block.take(AXES[normal]).map(length).or(usable.map(|cycle| cycle.depth));
+        let retract = block.take('R').map(length).or(usable.map(|cycle| cycle.retract));
+        let peck = match number {
+            73 | 74 | 83 | 84 => block.take('Q').map(length).or(known.and_then(|cycle| cycle.peck)),
+            _ => known.and_then(|cycle| cycle.peck),
+        };
+        // The time of the dwell.
+        block.take('P');
+        let depth = depth.ok_or_else(|| missing("the depth: Z in G17, Y in G18, X in G19"))?;
+        let retract = retract.ok_or_else(|| missing("the retract plane R"))?;
+        if matches!(number, 73 | 83) && !peck.is_some_and(|peck| peck > 0.0) {
+            return Err(missing("a positive depth of peck Q"));
+        }
+        let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
+        let (unit, state) = (self.modal.unit, Arc::clone(&self.state));
+        Ok(Cycle { retract, depth, peck, incremental, initial, unit, state })
+    }
+
+    fn levels(&mut self, cycle: &Cycle) -> Result<Levels, GcodeFault> {
+        let (retract, depth) = match cycle.incremental {
+            false => (Some(cycle.retract), Some(cycle.depth)),
+            true => {
+                let retract = cycle.initial.map(|initial| initial + cycle.retract);
+                (retract, retract.map(|retract| retract + cycle.depth))
+            }
+        };
+        let is_inverted = match cycle.incremental {
+            false => cycle.retract < cycle.depth,
+            true => cycle.depth > 0.0,
+        };
+        if is_inverted {
+            let (retract, depth) = (cycle.retract, cycle.depth);
+            return Err(GcodeFault::CycleBelow { retract, depth });
+        }
+        let to_r = match self.modal.retract_to_r {
+            Some(to_r) => to_r,
+            // A cycle that begins at R returns there in either case.
+            None if cycle.initial.is_some() && cycle.initial == retract => true,
+            None => self.choice(Rule::CycleReturn) == Choice::PlaneR,
+        };
+        let clear = match to_r {
+            true => retract,
+            // A level below R is left for R by a control that rises first.
+            false
+                if is_below(cycle.initial, retract)
+                    && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst =>
+            {
+                retract
+            }
+            false => retract.and(cycle.initial),
+        };
+        Ok(Levels { retract, depth, clear })
+    }
+
+    /// Moves over the next hole, at the present level. In a series, LinuxCNC moves straight to a level that is higher
+    /// (`CYCLE_MACRO` of its interpreter).
+    fn move_over(&mut self, axes: Position, Levels { retract, clear, .. }: Levels) {
+        let normal = self.modal.plane.normal();
+        let mut end = self.position;
+        let mut commanded = [false; 6];
+        if self.cycle.is_some()
+            && !is_below(retract, end[normal])
+            && is_below(end[normal], clear)
+            && self.choice(Rule::CycleBelowR) == Choice::RaisesFirst
+        {
+            end[normal] = clear;
+            commanded[normal] = true;
+        }
+        for axis in self.modal.plane.axes() {
+            if let Some(value) = axes[axis] {
+                let origin = if self.modal.incremental { end[axis] } else { Some(0.0) };
+                end[axis] = origin.map(|origin| origin + value);
+                commanded[axis] = true;
+            }
+        }
+        if commanded.contains(&true) {
+            self.push(true, end, commanded, StepPath::Line);
+        }
+    }
+
+    fn move_along(&mut self, axis: usize, rapid: bool, level: Option<f64>) {
+        let mut end = self.position;
+        end[axis] = level;
+        let mut commanded = [false; 6];
+        commanded[axis] = true;
+        self.push(rapid, end, commanded, StepPath::Line);
+    }
+
+    /// Moves from the retract plane to the depth and back to the clear level.
+    fn stroke(
+        &mut self,
+        number: u32,
+        axis: usize,
+        peck: Option<f64>,
+        levels: Levels,
+        strokes: f64,
+    ) {
+        let Levels { retract, depth, clear } = levels;
+        if let (83, Some(peck), Some(from)) = (number, peck, retract) {
+            for k in 1..strokes as u32 {
+                let level = from - f64::from(k) * peck;
+                self.move_along(axis, false, Some(level));
+                self.move_along(axis, true, retract);
+                self.move_along(axis, true, Some(level));
+            }
+        }
+        self.move_along(axis, false, depth);
+        match number {
+            // Tapping and boring leave the hole at feed rate.
+            74 | 84 | 85 | 89 => {
+                self.move_along(axis, false, retract);
+                if clear != retract || clear.is_none() {
+                    self.move_along(axis, true, clear);
+                }
+            }
+            _ => self.move_along(axis, true, clear),
+        }
+        if matches!(number, 74 | 84) {
+            self.end_tapping(number);
+        }
+    }
+}

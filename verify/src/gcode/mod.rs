@@ -1,0 +1,220 @@
+//! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and LinuxCNC, with the words of Haas
+//! and Sinumerik for tool centre point control.
+//!
+//! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
+//! is a line or an arc between two positions in program coordinates, with the [state of the
+//! control](ControlState) that says what they mean. Lengths are in millimetres whatever the unit of the
+//! program (a value in inches is multiplied by 25.4, rounded once), angles of A, B and C in degrees.
+//!
+//! ```
+//! use touchoff_verify::gcode::{ControlSetup, Interpreter, StepPath};
+//!
+//! let program = "G21 G90 G54\nT3 M6\nG0 G43 H3 Z5.\nX10. Y0.\nG1 Z-1. F200.\nG2 I-10.\nM30\n";
+//! let steps = Interpreter::new(program, &ControlSetup::default())?.collect::<Result<Vec<_>, _>>()?;
+//! let circle = steps.last().expect("four motions");
+//! assert_eq!(circle.end[..3], [Some(10.0), Some(0.0), Some(-1.0)]);
+//! assert!(matches!(circle.path, StepPath::Arc { centre: [0.0, 0.0], sweep, .. } if sweep < -6.28));
+//! # Ok::<(), touchoff_verify::gcode::GcodeError>(())
+//! ```
+//!
+//! **What is read.**
+//! - G0 G1 G2 G3 in the planes G17 G18 G19: helices, I J K by G90.1 and G91.1, R, full circles, turns P.
+//! - G20 G21 (Sinumerik's G70 G71), G90 G91, G93 G94 G95, G4; G61 G64 and their like leave a [`ProgramNote`].
+//! - G28 G30 with their intermediate position, G53.
+//! - G54 to G59.3, `G54.1 P`, G52, G92 to G92.3, `G10 L2`.
+//! - G43 H (without H: the register of the tool in the spindle), G49, T, M6.
+//! - Canned cycles G73 G74 G81 to G86 G89 with G98 G99 in three planes, with R, Z, Q, P and repeats L or K.
+//! - `M98 P L` with O-numbers and M99; `o100 sub`, `endsub` and `call` without arguments.
+//! - Tool centre point control: G43.4, G43.5, G234, `TRAORI`, M428; ended by G49, `TRAFOOF`, M429.
+//! - Tilted planes G68.2 with G53.1, rotation G68, both ended by G69.
+//! - Parameters and arithmetic in brackets; comments, `/`, `%`, N.
+//!
+//! **What stops it.** Everything else. A word that is not understood could move the tool, so it is an error
+//! with its line, its name and a remedy, and so is a word that no other word of its block uses. Nothing is
+//! passed over in silence: words without an effect on the path, such as `M8`, are listed in
+//! [`Interpreter::notes`].
+//!
+//! **What is unknown.** A coordinate is `None` if only the machine knows it: before it is programmed first,
+//! after G28 without a [home](ControlSetup::home), after a tool change that [moves](Choice::Moves) the axes,
+//! after a change between work offsets that are not given,
+//! after a tool length that is not given comes into force (Z), and after tool centre point control is
+//! switched on or off while A, B and C are not all known to be 0 (X Y Z). It becomes known when it is
+//! programmed in G90.
+//!
+//! **What differs between controls.** Where a program leaves a choice to the control, a [`Rule`] decides. The
+//! [setup](ControlSetup::rules) states them, and [`Interpreter::asked`] lists those that the program depends on.
+//! Without a statement the first choice of a rule is made.
+//!
+//! **Assumptions.** A tool change (M6) loads the tool of its own block or, without T there, the last T. Start
+//! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms share the parameters of their
+//! caller, except those of O-words, whose #1 to #30 and names are their own.
+
+mod arc;
+mod block;
+mod code;
+mod coordinates;
+mod cycle;
+mod error;
+mod expression;
+mod flow;
+mod interpreter;
+mod label;
+mod modal;
+mod motion;
+mod next_run;
+mod note;
+mod refuse;
+mod rules;
+mod spindle;
+mod state;
+mod text;
+
+pub use arc::ArcFault;
+pub use error::{GcodeError, GcodeFault};
+pub use expression::ExpressionFault;
+pub use interpreter::Interpreter;
+pub use note::{NoteKind, ProgramNote};
+pub use rules::{Choice, ControlError, ControlRules, Rule};
+pub use spindle::Spindle;
+pub(crate) use state::about;
+pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
+
+pub use crate::machine::Plane;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Largest absolute value of a number in a program, in its unit.
+pub const LARGEST_NUMBER: f64 = 1e9;
+/// Largest nesting of calls of subprograms: LinuxCNC's.
+pub const MAX_CALLS: usize = 10;
+/// Largest number of blocks and steps in subprograms, with all repeats.
+pub const MAX_REPEATED: usize = 10_000_000;
+/// Largest number of motions of one block with a canned cycle.
+pub const MAX_CYCLE_STEPS: usize = 100_000;
+
+/// State of the control before the program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControlSetup {
+    /// Position of the spindle's gauge point in the coordinates of G54. Set an axis that the machine lacks to
+    /// `Some(0.0)`: a known rotary axis at 0 keeps positions known when tool centre point control is
+    /// switched.
+    pub start: Position,
+    /// Origins of G54 to G59.3 in machine coordinates.
+    pub work_offsets: [Option<[f64; 6]>; 9],
+    /// Tool lengths in millimetres, by H or tool number.
+    pub lengths: BTreeMap<u32, f64>,
+    /// Position of G28 in machine coordinates.
+    pub home: Option<[f64; 6]>,
+    /// Position of G30 in machine coordinates.
+    pub second_home: Option<[f64; 6]>,
+    /// The choices of the control where controls differ.
+    pub rules: ControlRules,
+    /// The axes that the machine has.
+    pub axes: [bool; 6],
+    /// Position in which M6 leaves the axes, in machine coordinates: `None` for an axis that stays. Without it, as the
+    /// [rules](Rule::ToolChange) say.
+    pub tool_change: Option<Position>,
+}
+
+impl Default for ControlSetup {
+    /// Returns a control that knows no position and states no rule.
+    fn default() -> ControlSetup {
+        ControlSetup {
+            start: [None; 6],
+            work_offsets: [None; 9],
+            lengths: BTreeMap::new(),
+            home: None,
+            second_home: None,
+            rules: ControlRules::default(),
+            axes: [true; 6],
+            tool_change: None,
+        }
+    }
+}
+
+/// A motion, in the program coordinates of its [state](Step::state).
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Step {
+    /// The line of its block, 1-based.
+    pub line: usize,
+    /// Set in rapid traverse.
+    pub rapid: bool,
+    /// Position at the start: the end of the motion before, in the coordinates that hold now.
+    pub start: Position,
+    /// Position at the end. A coordinate that is `None` and not [commanded](Step::commanded) stays as it is.
+    pub end: Position,
+    /// Axes that the block moves to a position of its own. One whose end is `None` goes where only the
+    /// machine knows.
+    pub commanded: [bool; 6],
+    /// The path between.
+    pub path: StepPath,
+    /// Under G43.5, the unit vector from the tip to the spindle at the end, in the workpiece's frame; `None`
+    /// until the program gives one.
+    pub tool_vector: Option<[f64; 3]>,
+    /// Set if the end is stated, in G90 or in machine coordinates, and not by increments.
+    pub absolute: bool,
+    /// Set if the end is stated in machine coordinates: under G53, and to a reference position.
+    pub in_machine: bool,
+    /// Set for the motion to a reference position (G28, G30).
+    pub is_return: bool,
+    /// The spindle during the motion.
+    pub spindle: Spindle,
+    /// State of the control, shared by steps until it changes.
+    pub state: Arc<ControlState>,
+}
+
+/// The path of a motion. All axes start and end together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepPath {
+    /// X Y Z on a straight line, and A B C in proportion to it.
+    Line,
+    /// X Y Z on an arc, or a helix about the normal of the plane; the other axes in proportion to the angle.
+    ///
+    /// If the radii of start and end differ, which is allowed by up to 0.1 % (and 0.03 mm or 0.0028 inch at
+    /// least), the radius changes in proportion to the angle.
+    Arc {
+        /// The plane.
+        plane: Plane,
+        /// The centre, along the plane's first and second axis, in millimetres.
+        centre: [f64; 2],
+        /// The angle in radians, positive from the first axis to the second (G3). More than 2π in absolute
+        /// value if P gives several turns.
+        sweep: f64,
+    },
+    /// A rotation of A, B and C that aligns the tool with z of a tilted plane (G53.1). The angles are the
+    /// machine's.
+    Align,
+    /// An arc whose start is unknown in its plane.
+    Undetermined,
+    /// The motion of a tool change to a position in machine coordinates, on a path that only the machine knows.
+    /// [Commanded](Step::commanded) axes move.
+    ToolChange(Position),
+}
+
+/// Reads a whole program: its steps, and the notes about it. [`Interpreter`] returns the steps one by one.
+///
+/// # Errors
+/// If a line stops the interpreter.
+pub fn read(text: &str, setup: &ControlSetup) -> Result<(Vec<Step>, Vec<ProgramNote>), GcodeError> {
+    let mut interpreter = Interpreter::new(text, setup)?;
+    let steps = interpreter.by_ref().collect::<Result<Vec<_>, _>>()?;
+    Ok((steps, interpreter.notes()))
+}
+
+/// Quotes text of the program for a message: short, without characters that a terminal would obey.
+fn shown(text: &str) -> String {
+    format!("`{}`", unquoted(text))
+}
+
+/// Returns the text as [`shown`] quotes it, without the quotes.
+fn unquoted(text: &str) -> String {
+    const MAX_CHARACTERS: usize = 40;
+    let mut quoted: String =
+        text.chars().take(MAX_CHARACTERS).flat_map(char::escape_debug).collect();
+    if text.chars().nth(MAX_CHARACTERS).is_some() {
+        quoted.push('…');
+    }
+    quoted
+}

@@ -1,0 +1,335 @@
+//! The next run of a program: it starts with what the control keeps from the end of the run before.
+//!
+//! Which modes a control keeps is mostly a parameter of it, so both are executed, block by block, from the place at which the
+//! first run ended: the program as it starts, and as it starts with all modes that it left, or with one of them. It depends on none
+//! of them if its motions are the same. From the block on in which both controls agree, they are. The operator may have turned the switch for
+//! optional blocks between the runs.
+
+use super::Plane;
+use super::interpreter::Interpreter;
+use super::motion::Control;
+use super::rules::{Choice, Rule};
+use super::state::{LengthOffset, Rotation, Tcp};
+use super::{Step, StepPath};
+use std::sync::Arc;
+use touchoff::Unit;
+
+/// Tolerance of positions, in mm or degrees: those of both runs are rounded in different ways.
+const TOLERANCE: f64 = 1e-6;
+
+/// Something that a control can keep from one run to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    Unit,
+    Plane,
+    Distance,
+    ArcDistance,
+    Retract,
+    WorkOffset,
+    /// The origins that G10 has set.
+    Origins,
+    Shift,
+    Rotation,
+    Length,
+    /// The last H.
+    Register,
+    Tcp,
+    /// The tool of the last T.
+    Staged,
+}
+
+const MODES: [Mode; 13] = [
+    Mode::Unit,
+    Mode::Plane,
+    Mode::Distance,
+    Mode::ArcDistance,
+    Mode::Retract,
+    Mode::WorkOffset,
+    Mode::Origins,
+    Mode::Shift,
+    Mode::Rotation,
+    Mode::Length,
+    Mode::Register,
+    Mode::Tcp,
+    Mode::Staged,
+];
+
+/// A block of which the next run makes something else.
+pub(super) struct Difference {
+    /// Its line.
+    pub(super) line: usize,
+    /// The words that left what makes the difference, as a list.
+    pub(super) words: String,
+}
+
+/// Returns the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
+///
+/// `first` is the program before its first block. `resets` is set for an end by M2 or M30, at which some controls set modes.
+pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> Option<Difference> {
+    let end = left.stated(Rule::ProgramEnd).filter(|_| resets);
+    let is_reset = |mode: Mode| match end {
+        Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
+        Some(Choice::CancelsLength) => mode == Mode::Length,
+        Some(Choice::ResetsModes) => mode != Mode::Origins,
+        _ => false,
+    };
+    let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
+    let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
+    let all = first_difference(first, left, &kept);
+    // Two that cancel each other do so only where the control keeps both.
+    let is_exact = end == Some(Choice::SetsModes) || kept.len() < 2;
+    let alone: Vec<(Mode, usize)> = match all.is_some() || !is_exact {
+        true => kept
+            .iter()
+            .filter_map(|mode| Some((*mode, first_difference(first, left, &[*mode])?)))
+            .collect(),
+        false => Vec::new(),
+    };
+    let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
+    let guilty: Vec<Mode> = match alone.is_empty() {
+        true => kept,
+        false => alone.into_iter().map(|(mode, _)| mode).collect(),
+    };
+    let words: Vec<String> = guilty.into_iter().map(|mode| mode.word(left)).collect();
+    Some(Difference { line, words: words.join(", ") })
+}
+
+/// Returns the line of the first block that is executed otherwise if some modes are kept, at any position of the switch for
+/// optional blocks, and under all choices of the rules on which the first run did not depend.
+fn first_difference(first: &Interpreter, left: &Control, kept: &[Mode]) -> Option<usize> {
+    let mut start = first.clone();
+    start.control.stand_as(left);
+    let mut starts = vec![start];
+    if left.asked.contains_key(&Rule::OptionalBlocks) {
+        starts = under_each(&starts[0], Rule::OptionalBlocks);
+    }
+    while let Some(start) = starts.pop() {
+        let (mut run, mut next) = (start.clone(), start.clone());
+        next.control.keep(left, kept);
+        let line = run_beside(&mut run, &mut next);
+        if line.is_some() {
+            return line;
+        }
+        let mut asked = run.control.asked.keys().chain(next.control.asked.keys());
+        let is_open = |rule: &&Rule| rule.is_branched() && start.control.stated(**rule).is_none();
+        if let Some(rule) = asked.find(is_open) {
+            starts.extend(under_each(&start, *rule));
+        }
+    }
+    None
+}
+
+/// Returns a program under each choice of a rule.
+fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
+    let under = |choice: Choice| {
+        let mut start = start.clone();
+        start.control.state_rule(rule, choice);
+        start
+    };
+    rule.choices().map(under).collect()
+}
+
+/// Executes two runs until they agree, and returns the line of the first block that they execute in different ways.
+fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
+    while !run.control.agrees(&next.control) {
+        let lengths = [&*run, next].map(|run| run.control.state.length);
+        // What stops both is the program's, and known from its first run.
+        let more = run.execute_line().ok()?;
+        let line = run.control.line;
+        if next.execute_line().is_err() {
+            return Some(line);
+        }
+        let mut steps = std::mem::take(&mut run.control.pending);
+        let others = std::mem::take(&mut next.control.pending);
+        // A length that changes moves Z on some controls. One that is in force already does not, and the first position after it is
+        // the same.
+        let changes = [(&*run, lengths[0]), (next, lengths[1])]
+            .map(|(run, before)| run.control.state.length != before);
+        if changes == [true, false] && steps.len() == others.len() + 1 {
+            steps.pop_front();
+        }
+        let is_same = steps.len() == others.len()
+            && steps.iter().zip(&others).all(|(step, other)| is_same_motion(step, other));
+        match (is_same, more) {
+            (false, _) => return Some(line),
+            (true, false) => return None,
+            (true, true) => {}
+        }
+    }
+    None
+}
+
+impl Mode {
+    /// Returns whether two controls differ in it.
+    fn differs(self, first: &Control, second: &Control) -> bool {
+        let [(modal, state), (other, others)] =
+            [first, second].map(|control| (&control.modal, &*control.state));
+        match self {
+            Mode::Unit => (modal.unit, modal.unit_stated) != (other.unit, other.unit_stated),
+            Mode::Plane => modal.plane != other.plane,
+            Mode::Distance => modal.incremental != other.incremental,
+            Mode::ArcDistance => modal.absolute_centres != other.absolute_centres,
+            Mode::Retract => modal.retract_to_r != other.retract_to_r,
+            Mode::WorkOffset => state.work_offset != others.work_offset,
+            Mode::Origins => first.origins != second.origins,
+            Mode::Shift => {
+                (state.shift, first.local, first.preset)
+                    != (others.shift, second.local, second.preset)
+            }
+            Mode::Rotation => state.rotation != others.rotation,
+            Mode::Length => {
+                (state.length, first.length_implicit, first.length_cancelled)
+                    != (others.length, second.length_implicit, second.length_cancelled)
+            }
+            Mode::Register => first.last_register != second.last_register,
+            Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
+            Mode::Staged => first.staged != second.staged,
+        }
+    }
+
+    /// Returns the word that left it.
+    fn word(self, left: &Control) -> String {
+        let (modal, state) = (&left.modal, &*left.state);
+        let word = match self {
+            Mode::Unit if modal.unit == Unit::Inch => "G20",
+            Mode::Unit => "G21",
+            Mode::Plane => match modal.plane {
+                Plane::Xy => "G17",
+                Plane::Zx => "G18",
+                Plane::Yz => "G19",
+            },
+            Mode::Distance => "G91",
+            Mode::ArcDistance if modal.absolute_centres == Some(true) => "G90.1",
+            Mode::ArcDistance => "G91.1",
+            Mode::Retract if modal.retract_to_r == Some(true) => "G99",
+            Mode::Retract => "G98",
+            Mode::WorkOffset => return state.work_offset.to_string(),
+            Mode::Origins => "G10",
+            Mode::Shift if left.local == [0.0; 6] => "G92",
+            Mode::Shift => "G52",
+            Mode::Rotation if matches!(state.rotation, Rotation::Tilted { .. }) => "G68.2",
+            Mode::Rotation => "G68",
+            Mode::Length => match state.length {
+                LengthOffset::On { register, .. } => return format!("G43 H{register}"),
+                LengthOffset::Off => "G49",
+            },
+            Mode::Register => return format!("H{}", left.last_register.unwrap_or_default()),
+            Mode::Staged => return format!("T{}", left.staged.unwrap_or_default()),
+            Mode::Tcp => match state.tcp {
+                Tcp::Transformation => "TRAORI",
+                Tcp::Vector => "G43.5",
+                _ if left.transformed => "M428",
+                _ => "G43.4",
+            },
+        };
+        word.to_owned()
+    }
+}
+
+impl Control {
+    /// Takes over the position and the tool in the spindle that another run has left.
+    fn stand_as(&mut self, left: &Control) {
+        let mut state = (*self.state).clone();
+        state.tool = left.state.tool;
+        self.position = left.state.carry_over(&state, left.position);
+        self.state = Arc::new(state);
+    }
+
+    /// Takes over modes that another run has left, and the position.
+    fn keep(&mut self, left: &Control, modes: &[Mode]) {
+        let mut state = (*self.state).clone();
+        for mode in modes {
+            match mode {
+                Mode::Unit => {
+                    (self.modal.unit, self.modal.unit_stated) =
+                        (left.modal.unit, left.modal.unit_stated);
+                }
+                Mode::Plane => self.modal.plane = left.modal.plane,
+                Mode::Distance => self.modal.incremental = left.modal.incremental,
+                Mode::ArcDistance => self.modal.absolute_centres = left.modal.absolute_centres,
+                Mode::Retract => self.modal.retract_to_r = left.modal.retract_to_r,
+                Mode::WorkOffset => state.work_offset = left.state.work_offset,
+                Mode::Origins => self.origins = left.origins.clone(),
+                Mode::Shift => {
+                    (self.local, self.preset, state.shift) =
+                        (left.local, left.preset, left.state.shift);
+                }
+                Mode::Rotation => state.rotation = left.state.rotation,
+                Mode::Length => {
+                    (state.length, self.returned) = (left.state.length, left.returned);
+                    (self.length_implicit, self.length_cancelled) =
+                        (left.length_implicit, left.length_cancelled);
+                }
+                Mode::Register => self.last_register = left.last_register,
+                Mode::Staged => self.staged = left.staged,
+                Mode::Tcp => {
+                    (state.tcp, self.transformed) = (left.state.tcp, left.transformed);
+                }
+            }
+        }
+        (state.origin, state.origin_rotation) = self.origin_of(state.work_offset);
+        self.position = left.state.carry_over(&state, left.position);
+        self.state = Arc::new(state);
+    }
+
+    /// Returns whether all blocks that follow are executed as another control executes them. The words about the spindle have
+    /// no part in it, and what was stated may be more than on the other one.
+    fn agrees(&self, next: &Control) -> bool {
+        let changed = |control: &Control| {
+            let axes = control.origin_changed;
+            [control.length_changed, control.rotation_changed].into_iter().chain(axes)
+        };
+        MODES.iter().all(|mode| !mode.differs(self, next))
+            && self.state == next.state
+            && self.position == next.position
+            && self.cycle == next.cycle
+            && self.vector == next.vector
+            && self.returned == next.returned
+            && changed(self).zip(changed(next)).all(|(changed, next)| changed || !next)
+    }
+}
+
+/// Returns whether two steps are one motion of the machine.
+fn is_same_motion(step: &Step, other: &Step) -> bool {
+    let kind = |step: &Step| (step.rapid, step.commanded, step.is_return, step.tool_vector);
+    let path = |step: &Step| match step.path {
+        // Set by the rules and the machine alone.
+        StepPath::ToolChange(_) => StepPath::ToolChange([None; 6]),
+        path => path,
+    };
+    let turns = |step: &Step| (step.state.tcp, step.state.turns_with_workpiece());
+    kind(step) == kind(other)
+        && path(step) == path(other)
+        && turns(step) == turns(other)
+        && is_same_end(step, other)
+}
+
+/// Returns whether two steps end at one position of the machine, along the axes that they move. Where its coordinates are not
+/// known, all that they depend on has to be the same.
+fn is_same_end(step: &Step, other: &Step) -> bool {
+    let is_near = |first: Option<f64>, second: Option<f64>| match (first, second) {
+        (Some(first), Some(second)) => (first - second).abs() <= TOLERANCE,
+        (first, second) => first == second,
+    };
+    let [state, other_state] = [step, other].map(|step| &*step.state);
+    let machine = [step, other].map(|step| step.state.to_machine(step.end));
+    let workpiece = [step, other].map(|step| step.state.to_workpiece(step.end));
+    let has_same_origin = (state.work_offset, state.origin, state.origin_rotation)
+        == (other_state.work_offset, other_state.origin, other_state.origin_rotation);
+    let has_same_length = state.length == other_state.length;
+    // An axis of the program moves several ones of the machine.
+    let is_rotated = state.rotation != Rotation::Off
+        || state.origin_rotation != 0.0
+        || state.turns_with_workpiece();
+    (0..6).filter(|axis| is_rotated || step.commanded[*axis]).all(|axis| {
+        if machine.iter().all(|position| position[axis].is_some()) {
+            return is_near(machine[0][axis], machine[1][axis]);
+        }
+        let uses_length = axis == 2 || axis < 2 && state.turns_with_workpiece();
+        let is_unknown = workpiece.iter().all(|position| position[axis].is_none());
+        is_unknown
+            || is_near(workpiece[0][axis], workpiece[1][axis])
+                && has_same_origin
+                && (has_same_length || !uses_length)
+    })
+}

@@ -1,0 +1,820 @@
+//! The rules of a control: what it does where controls differ.
+//!
+//! A program means different motions on different controls wherever it leaves a choice to them. Each such choice is a
+//! [`Rule`], and a control makes one [`Choice`] of each. `docs/controls.md` has the sources.
+
+use crate::gcode::shown;
+use std::collections::BTreeMap;
+use std::fmt;
+use toml::Spanned;
+
+/// A choice that programs leave to the control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Rule {
+    /// The axes after a tool change (M6).
+    ToolChange,
+    /// The order of motions of a canned cycle that begins below its plane R.
+    CycleBelowR,
+    /// The way of a rotary axis without limits to an absolute position.
+    Rotary,
+    /// The path of several axes in rapid traverse (G0).
+    Rapid,
+    /// Numbers without a decimal point.
+    WholeNumbers,
+    /// Text after a semicolon.
+    Semicolon,
+    /// The unit before the first G20 or G21.
+    Unit,
+    /// The tool length offset after a return to the reference position (G28, G30).
+    ReferenceReturn,
+    /// The tool length without G43.
+    ToolLength,
+    /// The spindle after a stop (M0, M1).
+    Stop,
+    /// The level to which a canned cycle returns before the first G98 or G99.
+    CycleReturn,
+    /// The tool length offset under G53.
+    MachineCoordinates,
+    /// The work offset before the first G54 to G59.
+    StartOffset,
+    /// The meaning of words.
+    Dialect,
+    /// The register of a G43 without H.
+    LengthRegister,
+    /// The shift by G92 after a G92.1 without axis words.
+    PresetEnd,
+    /// A change of the tool length offset in a block without Z.
+    LengthChange,
+    /// The word for the repeats of a canned cycle.
+    CycleRepeats,
+    /// Numbers after R and Q without a decimal point, where those of axes are increments.
+    WholeRadii,
+    /// Coordinates under tool centre point control that begins while the table is turned.
+    TcpStart,
+    /// The tool axis between two positions of the rotary axes under `TRAORI`.
+    ToolOrientation,
+    /// Modes and offsets at M2 and M30.
+    ProgramEnd,
+    /// Blocks that begin with `/`: the operator's switch, which no control states.
+    OptionalBlocks,
+}
+
+/// An action of a control under a [`Rule`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+#[allow(missing_docs)]
+pub enum Choice {
+    Stays,
+    Retracts,
+    Moves,
+    RaisesFirst,
+    SidewaysFirst,
+    Counts,
+    Shortest,
+    WithinTurn,
+    Straight,
+    EachAxis,
+    Units,
+    Increments,
+    Comment,
+    EndOfBlock,
+    Millimetre,
+    Inch,
+    KeepsLength,
+    CancelsLength,
+    CancelsLengthByG53,
+    WithG43,
+    Always,
+    KeepsSpindle,
+    StopsSpindle,
+    InitialLevel,
+    PlaneR,
+    WithoutLength,
+    WithLength,
+    FirstOffset,
+    NoOffset,
+    Iso,
+    Rs274Ngc,
+    Sinumerik,
+    Heidenhain,
+    OfTool,
+    LastH,
+    EndsPreset,
+    KeepsPreset,
+    WithNextZ,
+    MovesZ,
+    RepeatsByL,
+    RepeatsByK,
+    TableAtZero,
+    TableAsItStands,
+    ByAxes,
+    GreatCircle,
+    KeepsModes,
+    SetsModes,
+    ResetsModes,
+    Executed,
+    LeftOut,
+}
+
+/// The choices of one rule: its key, what it is about, and for each choice its word and its meaning.
+struct Entry {
+    rule: Rule,
+    key: &'static str,
+    about: &'static str,
+    choices: &'static [(Choice, &'static str, &'static str)],
+}
+
+/// All rules. Without a statement the interpreter makes the first choice of each.
+const RULES: [Entry; 23] = [
+    Entry {
+        rule: Rule::ToolChange,
+        key: "tool_change",
+        about: "the axes after M6",
+        choices: &[
+            (Choice::Stays, "stays", "they stay where they are"),
+            (Choice::Retracts, "retracts", "Z is at its home, the others stay"),
+            (Choice::Moves, "moves", "they are where only the machine knows"),
+        ],
+    },
+    Entry {
+        rule: Rule::CycleBelowR,
+        key: "cycle_below_r",
+        about: "a canned cycle that begins below R",
+        choices: &[
+            (Choice::RaisesFirst, "raises first", "rises to R, then moves sideways"),
+            (Choice::SidewaysFirst, "sideways first", "moves sideways, then rises to R"),
+        ],
+    },
+    Entry {
+        rule: Rule::Rotary,
+        key: "rotary",
+        about: "a rotary axis without limits, to an absolute position",
+        choices: &[
+            (Choice::Counts, "counts", "turns by the difference: C345 to C15 by -330 degrees"),
+            (Choice::Shortest, "shortest", "turns the shorter way: C345 to C15 by +30 degrees"),
+            (
+                Choice::WithinTurn,
+                "within a turn",
+                "turns between angles from 0 to 360: C345 to C15 by -330 degrees, C450 to C280 by +190",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::Rapid,
+        key: "rapid",
+        about: "several axes in rapid traverse",
+        choices: &[
+            (Choice::Straight, "straight", "move on a straight line"),
+            (Choice::EachAxis, "each axis", "move each at its own rate: a dog-leg"),
+        ],
+    },
+    Entry {
+        rule: Rule::WholeNumbers,
+        key: "whole_numbers",
+        about: "a coordinate without a decimal point",
+        choices: &[
+            (Choice::Units, "units", "Z5 is 5 mm, inches or degrees"),
+            (Choice::Increments, "increments", "Z5 is 0.005 mm or degrees, or 0.0005 inch"),
+        ],
+    },
+    Entry {
+        rule: Rule::Semicolon,
+        key: "semicolon",
+        about: "the text after `;`",
+        choices: &[
+            (Choice::Comment, "comment", "is a comment"),
+            (Choice::EndOfBlock, "end of block", "is the next block"),
+        ],
+    },
+    Entry {
+        rule: Rule::Unit,
+        key: "unit",
+        about: "lengths before G20 or G21",
+        choices: &[
+            (Choice::Millimetre, "mm", "are in millimetres"),
+            (Choice::Inch, "inch", "are in inches"),
+        ],
+    },
+    Entry {
+        rule: Rule::ReferenceReturn,
+        key: "reference_return",
+        about: "the tool length offset after G28 or G30",
+        choices: &[
+            (Choice::KeepsLength, "keeps length", "stays in force"),
+            (Choice::CancelsLength, "cancels length", "is off, as after G49"),
+            (Choice::CancelsLengthByG53, "cancels length, as G53", "is off, also after G53"),
+        ],
+    },
+    Entry {
+        rule: Rule::ToolLength,
+        key: "tool_length",
+        about: "the length of the tool in the spindle",
+        choices: &[
+            (Choice::WithG43, "with G43", "counts after G43 H only"),
+            (Choice::Always, "always", "counts from the tool change on"),
+        ],
+    },
+    Entry {
+        rule: Rule::Stop,
+        key: "stop",
+        about: "the spindle after M0 or M1",
+        choices: &[
+            (Choice::KeepsSpindle, "keeps spindle", "turns on"),
+            (Choice::StopsSpindle, "stops spindle", "stands until the next M3 or M4"),
+        ],
+    },
+    Entry {
+        rule: Rule::CycleReturn,
+        key: "cycle_return",
+        about: "a canned cycle before G98 or G99",
+        choices: &[
+            (Choice::InitialLevel, "initial level", "returns to the level at which it began (G98)"),
+            (Choice::PlaneR, "plane R", "returns to R (G99)"),
+        ],
+    },
+    Entry {
+        rule: Rule::MachineCoordinates,
+        key: "machine_coordinates",
+        about: "Z under G53 with a tool length offset",
+        choices: &[
+            (Choice::WithoutLength, "without length", "is that of the spindle's gauge point"),
+            (Choice::WithLength, "with length", "is that of the tip"),
+        ],
+    },
+    Entry {
+        rule: Rule::StartOffset,
+        key: "start_offset",
+        about: "the work offset before G54 to G59",
+        choices: &[
+            (Choice::FirstOffset, "G54", "is G54"),
+            (Choice::NoOffset, "none", "is none: positions are the machine's"),
+        ],
+    },
+    Entry {
+        rule: Rule::Dialect,
+        key: "dialect",
+        about: "words",
+        choices: &[
+            (Choice::Iso, "iso", "mean what they mean on Fanuc and Haas"),
+            (
+                Choice::Rs274Ngc,
+                "rs274ngc",
+                "mean what they mean on LinuxCNC: R of G10 L2 rotates a work offset, and cycles are along the normal of the plane",
+            ),
+            (
+                Choice::Sinumerik,
+                "sinumerik",
+                "mean what they mean in native programs of Sinumerik: G58 and G59 are shifts, and G70 and G71 select the unit",
+            ),
+            (
+                Choice::Heidenhain,
+                "heidenhain",
+                "mean what they mean in DIN/ISO programs of Heidenhain: I, J and K are the position of the pole, and G28, \
+                 G43, G54, G73, G98, G99, M98, M99 and others are not read",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::LengthRegister,
+        key: "length_register",
+        about: "G43 without H",
+        choices: &[
+            (Choice::OfTool, "of the tool", "takes the register of the tool in the spindle"),
+            (Choice::LastH, "last H", "takes the H before, or none"),
+        ],
+    },
+    Entry {
+        rule: Rule::PresetEnd,
+        key: "preset_end",
+        about: "the shift by G92 after G92.1 without axis words",
+        choices: &[
+            (Choice::EndsPreset, "ends", "is off"),
+            (Choice::KeepsPreset, "stays", "stays in force"),
+        ],
+    },
+    Entry {
+        rule: Rule::LengthChange,
+        key: "length_change",
+        about: "G43 or G49 in a block without Z",
+        choices: &[
+            (
+                Choice::WithNextZ,
+                "with the next Z",
+                "moves nothing: the next Z is to the new length",
+            ),
+            (Choice::MovesZ, "moves Z", "moves Z by the change of the length"),
+        ],
+    },
+    Entry {
+        rule: Rule::CycleRepeats,
+        key: "cycle_repeats",
+        about: "the repeats of a canned cycle",
+        choices: &[
+            (Choice::RepeatsByL, "L", "are the number after L"),
+            (Choice::RepeatsByK, "K", "are the number after K"),
+        ],
+    },
+    Entry {
+        rule: Rule::WholeRadii,
+        key: "whole_radii",
+        about: "a number after R or Q without a decimal point, where those of axes are increments",
+        choices: &[
+            (Choice::Increments, "increments", "R5 is 0.005 mm or degrees, or 0.0005 inch"),
+            (Choice::Units, "units", "R5 is 5 mm, inches or degrees"),
+        ],
+    },
+    Entry {
+        rule: Rule::TcpStart,
+        key: "tcp_start",
+        about: "coordinates under tool centre point control (G43.4) or in a tilted plane (G68.2) that begins while the table is turned",
+        choices: &[
+            (Choice::TableAtZero, "table at zero", "are those of the part with its axes at 0"),
+            (
+                Choice::TableAsItStands,
+                "table as it stands",
+                "are those of the part as it stands, and are not followed",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::ToolOrientation,
+        key: "tool_orientation",
+        about: "the tool axis between two positions of the rotary axes under TRAORI",
+        choices: &[
+            (Choice::ByAxes, "by axes", "turns with the axes, each in proportion (ORIAXES)"),
+            (
+                Choice::GreatCircle,
+                "great circle",
+                "turns in the plane of both directions (ORIVECT), and is not followed",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::ProgramEnd,
+        key: "program_end",
+        about: "modes and offsets at M2 and M30",
+        choices: &[
+            (Choice::KeepsModes, "keeps modes", "can all be kept for the next run"),
+            (Choice::SetsModes, "sets modes", "are G17, G90 and G54, and others are kept"),
+            (
+                Choice::CancelsLength,
+                "cancels length",
+                "are without a length offset, and others can be kept",
+            ),
+            (
+                Choice::ResetsModes,
+                "resets modes",
+                "are as at the start, but for offsets that G10 has set",
+            ),
+        ],
+    },
+    Entry {
+        rule: Rule::OptionalBlocks,
+        key: "optional_blocks",
+        about: "blocks that begin with `/`",
+        choices: &[
+            (Choice::Executed, "executed", "are executed"),
+            (Choice::LeftOut, "left out", "are left out"),
+        ],
+    },
+];
+
+/// The controls that are known by name, with their choices in the order of [`RULES`], without the operator's switch. Each is the control as delivered:
+/// a builder can set most of them otherwise.
+const CONTROLS: [(&str, [Choice; 22]); 5] = {
+    use Choice::*;
+    [
+        (
+            "fanuc",
+            [
+                Moves,
+                SidewaysFirst,
+                Shortest,
+                EachAxis,
+                Increments,
+                EndOfBlock,
+                Millimetre,
+                KeepsLength,
+                WithG43,
+                KeepsSpindle,
+                InitialLevel,
+                WithoutLength,
+                FirstOffset,
+                Iso,
+                LastH,
+                KeepsPreset,
+                MovesZ,
+                RepeatsByK,
+                Increments,
+                TableAsItStands,
+                ByAxes,
+                KeepsModes,
+            ],
+        ),
+        (
+            "haas",
+            [
+                Retracts,
+                SidewaysFirst,
+                Counts,
+                EachAxis,
+                Increments,
+                EndOfBlock,
+                Inch,
+                CancelsLength,
+                WithG43,
+                StopsSpindle,
+                InitialLevel,
+                WithoutLength,
+                FirstOffset,
+                Iso,
+                LastH,
+                KeepsPreset,
+                MovesZ,
+                RepeatsByL,
+                Units,
+                TableAtZero,
+                ByAxes,
+                CancelsLength,
+            ],
+        ),
+        (
+            "linuxcnc",
+            [
+                Stays,
+                RaisesFirst,
+                Counts,
+                Straight,
+                Units,
+                Comment,
+                Millimetre,
+                KeepsLength,
+                WithG43,
+                KeepsSpindle,
+                PlaneR,
+                WithoutLength,
+                FirstOffset,
+                Rs274Ngc,
+                OfTool,
+                EndsPreset,
+                WithNextZ,
+                RepeatsByL,
+                Units,
+                TableAtZero,
+                ByAxes,
+                SetsModes,
+            ],
+        ),
+        (
+            "siemens",
+            [
+                Moves,
+                SidewaysFirst,
+                WithinTurn,
+                Straight,
+                Units,
+                Comment,
+                Millimetre,
+                KeepsLength,
+                Always,
+                KeepsSpindle,
+                InitialLevel,
+                WithLength,
+                NoOffset,
+                Sinumerik,
+                OfTool,
+                EndsPreset,
+                WithNextZ,
+                RepeatsByK,
+                Units,
+                TableAtZero,
+                ByAxes,
+                KeepsModes,
+            ],
+        ),
+        (
+            "heidenhain",
+            [
+                Moves,
+                SidewaysFirst,
+                Counts,
+                Straight,
+                Units,
+                Comment,
+                Millimetre,
+                KeepsLength,
+                Always,
+                StopsSpindle,
+                InitialLevel,
+                WithoutLength,
+                FirstOffset,
+                Heidenhain,
+                OfTool,
+                EndsPreset,
+                WithNextZ,
+                RepeatsByL,
+                Units,
+                TableAtZero,
+                ByAxes,
+                KeepsModes,
+            ],
+        ),
+    ]
+};
+
+/// Rules that a control leaves to a parameter without a usual value: every choice is a reading.
+const OPEN: [(&str, Rule); 9] = [
+    ("fanuc", Rule::ReferenceReturn),
+    ("fanuc", Rule::LengthChange),
+    // K, and L on the Series 15 and in its format.
+    ("fanuc", Rule::CycleRepeats),
+    ("haas", Rule::LengthChange),
+    // Setting 162 does not list R and Q.
+    ("haas", Rule::WholeRadii),
+    // Native programs have no G43, and those in ISO mode need it.
+    ("siemens", Rule::ToolLength),
+    // Within a turn in native programs, the shorter way in ISO mode (MD20734).
+    ("siemens", Rule::Rotary),
+    ("siemens", Rule::ToolOrientation),
+    // The display of the axis below 360 degrees, and M126.
+    ("heidenhain", Rule::Rotary),
+];
+
+impl Rule {
+    /// Returns all rules.
+    pub fn all() -> impl Iterator<Item = Rule> {
+        RULES.iter().map(|entry| entry.rule)
+    }
+
+    fn entry(self) -> &'static Entry {
+        // The table is in the order of the enum, which a test checks.
+        &RULES[self as usize]
+    }
+
+    /// Returns the key that states the rule in a control's file.
+    pub fn key(self) -> &'static str {
+        self.entry().key
+    }
+
+    /// Returns what the rule is about.
+    pub fn about(self) -> &'static str {
+        self.entry().about
+    }
+
+    /// Returns whether each choice is a reading of its own. The other rules are judged by the choice that includes all.
+    pub(crate) fn is_branched(self) -> bool {
+        !matches!(
+            self,
+            Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect | Rule::ProgramEnd
+        )
+    }
+
+    /// Returns the choices, of which the first is made where none is stated.
+    pub fn choices(self) -> impl Iterator<Item = Choice> {
+        self.entry().choices.iter().map(|(choice, ..)| *choice)
+    }
+
+    /// Returns the word of a choice in a control's file, and its meaning.
+    ///
+    /// # Panics
+    /// Panics for a choice of another rule.
+    pub fn describe(self, choice: Choice) -> [&'static str; 2] {
+        let known = self.entry().choices.iter().find(|(known, ..)| *known == choice);
+        known.map(|(_, word, meaning)| [*word, *meaning]).expect("a choice of the rule")
+    }
+}
+
+/// The choices of a control, as far as they are stated.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ControlRules {
+    stated: BTreeMap<Rule, Choice>,
+}
+
+impl ControlRules {
+    /// Returns the names of the controls that are known.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        CONTROLS.iter().map(|(name, _)| *name)
+    }
+
+    /// Returns a control that is known by name: it states every rule but the operator's switch for
+    /// [optional blocks](Rule::OptionalBlocks), and what depends on a parameter that is set either way.
+    ///
+    /// # Errors
+    /// [`ControlError::UnknownName`] for another name.
+    pub fn named(name: &str) -> Result<ControlRules, ControlError> {
+        let known = CONTROLS.iter().find(|(known, _)| *known == name);
+        let Some((_, choices)) = known else {
+            return Err(ControlError::UnknownName {
+                name: shown(name),
+                nearest: closest(name, ControlRules::names()),
+            });
+        };
+        let stated = Rule::all().zip(choices.iter().copied());
+        let is_open = |rule: Rule| OPEN.contains(&(name, rule));
+        Ok(ControlRules { stated: stated.filter(|(rule, _)| !is_open(*rule)).collect() })
+    }
+
+    /// Parses a control from TOML: every rule by its key, but for the operator's switch. `file` is the file's name in errors.
+    ///
+    /// # Errors
+    /// If the text is not TOML, or if a key is unknown or missing, or its value is no choice.
+    ///
+    /// ```
+    /// use touchoff_verify::gcode::{Choice, ControlRules, Rule};
+    ///
+    /// let text = ControlRules::named("linuxcnc")?.to_toml();
+    /// let control = ControlRules::parse(&text, "mine.toml")?;
+    /// assert_eq!(control.get(Rule::Rapid), Some(Choice::Straight));
+    /// let error = ControlRules::parse(&text.replace("rapid", "rapids"), "mine.toml").expect_err("a key");
+    /// assert!(error.to_string().contains("`rapids` is no rule: did you mean `rapid`?"), "{error}");
+    /// # Ok::<(), touchoff_verify::gcode::ControlError>(())
+    /// ```
+    pub fn parse(text: &str, file: &str) -> Result<ControlRules, ControlError> {
+        let fault = |start: usize, message: String| {
+            let line = 1 + text[..start].matches('\n').count();
+            ControlError::Line { file: file.to_owned(), line, message }
+        };
+        let parsed: BTreeMap<Spanned<String>, Spanned<toml::Value>> = toml::from_str(text)
+            .map_err(|error| {
+                let message = error.message().trim().replace('\n', ", ");
+                fault(error.span().map_or(0, |span| span.start), message)
+            })?;
+        let mut stated = BTreeMap::new();
+        for (key, value) in &parsed {
+            let word = key.get_ref();
+            let Some(entry) = RULES.iter().find(|entry| entry.key == word) else {
+                let near = closest(word, RULES.iter().map(|entry| entry.key));
+                let message = format!("{} is no rule: did you mean `{near}`?", shown(word));
+                return Err(fault(key.span().start, message));
+            };
+            let choice = value
+                .get_ref()
+                .as_str()
+                .and_then(|value| entry.choices.iter().find(|(_, known, _)| *known == value));
+            let Some((choice, ..)) = choice else {
+                let words: Vec<String> =
+                    entry.choices.iter().map(|(_, known, _)| format!("\"{known}\"")).collect();
+                let message = format!("`{word}` is one of {}", words.join(", "));
+                return Err(fault(value.span().start, message));
+            };
+            stated.insert(entry.rule, *choice);
+        }
+        let is_missing = |entry: &&Entry| {
+            entry.rule != Rule::OptionalBlocks && !stated.contains_key(&entry.rule)
+        };
+        match RULES.iter().find(is_missing) {
+            None => Ok(ControlRules { stated }),
+            Some(Entry { key, about, .. }) => {
+                Err(ControlError::Missing { file: file.to_owned(), key, about })
+            }
+        }
+    }
+
+    /// Returns the choice of a rule, if it is stated.
+    pub fn get(&self, rule: Rule) -> Option<Choice> {
+        self.stated.get(&rule).copied()
+    }
+
+    /// States a rule.
+    #[must_use]
+    pub fn with(mut self, rule: Rule, choice: Choice) -> ControlRules {
+        self.stated.insert(rule, choice);
+        self
+    }
+
+    /// States the rules of another, where these do not.
+    #[must_use]
+    pub fn and(mut self, other: &ControlRules) -> ControlRules {
+        for (rule, choice) in &other.stated {
+            self.stated.entry(*rule).or_insert(*choice);
+        }
+        self
+    }
+
+    /// Writes the rules as a control's file. One that is not stated is a comment with its choices.
+    pub fn to_toml(&self) -> String {
+        let line = |rule: Rule| {
+            let (key, about) = (rule.key(), rule.about());
+            match self.get(rule) {
+                Some(choice) => {
+                    let [word, meaning] = rule.describe(choice);
+                    format!("# {about}: {meaning}\n{key} = \"{word}\"\n")
+                }
+                None => {
+                    let words =
+                        rule.choices().map(|choice| format!("\"{}\"", rule.describe(choice)[0]));
+                    let words = words.collect::<Vec<_>>().join(" or ");
+                    format!("# {about}: state {key} = {words}\n")
+                }
+            }
+        };
+        Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).map(line).collect()
+    }
+}
+
+/// The rules as the keys of a file: `rapid = "straight", unit = "mm"`.
+impl fmt::Display for ControlRules {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, (rule, choice)) in self.stated.iter().enumerate() {
+            let comma = if index > 0 { ", " } else { "" };
+            write!(f, "{comma}{} = \"{}\"", rule.key(), rule.describe(*choice)[0])?;
+        }
+        Ok(())
+    }
+}
+
+/// A control that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ControlError {
+    /// No control of this name is known.
+    #[error(
+        "{name} is no control that is known: did you mean `{nearest}`? `touchoff controls` lists them, and a file ends in \
+         `.toml`"
+    )]
+    UnknownName {
+        /// The name.
+        name: String,
+        /// The nearest known one.
+        nearest: &'static str,
+    },
+    /// A line of the file is refused.
+    #[error("{file}:{line}: {message}")]
+    Line {
+        /// The file.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// The fault and its remedy.
+        message: String,
+    },
+    /// A rule is not stated.
+    #[error(
+        "{file}: the rule `{key}` is missing ({about}): state it; `touchoff controls NAME` prints a whole file"
+    )]
+    Missing {
+        /// The file.
+        file: String,
+        /// The key.
+        key: &'static str,
+        /// The subject of the rule.
+        about: &'static str,
+    },
+}
+
+/// Returns the known word with the fewest changes of letters.
+fn closest(word: &str, known: impl Iterator<Item = &'static str>) -> &'static str {
+    known.min_by_key(|known| strsim::damerau_levenshtein(known, word)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_in_the_order_of_the_enum_and_controls_choose_what_it_has() {
+        for (index, rule) in Rule::all().enumerate() {
+            assert_eq!(rule as usize, index, "{rule:?}");
+        }
+        for name in ControlRules::names() {
+            let mut control = ControlRules::named(name).expect("a control");
+            for (_, rule) in OPEN.iter().filter(|(open, _)| *open == name) {
+                let error = ControlRules::parse(&control.to_toml(), name).expect_err("it is open");
+                assert!(error.to_string().contains("is missing"), "{error}");
+                let first = rule.choices().next().expect("a choice");
+                control = control.with(*rule, first);
+            }
+            let file = control.to_toml();
+            assert_eq!(ControlRules::parse(&file, name), Ok(control), "{file}");
+        }
+    }
+
+    #[test]
+    fn a_file_with_a_fault_is_refused_with_its_line_and_the_nearest_key() {
+        let file = ControlRules::named("linuxcnc").expect("a control").to_toml();
+        let refused = |from: &str, to: &str| {
+            let text = file.replace(from, to);
+            ControlRules::parse(&text, "c.toml").expect_err(&text).to_string()
+        };
+        let line = |key: &str| 1 + file[..file.find(key).expect("a key")].matches('\n').count();
+        assert_eq!(
+            refused("\ncycle_below_r", "\ncycle_below"),
+            format!(
+                "c.toml:{}: `cycle_below` is no rule: did you mean `cycle_below_r`?",
+                line("cycle_below_r")
+            )
+        );
+        assert_eq!(
+            refused("\"counts\"", "true"),
+            format!(
+                "c.toml:{}: `rotary` is one of \"counts\", \"shortest\", \"within a turn\"",
+                line("rotary =")
+            )
+        );
+        assert!(refused("stop = ", "# stop = ").contains("the rule `stop` is missing"));
+        assert!(refused("\"straight\"", "\"straight").starts_with("c.toml:"));
+        let unknown = ControlRules::named("fanac").expect_err("a name").to_string();
+        assert!(unknown.contains("did you mean `fanuc`?"), "{unknown}");
+    }
+}

@@ -1,0 +1,331 @@
+//! APT-CL: the cutter location files that CAM systems write before a machine is chosen.
+//!
+//! These statements are read: `GOTO/x,y,z[,i,j,k]` and `FROM/` (the tip, and the unit vector from the tip to
+//! the spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
+//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
+//! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
+//! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
+//! matter.
+//!
+//! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
+//! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
+//! `TOOL PATH` after `END-OF-PATH` begins another operation.
+//!
+//! Words that can neither move the tool nor change the meaning of positions are listed in
+//! [`Program::ignored`](super::Program::ignored). Every other word is refused (`words` has the lists).
+
+use super::words::{is_prose, refuse_motions, skip_statement};
+use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown};
+use std::collections::BTreeMap;
+use std::mem;
+use touchoff::Unit;
+
+/// Reads an APT-CL program.
+pub(super) fn read(text: &str) -> Result<Tapes, Located> {
+    let (statements, unfinished_line) = statements(text);
+    let mut reader = Reader::default();
+    let mut end = 0;
+    for (index, (line, statement)) in statements.iter().enumerate() {
+        let is_last = unfinished_line.is_none() && index + 1 == statements.len();
+        reader.statement(*line, statement, is_last)?;
+        end = *line;
+    }
+    reader.change_tool()?;
+    let whole = (reader.finished || reader.path_ended) && unfinished_line.is_none();
+    let is_empty = reader.tapes.is_empty() && reader.tape.locations.is_empty();
+    if whole || is_empty && unfinished_line.is_none() {
+        reader.tapes.push(reader.tape);
+        Ok(Tapes { tapes: reader.tapes, several: reader.several })
+    } else {
+        Err((unfinished_line.unwrap_or(end), ProgramFault::Unfinished))
+    }
+}
+
+/// Returns the statements, each with the line on which it begins, and the line of a last statement whose
+/// continuation is missing.
+fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
+    let mut statements = Vec::new();
+    let mut open: Option<(usize, String)> = None;
+    for (line, raw) in lines(text) {
+        if open.is_none() && is_prose(raw) {
+            statements.push((line, raw.to_owned()));
+            continue;
+        }
+        let code = raw.split_once("$$").map_or(raw, |(code, _)| code.trim_end());
+        if code.is_empty() {
+            continue;
+        }
+        let (start, mut whole) = open.take().unwrap_or((line, String::new()));
+        if let Some(part) = code.strip_suffix('$') {
+            whole.push_str(part);
+            whole.push(' ');
+            open = Some((start, whole));
+        } else {
+            whole.push_str(code);
+            let parts = whole.split(';').map(str::trim).filter(|part| !part.is_empty());
+            statements.extend(parts.map(|part| (start, part.to_owned())));
+        }
+    }
+    (statements, open.map(|(start, _)| start))
+}
+
+/// State of the reader after some statements.
+#[derive(Default)]
+struct Reader {
+    /// The tapes of the tools before the present one.
+    tapes: Vec<Tape>,
+    tape: Tape,
+    axis: Option<[f64; 3]>,
+    rapid: bool,
+    /// Set once there was a `GOTO`.
+    has_moved: bool,
+    /// Statements about the present tool, by word: the line and the arguments.
+    tool: BTreeMap<String, (usize, Vec<String>)>,
+    /// Statements about the tool since the last position.
+    pending: Vec<ToolStatement>,
+    /// The first statement that a program of one tool and one operation cannot have.
+    several: Option<Located>,
+    path_ended: bool,
+    finished: bool,
+}
+
+/// A statement about the tool.
+struct ToolStatement {
+    line: usize,
+    word: String,
+    arguments: Vec<String>,
+    /// The cutter that it states, as arguments of `CUTTER`.
+    cutter: Option<Vec<f64>>,
+}
+
+impl Reader {
+    /// Reads one statement. A position that is the last of the file (`is_last`) and cannot be read was
+    /// truncated.
+    fn statement(&mut self, line: usize, text: &str, is_last: bool) -> Result<(), Located> {
+        let (head, rest) = text.split_once('/').unwrap_or((text, ""));
+        let word = head.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
+        let rest = rest.trim();
+        if matches!(word.as_str(), "GOTO" | "FROM") && !self.finished {
+            self.change_tool()?;
+        }
+        self.word(line, text, (&word, rest), is_last).map_err(|fault| (line, fault))
+    }
+
+    fn word(
+        &mut self,
+        line: usize,
+        text: &str,
+        (word, rest): (&str, &str),
+        is_last: bool,
+    ) -> Result<(), ProgramFault> {
+        let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
+        if ended && !is_prose(text) {
+            return Err(ProgramFault::AfterEnd {
+                end: if self.finished { "FINI" } else { "END-OF-PATH" },
+            });
+        }
+        let as_unfinished = |fault| if is_last { ProgramFault::Unfinished } else { fault };
+        match word {
+            "GOTO" => {
+                let rapid = mem::take(&mut self.rapid);
+                self.has_moved = true;
+                self.position(line, "GOTO", rest, rapid).map_err(as_unfinished)?;
+            }
+            "FROM" => self.position(line, "FROM", rest, true).map_err(as_unfinished)?,
+            "RAPID" if rest.is_empty() => self.rapid = true,
+            "MULTAX" => self.multax(rest)?,
+            "UNITS" => self.units(line, rest)?,
+            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
+                refuse_motions(word, rest)?;
+                if mem::take(&mut self.path_ended) {
+                    let after = ProgramFault::AfterEnd { end: "END-OF-PATH" };
+                    self.several.get_or_insert((line, after));
+                }
+                let statement = tool_statement(line, word, rest)?;
+                if word != "CUTTER" {
+                    self.tape.ignored.push((line, word.to_owned()));
+                }
+                self.pending.push(statement);
+            }
+            // NX ends the path of an operation with `END-OF-PATH`; `FINI` may follow.
+            "FINI" | "END-OF-PATH" if !rest.is_empty() => {
+                return Err(ProgramFault::Swallowed { word: word.to_owned() });
+            }
+            "FINI" => self.finished = true,
+            "END-OF-PATH" => self.path_ended = true,
+            other => self.other(line, text, other, rest)?,
+        }
+        Ok(())
+    }
+
+    fn position(
+        &mut self,
+        line: usize,
+        word: &'static str,
+        rest: &str,
+        rapid: bool,
+    ) -> Result<(), ProgramFault> {
+        if rest.is_empty() {
+            return Err(ProgramFault::Count { word, found: 0 });
+        }
+        let values = rest.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>()?;
+        let (tip, axis) = match values[..] {
+            [x, y, z] => ([x, y, z], self.axis.unwrap_or([0.0, 0.0, 1.0])),
+            [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
+            _ => {
+                return Err(ProgramFault::Count { word, found: values.len() });
+            }
+        };
+        let pose = axis_pose(tip, axis)?;
+        self.axis = Some(axis);
+        self.tape.locations.push(CutterLocation { line, pose, rapid });
+        Ok(())
+    }
+
+    fn multax(&mut self, argument: &str) -> Result<(), ProgramFault> {
+        match argument.to_ascii_uppercase().as_str() {
+            "" | "ON" => {}
+            "OFF" => self.axis = None,
+            _ => {
+                return Err(ProgramFault::Multax { argument: unquoted(argument) });
+            }
+        }
+        Ok(())
+    }
+
+    fn units(&mut self, line: usize, word: &str) -> Result<(), ProgramFault> {
+        let unit = match word.to_ascii_uppercase().as_str() {
+            "MM" | "MMS" => Unit::Millimetre,
+            "IN" | "INCH" | "INCHES" => Unit::Inch,
+            _ => return Err(ProgramFault::UnknownUnit { unit: unquoted(word) }),
+        };
+        match self.tape.unit {
+            Some((from, _)) if from != unit => Err(ProgramFault::UnitChanges { from, to: unit }),
+            Some(_) => Ok(()),
+            None if !self.tape.locations.is_empty() || !self.tapes.is_empty() => {
+                Err(ProgramFault::UnitLate)
+            }
+            None => {
+                self.tape.unit = Some((unit, line));
+                Ok(())
+            }
+        }
+    }
+
+    /// Applies the statements about the tool since the last position. `LOADTL` among them changes the tool if it has
+    /// another number.
+    fn change_tool(&mut self) -> Result<(), Located> {
+        let pending = mem::take(&mut self.pending);
+        let load = pending.iter().find(|statement| statement.word == "LOADTL");
+        let number = load.and_then(ToolStatement::number);
+        if let (true, Some(load)) = (self.has_moved, load) {
+            let known = mem::take(&mut self.tool);
+            let fault = pending.iter().find_map(|statement| statement.conflict(&known, true));
+            let faults = [self.several.take(), fault];
+            self.several = faults.into_iter().flatten().min_by_key(|(line, _)| *line);
+            let Some(number) = number else {
+                let argument = load.arguments.join(",");
+                return Err((
+                    load.line,
+                    ProgramFault::ToolNumber { argument: unquoted(&argument) },
+                ));
+            };
+            // The same tool again goes on from where it is.
+            if self.tape.tool != Some(number) {
+                let unit = self.tape.unit;
+                let next = Tape { unit, tool: Some(number), ..Tape::default() };
+                self.tapes.push(mem::replace(&mut self.tape, next));
+            }
+        } else if load.is_some() {
+            self.tape.tool = number;
+        }
+        let is_late = self.has_moved && load.is_none();
+        for statement in pending {
+            if let Some(fault) = statement.conflict(&self.tool, is_late) {
+                return Err(fault);
+            }
+            let ToolStatement { line, word, arguments, cutter } = statement;
+            self.tape.cutters.extend(cutter.map(|cutter| (line, cutter)));
+            self.tool.insert(word, (line, arguments));
+        }
+        Ok(())
+    }
+
+    /// Passes over or refuses a word that is not read.
+    fn other(
+        &mut self,
+        line: usize,
+        text: &str,
+        word: &str,
+        rest: &str,
+    ) -> Result<(), ProgramFault> {
+        match skip_statement(word, rest) {
+            Ok(word) => {
+                self.tape.ignored.push((line, word));
+                Ok(())
+            }
+            Err(ProgramFault::UnknownWord { .. })
+                if word.split([' ', ')']).any(|part| ["GOTO", "FROM", "UNITS"].contains(&part)) =>
+            {
+                Err(ProgramFault::Malformed { statement: shown(text) })
+            }
+            Err(fault) => Err(fault),
+        }
+    }
+}
+
+/// Reads a statement about the tool.
+fn tool_statement(line: usize, word: &str, rest: &str) -> Result<ToolStatement, ProgramFault> {
+    let upper = rest.to_ascii_uppercase();
+    let mut arguments: Vec<String> = upper.split(',').map(|part| part.trim().into()).collect();
+    if word == "TOOL PATH" {
+        // The arguments before `TOOL` name the path and not the tool.
+        let tool = arguments.iter().position(|part| part == "TOOL");
+        arguments.drain(..tool.unwrap_or(0));
+    }
+    let numbers =
+        |parts: &[String]| parts.iter().map(|part| number(part)).collect::<Result<Vec<f64>, _>>();
+    let cutter = match (word, &arguments[..]) {
+        ("CUTTER", arguments) => Some(numbers(arguments)?),
+        // NX writes a mill as diameter, corner, height, and the angles of side and end.
+        ("TLDATA", [kind, diameter, corner, others @ ..]) if kind == "MILL" => {
+            let (diameter, corner) = (number(diameter)?, number(corner)?);
+            let angle = |at: usize| others.get(at).map_or(Ok(0.0), |angle| number(angle));
+            let (side, end) = (angle(1)?, angle(2)?);
+            Some(vec![diameter, corner, 0.5 * diameter - corner, corner, end, side])
+        }
+        _ => None,
+    };
+    Ok(ToolStatement { line, word: word.to_owned(), arguments, cutter })
+}
+
+impl ToolStatement {
+    /// Returns the number of the tool, if the first argument is one.
+    fn number(&self) -> Option<u32> {
+        self.arguments.first()?.parse().ok()
+    }
+
+    /// Returns the fault if the statement contradicts the tool that is known, or adds to it too late.
+    fn conflict(
+        &self,
+        known: &BTreeMap<String, (usize, Vec<String>)>,
+        is_late: bool,
+    ) -> Option<Located> {
+        let fault = match known.get(&self.word) {
+            Some((first, known)) if *known != self.arguments || self.word == "LOADTL" => {
+                ProgramFault::SecondTool { first: *first }
+            }
+            None if is_late => ProgramFault::LateTool { word: self.word.clone() },
+            _ => return None,
+        };
+        Some((self.line, fault))
+    }
+}
+
+/// Returns the text as [`shown`] quotes it, without the quotes; empty for empty text.
+fn unquoted(text: &str) -> String {
+    if text.is_empty() { String::new() } else { shown(text).trim_matches('`').to_owned() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,371 @@
+use super::super::tests::{flank, refusal, shared};
+use crate::program::Program;
+use nalgebra::{Point3, Vector3};
+use std::path::Path;
+use touchoff::Unit;
+
+fn program(text: &str) -> Program {
+    Program::parse(text, "part.cl").expect("it is a program")
+}
+
+#[test]
+fn reads_a_flank_pass_from_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (text, stops) = flank();
+    let path = folder.path().join("flank.apt");
+    std::fs::write(&path, &text).expect("a file");
+    let program = Program::read(path).expect("it is a program");
+    assert_eq!(program.unit, Some(Unit::Millimetre));
+    let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
+    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
+    assert!(program.check_unit(Unit::Millimetre).is_ok());
+    assert!(program.check_unit(Unit::Inch).is_err());
+    assert_eq!(program.locations.len(), stops.len());
+    let lines: Vec<&str> = text.lines().collect();
+    for (stop, ([x, y, z, i, j, k], rapid)) in program.locations.iter().zip(stops) {
+        assert_eq!((stop.rapid, stop.pose.tip()), (rapid, Point3::new(x, y, z)));
+        assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 2e-5);
+        assert!(lines[stop.line - 1].starts_with(&format!("GOTO/{x:.5},")));
+    }
+    if let Some(path) = shared("impeller_flank.apt") {
+        the_impeller(&path);
+    }
+}
+
+fn the_impeller(path: &Path) {
+    let program = Program::read(path).expect("it is a program");
+    assert_eq!(program.unit, Some(Unit::Millimetre));
+    let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
+    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
+    let cutting = program.locations.iter().filter(|stop| !stop.rapid).count();
+    assert_eq!((cutting, program.locations.len()), (1274, 1302));
+    let first = program.locations[0];
+    assert!(first.rapid);
+    assert_eq!(first.line, 9);
+    assert_eq!(first.pose.tip(), Point3::new(34.73109, 4.67398, 21.56186));
+    let axis = Vector3::new(0.9912089, 0.1320835, -0.0076686);
+    assert!((first.pose.axis() - axis).norm() < 1e-7);
+    assert!(program.check_unit(Unit::Millimetre).is_ok());
+}
+
+#[test]
+fn keeps_the_last_axis() {
+    let text = "GOTO/1,2,3\nGOTO/4,5,6,1,0,0\nGOTO/7,8,9\nMULTAX\nGOTO/1,1,1\nMULTAX/OFF\n\
+                GOTO/2,2,2\nFINI\n";
+    let axes: Vec<_> = program(text).locations.iter().map(|stop| stop.pose.axis()).collect();
+    let [x, z] = [Vector3::x(), Vector3::z()];
+    assert_eq!(axes, [z, x, x, x, z]);
+}
+
+#[test]
+fn rapid_holds_for_one_goto() {
+    let text = "FROM/0,0,9\nRAPID\nGOTO/1,2,3\ngoto / 4 , 5 , 6\nRAPID;GOTO/7,8,9\nFINI";
+    let stops: Vec<_> =
+        program(text).locations.iter().map(|stop| (stop.line, stop.rapid)).collect();
+    assert_eq!(stops, [(1, true), (3, true), (4, false), (5, true)]);
+}
+
+#[test]
+fn reads_comments_and_continuations() {
+    let text = "$$ from the CAM\r\nPARTNO/A $ IS NO CONTINUATION $\r\nunits/inches $$ said\r\n\
+                GOTO/1.5, $\r\n  $$ between\r\n 2.5,-.5$\r\n,0,1,0\r\nFINI\r\nREMARK bye\r\n";
+    let program = program(text);
+    assert_eq!(program.unit, Some(Unit::Inch));
+    assert_eq!(program.locations.len(), 1);
+    assert_eq!(program.locations[0].line, 4);
+    assert_eq!(program.locations[0].pose.tip(), Point3::new(1.5, 2.5, -0.5));
+    assert_eq!(program.locations[0].pose.axis(), Vector3::y());
+}
+
+#[test]
+fn lists_what_it_passes_over() {
+    let text = "TOOL PATH/A,TOOL,B\nMSYS/0.,0,0,1,0,0,0,1,0\nTLDATA/DRILL,2\nPPRINT hi; GOTOX/1\n\
+                CYCLE/OFF\ncutcom / off\nMODE/ABSOL\nLOADTL/3\nFEDRAT/ 250.,MMPM\nGOTO/1,2,3\n\
+                COOLNT/OFF\nEND-OF-PATH\nFINI\n";
+    let expected = [
+        (1, "TOOL PATH"),
+        (2, "MSYS"),
+        (3, "TLDATA"),
+        (4, "PPRINT"),
+        (5, "CYCLE"),
+        (6, "CUTCOM"),
+        (7, "MODE"),
+        (8, "LOADTL"),
+        (9, "FEDRAT"),
+        (11, "COOLNT"),
+    ];
+    assert_eq!(program(text).ignored, expected.map(|(line, word)| (line, word.to_owned())));
+}
+
+/// Words that move the tool, words that change the meaning of positions, and unknown words.
+#[test]
+fn what_could_be_a_motion_is_refused() {
+    let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
+                 ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/LEFT|\
+                 MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/HI|RAPID/ON|OPSKIP/ON|\
+                 TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
+    for word in words.split('|') {
+        let text =
+            format!("UNITS/MM\nLOADTL/1\nCUTTER/2,1\nGOTO/1,2,3\n{word}\nGOTO/4,5,6\nFINI\n");
+        let said = refusal(&text);
+        assert!(said.starts_with("part.cl:5: "), "{word}: {said}");
+    }
+    for word in [
+        "FEDRAT/100 GOTO/0,0,-5",
+        "FEDRAT/RAPID",
+        "STOP/GOTO/0,0,-5",
+        "ISN/5 GODLTA/0,0,-5",
+        "TITLES/x$\nGOTO/0,0,-5",
+        "FEDRAT/100 GOHOME",
+        "FEDRAT/ 5,CYCLE,DRILL,0,0,-5",
+        "FEDRAT/ 5 GO TO 0,0,-5",
+        "FEDRAT/GOTO(1)",
+        "CUT/TLLFT,GOFWD",
+        "OPSTOP/GOHOME",
+        "TOOLNO/1,GOTO,0,0,-5",
+        "FINI/GOTO/0,0,-5",
+        "END-OF-PATH/GOTO/0,0,-5",
+        "TLAXIS/0,0,1",
+        "tldata/mill,50,0,30,0,0",
+        "TLDATA/MILL ,50,0",
+        "TLDATA/MILL,2,1,30,20,45",
+        "TLDATA/BALL,50,25",
+        "CUTTER/2,1,0,1,45,30",
+        "TOOLNO/2",
+        "TOOL PATH/B,TOOL,D50",
+        "LOADTL/1",
+    ] {
+        let text = format!(
+            "TOOL PATH/A,TOOL,D2\nTLDATA/MILL,2,1\nTOOLNO/1\nLOADTL/1\nCUTTER/2\nGOTO/1,2,3\n{word}\nFINI\n"
+        );
+        assert!(refusal(&text).starts_with("part.cl:7: "), "{word}: {}", refusal(&text));
+    }
+    for word in [
+        "LOADTL/1 GOTO/0,0,-5",
+        "LOADTL/1 $\nGOTO/0,0,-5",
+        "TLDATA/DRILL,2 GOTO/0,0,-5",
+        "TLDATA/MILL,2,1,75,0,0,GOTO/0,0,-5",
+        "TOOLNO/1,GOTO/0,0,-5",
+        "TOOL PATH/A,GODLTA/0,0,-5",
+        "TOOL PATH/A GOTO/0,0,-5,TOOL,B",
+    ] {
+        let said = refusal(format!("FROM/0,0,50\n{word}\nGOTO/0,0,1\nFINI\n"));
+        assert!(said.starts_with("part.cl:2: ") && said.contains("another statement"), "{said}");
+    }
+    assert_eq!(
+        refusal("FROM/0,0,9\nGOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI"),
+        "part.cl:3: LOADTL comes after positions, which are of another tool: give one program per tool"
+    );
+    for hidden in ["\u{c}", "\u{b}", "\u{85}", "\u{2028}", "\u{2029}", "\u{1b}"] {
+        let said = refusal(format!("GOTO/1,2,3\nFEDRAT/100 {hidden}GOTO/0,0,-5\nFINI"));
+        assert!(said.contains("part.cl:2: the character `\\u{"), "{said}");
+    }
+}
+
+#[test]
+fn the_end_of_a_path_of_nx_ends_a_program() {
+    let whole = "TOOL PATH/A,TOOL,B\nGOTO/1,2,3\nGOTO/4,5,6\nEND-OF-PATH";
+    assert_eq!(program(whole).locations.len(), 2);
+    assert_eq!(program(&format!("{whole}\nFINI\n")).locations.len(), 2);
+    assert_eq!(
+        refusal(format!("{whole}\nTOOL PATH/C,TOOL,D\nGOTO/1,2,3\nEND-OF-PATH\n")),
+        "part.cl:5: another tool than that of line 1: give one program per tool"
+    );
+    assert_eq!(
+        refusal(format!("{whole}\nTOOL PATH/C,TOOL,B\nGOTO/1,2,3\nEND-OF-PATH\n")),
+        "part.cl:5: a statement follows END-OF-PATH: give one program per file"
+    );
+}
+
+/// A tool and the lines of its positions.
+type ToolLines = (Option<u32>, Vec<usize>);
+
+/// Returns the tools of a program, each with the lines of its positions.
+fn tools(text: &str) -> Result<Vec<ToolLines>, String> {
+    let programs = Program::parse_tools(text, "part.cl").map_err(|error| error.to_string())?;
+    let lines = |program: &Program| program.locations.iter().map(|at| at.line).collect();
+    Ok(programs.iter().map(|program| (program.tool, lines(program))).collect())
+}
+
+#[test]
+fn a_tool_change_begins_another_program() {
+    let text = "UNITS/INCHES\nFROM/0,0,9\nLOADTL/3,ADJUST,3\nCUTTER/.5\nGOTO/1,2,3\nLOADTL/3\nGOTO/2,2,3\n\
+                CUTTER/.25,.125\nLOADTL/7\nFROM/0,0,9,1,0,0\nGOTO/4,5,6\nGOTO/5,5,6\nLOADTL/3\nCUTTER/.5\n\
+                GOTO/7,8,9\nLOADTL/0\nFINI\n";
+    let expected = vec![(Some(3), vec![2, 5, 7]), (Some(7), vec![10, 11, 12]), (Some(3), vec![15])];
+    assert_eq!(tools(text), Ok(expected));
+    let programs = Program::parse_tools(text, "part.cl").expect("three programs");
+    assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
+    // The axis stays as APT has it.
+    assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
+    assert_eq!(
+        refusal(text),
+        "part.cl:6: another tool than that of line 3: give one program per tool"
+    );
+}
+
+#[test]
+fn operations_of_nx_follow_one_another() {
+    let operation = |name: &str, tool: &str, more: &str| {
+        format!(
+            "TOOL PATH/{name},TOOL,{tool}\nTLDATA/MILL,6,3\n{more}GOTO/1,2,3\nGOTO/2,2,3\nEND-OF-PATH\n"
+        )
+    };
+    let both = [operation("A", "BALL", "LOADTL/1\n"), operation("B", "MILL", "LOADTL/2\n")];
+    let expected = vec![(Some(1), vec![4, 5]), (Some(2), vec![10, 11])];
+    assert_eq!(tools(&both.concat()), Ok(expected));
+    let again = operation("A", "BALL", "") + &operation("B", "BALL", "");
+    assert_eq!(tools(&again), Ok(vec![(None, vec![3, 4, 8, 9])]));
+    let unnumbered = operation("A", "BALL", "") + &operation("B", "MILL", "");
+    let message = "part.cl:6: another tool than that of line 1: give one program per tool";
+    assert_eq!(tools(&unnumbered), Err(message.to_owned()));
+    let unfinished = both.concat().replace("END-OF-PATH\nTOOL", "TOOL");
+    let unfinished = unfinished.strip_suffix("END-OF-PATH\n").expect("the end");
+    assert!(tools(unfinished).is_err_and(|error| error.contains("without FINI")));
+    assert_eq!(
+        tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/NEXT\nGOTO/1,2,3\nFINI"),
+        Err("part.cl:3: LOADTL/NEXT changes the tool, but has no number: write LOADTL/3".to_owned())
+    );
+    assert!(tools("LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nUNITS/MM\nGOTO/1,2,3\nFINI").is_err());
+}
+
+#[test]
+fn the_cutter_is_compared_with_the_tool() {
+    touchoff::tool! {
+        tool Ball "6 mm" {
+            units mm;
+            profile {
+                start (0, 0);
+                arc to (3, 3) center (0, 3) as ball cutting;
+                line to (3, 20), (0, 20) as shank;
+            }
+            niceness cutting: 1;
+        }
+    }
+    use touchoff::Tool as _;
+    let check = |cutter: &str, unit: Unit| {
+        let text = format!("{cutter}\nGOTO/1,2,3\nGOTO/4,5,6\nFINI");
+        program(&text).check_cutter(Ball.info(), unit).map_err(|error| error.to_string())
+    };
+    let mm = Unit::Millimetre;
+    for same in [
+        "CUTTER/6",
+        "CUTTER/6.0,3.0",
+        "CUTTER/6.,3.,0.,3.,0.,0.,30.",
+        "CUTTER/6.001,3",
+        "TLDATA/MILL,6.0000,3.0000,30.0000,0.0000,0.0000",
+        "UNITS/INCHES\nCUTTER/.23622,.11811",
+        "PPRINT none",
+    ] {
+        assert_eq!(check(same, mm), Ok(None), "{same}");
+    }
+    assert_eq!(check("CUTTER/.23622,.11811", Unit::Inch), Ok(None));
+    for other in ["CUTTER/50", "CUTTER/6,0", "CUTTER/6,3,0,3,0,5", "UNITS/INCHES\nCUTTER/6,3"] {
+        assert!(check(other, mm).is_err(), "{other}");
+    }
+    assert_eq!(
+        check("CUTTER/50,1", mm),
+        Err("part.cl:1: CUTTER/50,1 is not `Ball`, which is CUTTER/6,3 in mm: give the tool that the \
+             program was made for, or remove the statement to try another"
+            .to_owned())
+    );
+}
+
+#[test]
+fn holds_the_program_to_the_part() {
+    let program = program("\nUNITS/MMS\nGOTO/1,2,3\nFINI\n");
+    assert_eq!(
+        program.check_unit(Unit::Inch).expect_err("they differ").to_string(),
+        "part.cl:2: UNITS says mm, but the part is in inch: load the part in mm, or post the \
+         program in inch"
+    );
+}
+
+#[test]
+fn every_refusal_names_its_line_and_remedy() {
+    let moves = "moves the tool in a way that is not read: post the program as GOTO points";
+    let frame =
+        "changes what positions mean: post the program as GOTO points in the part's coordinates";
+    let unknown = "is not understood and could move the tool: post the program as GOTO points, or \
+                   remove the statement if it moves nothing";
+    let unfinished =
+        "the program stops here without FINI: post it again, or add FINI if this is the end";
+    let numbers = "numbers: write GOTO/x,y,z or GOTO/x,y,z,i,j,k";
+    let malformed = "is not understood: write GOTO/x,y,z,i,j,k, with nothing before it";
+    let infinite = "is not a finite number: correct it or remove the position";
+    for (body, message) in [
+        ("GODLTA/0,0,1\nFINI", format!("2: GODLTA {moves}")),
+        ("TLLFT, gofwd / L1,PAST,L2\nFINI", format!("2: TLLFT {moves}")),
+        ("GOTOX/1,2,3\nFINI", format!("2: `GOTOX` {unknown}")),
+        ("C1 = LINE/P1,P2\nFINI", format!("2: `C1 = LINE` {unknown}")),
+        (
+            "LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nFINI",
+            "4: another tool than that of line 2: give one program per tool".to_owned(),
+        ),
+        (
+            "INSERT G0 Z-5\nFINI",
+            "2: INSERT writes to the control what may be a motion: post the program without it"
+                .to_owned(),
+        ),
+        ("L1) CYCLE/DRILL,5\nFINI", format!("2: CYCLE {moves}")),
+        ("MSYS/0,0,5,1,0,0,0,1,0\nFINI", format!("2: MSYS {frame}")),
+        ("0010 GOTO/1,2,3\nFINI", format!("2: `0010 GOTO/1,2,3` {malformed}")),
+        ("GOTO 1,2,3\nFINI", format!("2: `GOTO 1,2,3` {malformed}")),
+        ("GOTO/1,2\nFINI", format!("2: GOTO has 2 {numbers}")),
+        ("GOTO\nFINI", format!("2: GOTO has 0 {numbers}")),
+        ("GOTO/1,2,1e999\nFINI", format!("2: `1e999` {infinite}")),
+        ("GOTO/1,NaN,3\nFINI", format!("2: `NaN` {infinite}")),
+        (
+            "GOTO/P1\nFINI",
+            "2: `P1` is not a number: write a plain number with a decimal point".to_owned(),
+        ),
+        (
+            "GOTO/1,2,3,0,0,0\nFINI",
+            "2: the axis i,j,k is zero and points nowhere: give the unit vector from the tip \
+             to the spindle"
+                .to_owned(),
+        ),
+        (
+            "GOTO/1,2,3,0,3,4\nFINI",
+            "2: the axis has norm 5: give a unit vector (within 0.001 of 1)".to_owned(),
+        ),
+        (
+            "MULTAX/3\nFINI",
+            "2: MULTAX/3 is not understood: write MULTAX/ON or MULTAX/OFF".to_owned(),
+        ),
+        (
+            "UNITS/CM\nFINI",
+            "2: UNITS/CM is not supported: post the program in MM or INCHES".to_owned(),
+        ),
+        (
+            "UNITS/INCH\nFINI",
+            "2: UNITS changes from mm to inch: post the whole program in one unit".to_owned(),
+        ),
+        ("GOTO/1,2,3\n\n", format!("2: {unfinished}")),
+        ("GOTO/1,2,3\nGOTO/4,5", format!("3: {unfinished}")),
+        ("GOTO/1,2,3\nGOTO/4,5,6,0,0.7", format!("3: {unfinished}")),
+        ("GOTO/1,2,3,$\n0,0,1$", format!("2: {unfinished}")),
+        ("GOTO/1,2,3\nFIN", format!("3: `FIN` {unknown}")),
+        (
+            "GOTO/1,2,3\nFINI\n\nPPRINT BYE\nGOTO/1,2,3",
+            "6: a statement follows FINI: give one program per file".to_owned(),
+        ),
+    ] {
+        let text = format!("UNITS/MM\n{body}");
+        assert_eq!(refusal(&text), format!("part.cl:{message}"), "{text:?}");
+    }
+    assert_eq!(
+        refusal("GOTO/1,2,3\nUNITS/MM\nFINI"),
+        "part.cl:2: UNITS comes after the first position: state it before"
+    );
+}
+
+/// No truncated file is taken for a whole one.
+#[test]
+fn no_beginning_is_a_program() {
+    let whole = "PARTNO/A\nUNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nGOTO/4,5,6,$\n0,1,0\nFINI";
+    assert_eq!(program(whole).locations.len(), 2);
+    for end in 0..whole.len() {
+        assert!(Program::parse(&whole[..end], "part.cl").is_err(), "{:?}", &whole[..end]);
+    }
+}

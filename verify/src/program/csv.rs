@@ -1,0 +1,330 @@
+//! Tables of poses: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw`, one pose per row.
+//!
+//! `x,y,z` is the tip and `i,j,k` the unit vector from the tip to the spindle. The quaternion turns the tool's
+//! frame into the part's. The first row decides the number of columns, which every other row must have too.
+//! Columns are separated by commas, semicolons or tabs, as the first row has them; `#` opens a comment, blank lines
+//! are skipped, and a first row may have the names above.
+//!
+//! A table that [`Program::write_csv`](super::Program::write_csv) wrote announces in its first line, a comment,
+//! that it ends with an end mark, another comment. Without that mark the table was truncated and is refused.
+//! Tables of other programs need none.
+
+use super::{CutterLocation, Located, PLAIN_NUMBER, ProgramFault, axis_pose, lines, number, shown};
+use nalgebra::Point3;
+use touchoff::Pose;
+
+const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
+const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+
+/// The first line of a table that this library wrote.
+pub(super) const HEAD: &str =
+    "# touchoff program: complete only with its last line `# end of program`";
+/// The last line of a table that this library wrote.
+pub(super) const END: &str = "# end of program";
+
+/// Reads the positions of a table.
+pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
+    check_end(text)?;
+    let mut locations = Vec::new();
+    let mut columns = None;
+    let mut separator = None;
+    for (line, raw) in lines(text) {
+        let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
+        if row.is_empty() {
+            continue;
+        }
+        let separator = *separator.get_or_insert_with(|| separator_of(row));
+        let cells: Vec<&str> = row.split(separator).map(str::trim).collect();
+        let is_header =
+            columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
+        if !is_header {
+            let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
+            locations.push(CutterLocation { line, pose, rapid: false });
+        }
+        columns = Some(cells.len());
+    }
+    Ok(locations)
+}
+
+/// Returns the separator of a first row. A comma beside semicolons is a decimal comma, which is refused later.
+fn separator_of(row: &str) -> char {
+    match row {
+        row if row.contains(';') => ';',
+        row if row.contains('\t') && !row.contains(',') => '\t',
+        _ => ',',
+    }
+}
+
+/// Refuses a table that announces an end mark and does not end with it.
+fn check_end(text: &str) -> Result<(), Located> {
+    // Spreadsheets pad the line with separators and may put it in quotes.
+    let is_mark = |line: &str, mark: &str| {
+        line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
+    };
+    let mut filled = lines(text).filter(|(_, line)| !line.is_empty());
+    let Some((first, head)) = filled.next() else { return Ok(()) };
+    if !is_mark(head, HEAD) {
+        return Ok(());
+    }
+    match filled.last() {
+        Some((_, line)) if is_mark(line, END) => Ok(()),
+        last => Err((last.map_or(first, |(line, _)| line), ProgramFault::NoEndMark)),
+    }
+}
+
+/// Returns whether a first row has the columns' names; a row of other names is refused.
+fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
+    let numeric = |cell: &&str| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    if cells.iter().any(numeric) || cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
+        return Ok(false);
+    }
+    let named = |names: &[&str]| {
+        let same = |(cell, name): (&&str, &&str)| cell.trim_matches('"').eq_ignore_ascii_case(name);
+        cells.len() == names.len() && cells.iter().zip(names).all(same)
+    };
+    if named(&AXIS) || named(&QUATERNION) {
+        Ok(true)
+    } else {
+        Err(ProgramFault::Names { names: shown(row) })
+    }
+}
+
+/// Returns the pose of a row, which must have `columns` cells if an earlier row has set that number.
+fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, ProgramFault> {
+    let found = cells.len();
+    let expected = match columns {
+        Some(6) => "6 (x,y,z,i,j,k)",
+        Some(_) => "7 (x,y,z,qx,qy,qz,qw)",
+        None => "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)",
+    };
+    let columns_error =
+        || ProgramFault::Columns { found, expected, remedy: columns_remedy(row, found) };
+    if columns.is_some_and(|columns| columns != found) {
+        return Err(columns_error());
+    }
+    if !matches!(found, 6 | 7) {
+        return Err(columns_error());
+    }
+    let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, ProgramFault>>();
+    match values.map_err(with_remedy)?[..] {
+        [x, y, z, i, j, k] => axis_pose([x, y, z], [i, j, k]),
+        [x, y, z, qx, qy, qz, qw] => quaternion_pose([x, y, z], [qx, qy, qz, qw]),
+        _ => Err(columns_error()),
+    }
+}
+
+fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, ProgramFault> {
+    if quaternion == [0.0; 4] {
+        let remedy = "give the unit quaternion from the tool's frame to the part's";
+        return Err(ProgramFault::NoDirection { what: "the quaternion qx,qy,qz,qw", remedy });
+    }
+    Ok(Pose::from_quaternion(Point3::from(tip), quaternion)?)
+}
+
+const DECIMAL_COMMA: &str = "write decimals with a point";
+
+/// Returns the remedy for a wrong number of columns, guessed from the formats of spreadsheets.
+fn columns_remedy(row: &str, found: usize) -> &'static str {
+    if found == 1 && row.contains(char::is_whitespace) {
+        "separate the columns by commas, semicolons or tabs, not blanks"
+    } else if found > QUATERNION.len() && !row.contains('.') {
+        "these look like decimal commas (`0,5`): write points (`0.5`)"
+    } else {
+        "correct the row"
+    }
+}
+
+/// Adapts the remedy of a fault to decimal commas.
+fn with_remedy(fault: ProgramFault) -> ProgramFault {
+    match fault {
+        ProgramFault::NotNumber { cell, .. } => {
+            let remedy = if cell.contains(',') { DECIMAL_COMMA } else { PLAIN_NUMBER };
+            ProgramFault::NotNumber { cell, remedy }
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{fan, refusal, shared};
+    use super::END;
+    use crate::program::{CutterLocation, Program};
+    use nalgebra::{Point3, Vector3};
+    use std::path::Path;
+    use touchoff::Pose;
+
+    fn locations(text: &str) -> Vec<CutterLocation> {
+        Program::parse(text, "part.csv").expect("it is a table").locations
+    }
+
+    /// No truncated table that was written here is taken for a whole one.
+    #[test]
+    fn no_beginning_is_a_table() {
+        let pose = |x| Pose::from_axis(Point3::new(x, 0.5, -12.25), Vector3::z()).expect("a pose");
+        let made = Program::new("made", None, [1.0, 2.0, 3.0].map(|x| (pose(x), false)));
+        let mut whole = Vec::new();
+        made.expect("poses").write_csv(&mut whole).expect("memory");
+        let whole = String::from_utf8(whole).expect("UTF-8");
+        assert_eq!(locations(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [3, 4, 5]);
+        let last = whole.trim_end().len();
+        assert_eq!(locations(&whole[..last]).len(), 3);
+        for end in 0..last {
+            assert!(Program::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
+        }
+        assert_eq!(
+            refusal(whole.trim_end().trim_end_matches(END)),
+            "part.cl:5: the table stops here without its end mark `# end of program`: write it again, or add \
+             the mark if this is the end"
+        );
+        // As a spreadsheet saves it: comment lines are padded with empty cells.
+        let sheet = whole
+            .replace('\n', ",,,,,\r\n")
+            .replace("k,,,,,", "k")
+            .replace("25,0,0,1,,,,,", "25,0,0,1");
+        assert_eq!(locations(&sheet).len(), 3, "{sheet}");
+        let after = format!("{whole}4,5,6,0,0,1\n");
+        assert!(Program::parse(after, "part.csv").is_err());
+    }
+
+    #[test]
+    fn reads_a_fan_from_a_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (text, rows) = fan();
+        let path = folder.path().join("fan.csv");
+        std::fs::write(&path, text).expect("a file");
+        let program = Program::read(path).expect("it is a table");
+        assert_eq!((program.locations.len(), program.unit), (25, None));
+        assert!(program.ignored.is_empty());
+        for ((stop, [x, y, z, i, j, k]), line) in program.locations.iter().zip(rows).zip(2..) {
+            assert_eq!((stop.line, stop.rapid), (line, false));
+            assert_eq!(stop.pose.tip(), Point3::new(x, y, z));
+            // The file's axis is rounded to four digits; it is normalised when read.
+            assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 1e-4);
+            assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
+        }
+        if let Some(path) = shared("ijms2021_fan_xyzijk.csv") {
+            the_published_fan(&path);
+        }
+    }
+
+    fn the_published_fan(path: &Path) {
+        let program = Program::read(path).expect("it is a table");
+        assert_eq!(program.locations.len(), 25);
+        assert_eq!(program.unit, None);
+        assert!(program.ignored.is_empty());
+        let last = program.locations[24];
+        assert_eq!(last.line, 26);
+        assert_eq!(last.pose.tip(), Point3::new(-49.4389, -108.7844, 2.0895));
+        assert!((last.pose.axis() - Vector3::new(0.6189, -0.2239, 0.7529)).norm() < 1e-4);
+        for stop in &program.locations {
+            assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
+            assert!(!stop.rapid);
+        }
+    }
+
+    #[test]
+    fn skips_comments_names_and_a_byte_order_mark() {
+        let text = "\u{feff}# made by hand\r\n\r\n X , y,Z, i,j,\"k\"\r\n\
+                    \t1 , -2,+3.5,0,.6,8e-1 # tip\r\n4,5,6,0,0,-1";
+        let locations = locations(text);
+        assert_eq!(locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [4, 5]);
+        assert_eq!(locations[0].pose.tip(), Point3::new(1.0, -2.0, 3.5));
+        assert!((locations[0].pose.axis() - Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-15);
+        assert_eq!(locations[1].pose.axis(), Vector3::new(0.0, 0.0, -1.0));
+    }
+
+    #[test]
+    fn reads_semicolons_and_tabs() {
+        for separator in [";", "\t", " ; "] {
+            let text = "x,y,z,i,j,k\n1,2,3.5,0,0,1\n4,5,6,0,0,1\n".replace(',', separator);
+            assert_eq!(locations(&text)[0].pose.tip(), Point3::new(1.0, 2.0, 3.5), "{text}");
+        }
+    }
+
+    #[test]
+    fn counts_lone_carriage_returns_as_lines() {
+        let locations = locations("# old\r1,2,3,0,0,1\r4,5,6,0,0,1\r");
+        assert_eq!(locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3]);
+    }
+
+    #[test]
+    fn reads_quaternions() {
+        let half = 0.5f64.sqrt();
+        let locations =
+            locations(&format!("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,{half},0,0,{half}\n"));
+        assert_eq!(locations[0].pose.axis(), Vector3::z());
+        assert!((locations[1].pose.axis() - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn every_refusal_names_its_line_and_remedy() {
+        let either = "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)";
+        let plain = "is not a number: write a plain number with a decimal point";
+        let infinite = "is not a finite number: correct it or remove the position";
+        let unit = "give a unit vector (within 0.001 of 1)";
+        for (text, message) in [
+            ("1,2,3\n", format!("1: found 3 columns, expected {either}: correct the row")),
+            (
+                "1,2,3,0,0,1\n1,2,3,0,0,0,1\n",
+                "2: found 7 columns, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
+            ),
+            (
+                "x,y,z,qx,qy,qz,qw\n1,2,3,0,0,1\n",
+                "2: found 6 columns, expected 7 (x,y,z,qx,qy,qz,qw): correct the row".to_owned(),
+            ),
+            (
+                "1,5,2,5,3,5,0,0,0,0,1,0\n",
+                format!(
+                    "1: found 12 columns, expected {either}: these look like decimal commas \
+                     (`0,5`): write points (`0.5`)"
+                ),
+            ),
+            (
+                "0,5;1,5;2,5;0,0;1,0;0,0\n",
+                "1: `0,5` is not a number: write decimals with a point".to_owned(),
+            ),
+            (
+                "1;2;3;0;0;1\n1,2,3,0,0,1\n",
+                "2: found 1 column, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
+            ),
+            (
+                "1 2 3 0 0 1\n",
+                format!(
+                    "1: found 1 column, expected {either}: separate the columns by commas, semicolons \
+                     or tabs, not blanks"
+                ),
+            ),
+            (
+                "i,j,k,x,y,z\n",
+                "1: `i,j,k,x,y,z` are not the columns: write x,y,z,i,j,k or x,y,z,qx,qy,qz,qw, \
+                 or no names"
+                    .to_owned(),
+            ),
+            ("1,2,3,0,0,1\nx,y,z,i,j,k\n", format!("2: `x` {plain}")),
+            ("1,2,,0,0,1\n", format!("1: an empty cell {plain}")),
+            ("nan,2,3,0,0,1\n", format!("1: `nan` {infinite}")),
+            ("1,2,3,0,0,1\n1,-1e400,3,0,0,1\n", format!("2: `-1e400` {infinite}")),
+            (
+                "1,2,3,0,0,-0\n",
+                "1: the axis i,j,k is zero and points nowhere: give the unit vector from the tip \
+                 to the spindle"
+                    .to_owned(),
+            ),
+            (
+                "1,2,3,0,0,0,0\n",
+                "1: the quaternion qx,qy,qz,qw is zero and points nowhere: give the unit \
+                 quaternion from the tool's frame to the part's"
+                    .to_owned(),
+            ),
+            ("# a\n\n1,2,3,0,0,0.5\n", format!("3: the axis has norm 0.5: {unit}")),
+            (
+                "1,2,3,0,0,0,2\n",
+                "1: the quaternion has norm 2: give a unit quaternion (within 0.001 of 1)"
+                    .to_owned(),
+            ),
+        ] {
+            assert_eq!(refusal(text), format!("part.cl:{message}"), "{text:?}");
+        }
+    }
+}

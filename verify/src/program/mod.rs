@@ -1,0 +1,379 @@
+//! 5-axis programs: tips and tool axes, read from a table of `x,y,z,i,j,k` or from APT-CL, and written as
+//! either.
+//!
+//! The format follows from the content, never the file's ending. The first line that is neither blank nor a
+//! comment (`#`, `$$`) determines it:
+//! - it begins with a number, or with the name `x`, or is a row of five or more commas or semicolons without
+//!   `/`: a table of poses, `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`;
+//! - it begins with another letter: APT-CL;
+//! - anything else is refused.
+//!
+//! Coordinates are in the part's unit. A table does not state its unit. APT may, and [`Program::check_unit`]
+//! compares it with the part's.
+
+mod apt;
+mod csv;
+mod cutter;
+mod decimals;
+mod error;
+mod words;
+mod write;
+
+pub use decimals::Decimals;
+pub use error::{ProgramError, ProgramFault};
+pub use write::{AptHeader, Cutter, WriteError, apt_unit};
+
+use std::path::Path;
+
+use nalgebra::{Point3, Vector3};
+use touchoff::Pose;
+use touchoff::Unit;
+use touchoff::read_regular_file;
+use touchoff::tool::{Symmetry, ToolInfo};
+
+/// A 5-axis program: its cutter locations, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// Unit of length that the file states with APT's `UNITS`.
+    pub unit: Option<Unit>,
+    /// The cutter locations, at least one.
+    pub locations: Vec<CutterLocation>,
+    /// Words that were passed over, each with its 1-based line. They can neither move the tool nor change the
+    /// meaning of positions.
+    pub ignored: Vec<(usize, String)>,
+    /// The tool's number, if APT's `LOADTL` states it.
+    pub tool: Option<u32>,
+    file: String,
+    /// Line of `UNITS` in a program that was read.
+    unit_line: Option<usize>,
+    /// Cutters that APT states, as arguments of `CUTTER` in the program's unit, each with its line.
+    cutters: Vec<(usize, Vec<f64>)>,
+}
+
+/// A program of either kind, as a file holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProgramFile {
+    /// Positions of the tip with the axis, from a table or APT-CL: a program per tool change, at least one.
+    Locations(Vec<Program>),
+    /// The text of a G-code program.
+    Gcode(String),
+}
+
+impl ProgramFile {
+    /// Reads a file of positions or of G-code.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as for [`ProgramFile::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<ProgramFile, ProgramError> {
+        let file = path.as_ref().display().to_string();
+        match read_regular_file(path) {
+            Ok(bytes) => ProgramFile::parse(bytes, &file),
+            Err(source) => Err(ProgramError::Read { file, source }),
+        }
+    }
+
+    /// Reads positions or G-code from the content of a file. `name` is the file's name in errors.
+    ///
+    /// The first line that is neither blank nor a comment decides: G-code begins with `%`, a comment in parentheses, a
+    /// letter with a number, or the head of a Heidenhain program.
+    ///
+    /// # Errors
+    /// If the content is not text, or as for [`Program::parse_tools`].
+    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ProgramFile, ProgramError> {
+        match decode(content.as_ref()) {
+            Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
+            _ => Program::parse_tools(content, name).map(ProgramFile::Locations),
+        }
+    }
+}
+
+/// A cutter location: one position of a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutterLocation {
+    /// The line on which it begins, 1-based; in a program that was not read, its number from 1.
+    pub line: usize,
+    /// Pose of the tool, in the program's coordinates.
+    pub pose: Pose,
+    /// Set if the tool arrives in rapid traverse.
+    pub rapid: bool,
+}
+
+impl Program {
+    /// Creates a program from poses, each with a flag that is set if the tool arrives in rapid traverse. `name`
+    /// is the program's name in errors. Poses are in the unit that is stated, or in the part's.
+    ///
+    /// # Errors
+    /// If there is no pose.
+    pub fn new(
+        name: &str,
+        unit: Option<Unit>,
+        poses: impl IntoIterator<Item = (Pose, bool)>,
+    ) -> Result<Program, ProgramError> {
+        let location = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
+        let locations: Vec<CutterLocation> = (1..).zip(poses).map(location).collect();
+        let file = name.to_owned();
+        if locations.is_empty() {
+            return Err(ProgramError::NoPosition { file });
+        }
+        Ok(Program {
+            unit,
+            locations,
+            ignored: Vec::new(),
+            tool: None,
+            file,
+            unit_line: None,
+            cutters: Vec::new(),
+        })
+    }
+
+    /// Reads a program of one tool from a file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as for [`Program::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Program, ProgramError> {
+        let file = path.as_ref().display().to_string();
+        match read_regular_file(path) {
+            Ok(bytes) => Program::parse(bytes, &file),
+            Err(source) => Err(ProgramError::Read { file, source }),
+        }
+    }
+
+    /// Reads a program of one tool from the content of a file. `name` is the file's name in errors.
+    ///
+    /// # Errors
+    /// If a line is refused, the tool changes, or there is no position.
+    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<Program, ProgramError> {
+        let tapes = assemble(content.as_ref());
+        let tapes = tapes.and_then(|Tapes { tapes, several }| several.map_or(Ok(tapes), Err));
+        Program::from_tapes(tapes, name).map(|mut programs| programs.swap_remove(0))
+    }
+
+    /// Reads the programs of several tools from the content of a file: one per tool change of APT, at least one. Each has
+    /// the positions between two changes. `name` is the file's name in errors.
+    ///
+    /// # Errors
+    /// If a line is refused, or if there is no position.
+    pub fn parse_tools(
+        content: impl AsRef<[u8]>,
+        name: &str,
+    ) -> Result<Vec<Program>, ProgramError> {
+        Program::from_tapes(assemble(content.as_ref()).map(|read| read.tapes), name)
+    }
+
+    fn from_tapes(
+        tapes: Result<Vec<Tape>, Located>,
+        name: &str,
+    ) -> Result<Vec<Program>, ProgramError> {
+        let file = name.to_owned();
+        let mut tapes = match tapes {
+            Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
+            Ok(tapes) => tapes,
+        };
+        tapes.retain(|tape| !tape.locations.is_empty());
+        if tapes.is_empty() {
+            return Err(ProgramError::NoPosition { file });
+        }
+        let program = |tape: Tape| Program {
+            unit: tape.unit.map(|(unit, _)| unit),
+            unit_line: tape.unit.map(|(_, line)| line),
+            locations: tape.locations,
+            ignored: tape.ignored,
+            tool: tape.tool,
+            cutters: tape.cutters,
+            file: file.clone(),
+        };
+        Ok(tapes.into_iter().map(program).collect())
+    }
+
+    /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
+    /// part's unit.
+    ///
+    /// # Errors
+    /// If the units differ.
+    pub fn check_unit(&self, part: Unit) -> Result<(), ProgramError> {
+        match self.unit {
+            Some(stated) if stated != part => Err(ProgramError::Unit {
+                file: self.file.clone(),
+                line: self.unit_line,
+                stated,
+                part,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that the poses suffice for a tool: a solid without an axis needs poses with a spin, which only a
+    /// table of quaternions gives.
+    ///
+    /// # Errors
+    /// If the tool is such a solid, and a pose has no spin.
+    pub fn check_poses(&self, info: &ToolInfo) -> Result<(), ProgramError> {
+        match (info.symmetry, self.locations.iter().find(|location| !location.pose.has_spin())) {
+            (Symmetry::Solid { .. }, Some(location)) => Err(ProgramError::NoSpin {
+                file: self.file.clone(),
+                line: location.line,
+                solid: info.name.to_string(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a program that has no motion.
+    ///
+    /// # Errors
+    /// If it has one position.
+    pub fn check_motions(&self) -> Result<(), ProgramError> {
+        match self.locations[..] {
+            [CutterLocation { line, .. }] => {
+                Err(ProgramError::OnePosition { file: self.file.clone(), line })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A fault, with its 1-based line.
+type Located = (usize, ProgramFault);
+
+/// The data read from a file of either format.
+#[derive(Default)]
+struct Tapes {
+    /// A tape per tool change.
+    tapes: Vec<Tape>,
+    /// The first statement that a program of one tool cannot have.
+    several: Option<Located>,
+}
+
+/// The data of one tool.
+#[derive(Default)]
+struct Tape {
+    locations: Vec<CutterLocation>,
+    unit: Option<(Unit, usize)>,
+    ignored: Vec<(usize, String)>,
+    tool: Option<u32>,
+    cutters: Vec<(usize, Vec<f64>)>,
+}
+
+/// Returns whether a text is a program of blocks for a control.
+fn is_gcode(text: &str) -> bool {
+    let mut code = lines(text).map(|(_, line)| line).filter(|line| {
+        !line.is_empty() && !line.starts_with([';', '#']) && !line.starts_with("$$")
+    });
+    code.next().is_some_and(|line| {
+        let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
+        let is_word = |line: &str| {
+            let mut characters = line.chars();
+            characters.next().is_some_and(|c| c.is_ascii_alphabetic())
+                && characters
+                    .as_str()
+                    .trim_start()
+                    .starts_with(|c: char| c.is_ascii_digit() || "+-.#[<".contains(c))
+        };
+        line.starts_with(['%', '(']) || line.contains("BEGIN PGM") || is_word(line)
+    })
+}
+
+/// Decodes bytes as text, and reads its positions.
+fn assemble(bytes: &[u8]) -> Result<Tapes, Located> {
+    let text = decode(bytes)?;
+    let Some((line, first)) = lines(text).find(|(_, line)| !is_comment(line)) else {
+        return Ok(Tapes::default());
+    };
+    if begins_table(first) {
+        let locations = csv::read(text)?;
+        Ok(Tapes { tapes: vec![Tape { locations, ..Tape::default() }], several: None })
+    } else if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        apt::read(text)
+    } else {
+        Err((line, ProgramFault::Unrecognised { start: shown(first) }))
+    }
+}
+
+/// Returns the text without its byte-order mark. A NUL is refused, since it reveals UTF-16 without a mark.
+fn decode(bytes: &[u8]) -> Result<&str, Located> {
+    let invalid_byte = match std::str::from_utf8(bytes) {
+        Ok(text) => match text.find('\0') {
+            None => return check_characters(text.strip_prefix('\u{feff}').unwrap_or(text)),
+            Some(byte) => byte,
+        },
+        Err(error) => error.valid_up_to(),
+    };
+    let line = lines(&String::from_utf8_lossy(&bytes[..invalid_byte])).count();
+    Err((line, ProgramFault::NotText { byte: invalid_byte }))
+}
+
+/// Returns the text, if no character in it hides a line from a reader or shows a line that is none.
+fn check_characters(text: &str) -> Result<&str, Located> {
+    let is_hidden = |c: char| {
+        c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
+    };
+    match text.find(is_hidden) {
+        None => Ok(text),
+        Some(byte) => {
+            let line = lines(&text[..byte]).count();
+            let shown =
+                text[byte..].chars().take(1).flat_map(char::escape_unicode).collect::<String>();
+            Err((line, ProgramFault::Control { shown: format!("`{shown}`") }))
+        }
+    }
+}
+
+/// Returns the lines, trimmed and numbered from 1. They may end in LF, CRLF or a lone CR.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let lines =
+        text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    (1..).zip(lines.map(str::trim))
+}
+
+fn is_comment(line: &str) -> bool {
+    line.is_empty() || line.starts_with('#') || line.starts_with("$$")
+}
+
+/// Returns whether a first line is a row of a table, well formed or not.
+fn begins_table(line: &str) -> bool {
+    let separators = [',', ';', '\t', ' '];
+    let first = line.split(separators).next().unwrap_or(line);
+    let separated = line.matches([',', ';']).count() >= 5 && !line.contains('/');
+    line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+        || first.parse::<f64>().is_ok()
+        || first.trim_matches('"').eq_ignore_ascii_case("x")
+        || separated && !words::is_prose(line)
+}
+
+const PLAIN_NUMBER: &str = "write a plain number with a decimal point";
+
+/// Parses a finite number.
+fn number(cell: &str) -> Result<f64, ProgramFault> {
+    match cell.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(ProgramFault::NotFinite { cell: shown(cell.trim()) }),
+        Err(_) => Err(ProgramFault::NotNumber { cell: shown(cell.trim()), remedy: PLAIN_NUMBER }),
+    }
+}
+
+/// Creates a pose from `x,y,z,i,j,k`.
+fn axis_pose(tip: [f64; 3], axis: [f64; 3]) -> Result<Pose, ProgramFault> {
+    if axis == [0.0; 3] {
+        let remedy = "give the unit vector from the tip to the spindle";
+        return Err(ProgramFault::NoDirection { what: "the axis i,j,k", remedy });
+    }
+    Ok(Pose::from_axis(Point3::from(tip), Vector3::from(axis))?)
+}
+
+/// Quotes text of the file for a message: short, in one line, without characters that a terminal would obey.
+fn shown(text: &str) -> String {
+    const MAX_CHARACTERS: usize = 40;
+    if text.is_empty() {
+        return "an empty cell".to_owned();
+    }
+    let mut quoted = String::from("`");
+    quoted.extend(text.chars().take(MAX_CHARACTERS).flat_map(char::escape_debug));
+    if text.chars().nth(MAX_CHARACTERS).is_some() {
+        quoted.push('…');
+    }
+    quoted.push('`');
+    quoted
+}
+
+#[cfg(test)]
+mod tests;

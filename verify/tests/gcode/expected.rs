@@ -1,0 +1,354 @@
+//! Compares the interpreter with the canonical commands that LinuxCNC's interpreter gives for its own test programs.
+
+use crate::common::{folder, text};
+use std::collections::BTreeMap;
+use touchoff_verify::gcode::{
+    ControlRules, ControlSetup, GcodeError, Interpreter, Plane, Step, StepPath, WorkOffset,
+};
+
+/// A motion of a file `expected`, lengths in millimetres.
+#[derive(Clone, Debug, Default)]
+struct Canonical {
+    text: String,
+    rapid: bool,
+    end: [f64; 6],
+    /// Centre in the order of the plane's axes, and turns with the sign of the direction.
+    arc: Option<([f64; 2], i32)>,
+    plane: usize,
+    work_offset: usize,
+    origin: [f64; 6],
+    rotation: f64,
+    shift: [f64; 6],
+    /// Millimetres per unit, by which the rounding of the file is multiplied.
+    unit: f64,
+    /// Digits after the point.
+    digits: i32,
+}
+
+/// Reads the numbers in the parentheses of a canonical command.
+fn numbers(text: &str) -> Vec<f64> {
+    let inside = text.split_once('(').map_or("", |(_, rest)| rest);
+    inside.split([',', '(', ')', ' ']).filter_map(|word| word.parse().ok()).collect()
+}
+
+fn six(values: &[f64], unit: f64) -> [f64; 6] {
+    std::array::from_fn(|k| if k < 3 { unit * values[k] } else { values[k] })
+}
+
+/// Reads the motions of a file `expected`. Messages that report a position count as motions to it.
+fn canonical(text: &str) -> Vec<Canonical> {
+    let mut now = Canonical { unit: 1.0, digits: 4, ..Canonical::default() };
+    let mut found = Vec::new();
+    for line in text.lines() {
+        let Some((_, command)) = line.split_once("N..... ") else { continue };
+        let name = command.split('(').next().expect("a command");
+        let values = numbers(command);
+        let mut emit =
+            |motion: Canonical| found.push(Canonical { text: line.trim().into(), ..motion });
+        match name {
+            "USE_LENGTH_UNITS" => now.unit = if command.contains("INCHES") { 25.4 } else { 1.0 },
+            "SELECT_PLANE" => {
+                now.plane = ["_XY", "_XZ", "_YZ"]
+                    .iter()
+                    .position(|p| command.contains(p))
+                    .expect("a plane");
+            }
+            "SET_G5X_OFFSET" => {
+                now.work_offset = values[0] as usize;
+                now.origin = six(&values[1..], now.unit);
+            }
+            "SET_G92_OFFSET" => now.shift = six(&values, now.unit),
+            "SET_XY_ROTATION" => now.rotation = values[0],
+            "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED" => {
+                now.end = six(&values, now.unit);
+                emit(Canonical { rapid: name == "STRAIGHT_TRAVERSE", ..now.clone() });
+            }
+            "ARC_FEED" => {
+                let [first, second, normal] = [[0, 1, 2], [2, 0, 1], [1, 2, 0]][now.plane];
+                now.end = [0.0; 6];
+                now.end[first] = now.unit * values[0];
+                now.end[second] = now.unit * values[1];
+                now.end[normal] = now.unit * values[5];
+                now.end[3..].copy_from_slice(&values[6..9]);
+                let arc = Some(([now.unit * values[2], now.unit * values[3]], values[4] as i32));
+                emit(Canonical { rapid: false, arc, ..now.clone() });
+            }
+            "MESSAGE" if command.contains(" X") && command.contains(" Y") => {
+                let place = |letter: char| {
+                    let (_, rest) = command.split_once(letter).expect("a coordinate");
+                    rest.split([' ', '"'])
+                        .next()
+                        .and_then(|word| word.parse::<f64>().ok())
+                        .expect("a number")
+                };
+                now.end[..3]
+                    .copy_from_slice(&['X', 'Y', 'Z'].map(|letter| now.unit * place(letter)));
+                emit(Canonical { rapid: true, digits: 6, ..now.clone() });
+            }
+            "MESSAGE" if ["in inches,", "in mm,"].iter().any(|part| command.contains(part)) => {
+                let (_, list) = command.rsplit_once(": ").expect("values");
+                let values: Vec<f64> = list
+                    .trim_end_matches("\")")
+                    .split(' ')
+                    .map(|word| word.parse().expect("a number"))
+                    .collect();
+                now.end = six(&values, now.unit);
+                emit(Canonical { rapid: true, digits: 6, ..now.clone() });
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// A control that stands at the origin and has all offsets at zero, as `rs274` has.
+fn setup() -> ControlSetup {
+    let zero = [0.0; 6];
+    ControlSetup {
+        start: zero.map(Some),
+        work_offsets: [Some(zero); 9],
+        lengths: BTreeMap::new(),
+        home: Some(zero),
+        second_home: Some(zero),
+        rules: ControlRules::named("linuxcnc").expect("a control"),
+        ..ControlSetup::default()
+    }
+}
+
+fn steps(program: &str) -> (Vec<Step>, Option<GcodeError>) {
+    let interpreter = match Interpreter::new(program, &setup()) {
+        Ok(interpreter) => interpreter,
+        Err(error) => return (Vec::new(), Some(error)),
+    };
+    let mut steps = Vec::new();
+    for step in interpreter {
+        match step {
+            Ok(step) => steps.push(step),
+            Err(error) => return (steps, Some(error)),
+        }
+    }
+    (steps, None)
+}
+
+fn check_step(name: &str, step: &Step, wanted: &Canonical) {
+    let fail = |what: &str| panic!("{name}: {what} of {} in\n{step:?}", wanted.text);
+    let tolerance = |axis: usize| {
+        (0.5 * 10f64.powi(-wanted.digits) + 1e-9) * if axis < 3 { wanted.unit } else { 1.0 }
+    };
+    for axis in 0..6 {
+        match step.end[axis] {
+            Some(value) if (value - wanted.end[axis]).abs() <= tolerance(axis) => {}
+            _ => fail("end"),
+        }
+        let near = |value: Option<f64>, other: f64| {
+            value.is_some_and(|value| (value - other).abs() <= 0.5e-4 * wanted.unit + 1e-9)
+        };
+        if !near(step.state.origin[axis], wanted.origin[axis]) {
+            fail("origin");
+        }
+        if !near(step.state.shift[axis], wanted.shift[axis]) {
+            fail("shift");
+        }
+    }
+    if step.rapid != wanted.rapid {
+        fail("rapid");
+    }
+    if step.state.work_offset != WorkOffset::Standard(wanted.work_offset as u8) {
+        fail("work offset");
+    }
+    if (step.state.origin_rotation - wanted.rotation).abs() > 1e-4 {
+        fail("rotation");
+    }
+    match (step.path, wanted.arc) {
+        (StepPath::Line, None) => {}
+        (StepPath::Arc { plane, centre, sweep }, Some((wanted_centre, turns))) => {
+            if plane != [Plane::Xy, Plane::Zx, Plane::Yz][wanted.plane] {
+                fail("plane");
+            }
+            if (0..2).any(|k| (centre[k] - wanted_centre[k]).abs() > tolerance(0)) {
+                fail("centre");
+            }
+            let turn = sweep.abs() / std::f64::consts::TAU;
+            if sweep.signum() as i32 != turns.signum() || turn.ceil() as i32 != turns.abs() {
+                fail("turns");
+            }
+        }
+        _ => fail("path"),
+    }
+}
+
+fn compare(name: &str, program: &str, expected: &[Canonical]) -> usize {
+    let (steps, error) = steps(program);
+    if let Some(error) = error {
+        panic!("{name}: {error}");
+    }
+    assert_eq!(steps.len(), expected.len(), "{name}: number of motions");
+    for (step, wanted) in steps.iter().zip(expected) {
+        check_step(name, step, wanted);
+    }
+    steps.len()
+}
+
+/// Replaces the messages that print a position by a motion of no length.
+fn with_probes(program: &str) -> String {
+    let is_position = |line: &str| line.contains("#5420");
+    program
+        .lines()
+        .map(|line| if is_position(line) { "g91 g0 a0\ng90\n".into() } else { format!("{line}\n") })
+        .collect()
+}
+
+/// LinuxCNC prints the feeds of G84 under G19 in the order Z X Y. (Its traverses are in order, and so are the feeds of
+/// G81.)
+fn reorder_feeds(expected: &mut [Canonical]) {
+    for motion in expected.iter_mut().filter(|motion| !motion.rapid) {
+        let [z, x, y, ..] = motion.end;
+        motion.end[..3].copy_from_slice(&[x, y, z]);
+    }
+}
+
+#[test]
+fn motions_are_those_of_linuxcnc() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.join("interp");
+    let mut total = 0;
+    // The results of g81 and g84 are those of the last of their programs.
+    for (program, expected) in [
+        ("g10/test.ngc", "g10/expected"),
+        ("g81/g19-g99-g81.ngc", "g81/expected"),
+        ("g84/g19-g99-g84.ngc", "g84/expected"),
+        ("rotation/g53.ngc", "rotation/expected"),
+        ("unit-conversion/test.ngc", "unit-conversion/expected"),
+        ("m98m99/test.ngc", "m98m99/expected"),
+        ("g52/g92_offsets.ngc", "g52/expected"),
+    ] {
+        let mut expected = canonical(&text(&folder.join(expected)));
+        if program.contains("g84") {
+            reorder_feeds(&mut expected);
+        }
+        let count = compare(program, &with_probes(&text(&folder.join(program))), &expected);
+        println!("{program}: {count} motions");
+        total += count;
+    }
+    let mut good = 0;
+    for entry in std::fs::read_dir(folder.join("good")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|ending| ending == "ngc") {
+            let expected = text(&path.with_extension("ngc.expected"));
+            total += compare(&path.display().to_string(), &text(&path), &canonical(&expected));
+            good += 1;
+        }
+    }
+    assert_eq!(good, 6);
+    println!("{total} motions in all");
+    assert!(total > 100);
+}
+
+/// The programs whose result LinuxCNC has, but that use what is not read: line and message of the refusal. The
+/// motions before it are compared.
+#[test]
+fn programs_that_are_not_read_are_refused_by_name() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.join("interp");
+    for (program, expected, line, message) in [
+        ("cam-nisley/cam.ngc", "cam-nisley/expected", 6, "#1000 is a parameter of the control"),
+        ("crazy-paths/test.ngc", "crazy-paths/expected", 17, "call is a word with arguments"),
+        ("flowsnake/flowsnake.ngc", "flowsnake/expected", 36, "call is a word with arguments"),
+        (
+            "inside-corners/test.ngc",
+            "inside-corners/expected",
+            13,
+            "G41.1 is cutter radius compensation",
+        ),
+        (
+            "sequence-number/test.ngc",
+            "sequence-number/expected",
+            8,
+            "there is no O<rm400> in this file",
+        ),
+        ("g52/g52-g92-interaction.ngc", "g52/expected", 16, "G92.3 is a shift"),
+        ("rotation/g28.ngc", "rotation/expected", 7, "G28.1 is storing a reference position"),
+    ] {
+        let (steps, error) = steps(&text(&folder.join(program)));
+        let error = error.unwrap_or_else(|| panic!("{program} is not refused"));
+        assert_eq!(error.line, line, "{program}: {error}");
+        assert!(error.to_string().contains(message), "{program}: {error}");
+        // G28.1 has no result of its own.
+        if !program.contains("g28") {
+            let expected = canonical(&text(&folder.join(expected)));
+            for (step, wanted) in steps.iter().zip(&expected) {
+                check_step(program, step, wanted);
+            }
+            println!("{program}: {} motions before {error}", steps.len());
+        }
+    }
+}
+
+/// Returns the motions of the programs in `g81` and `g84`, as in the plane G17 and in inches: rapid, position. Written
+/// from their comments and the definitions of the cycles.
+fn holes(is_tapping: bool, returns_to_r: bool) -> Vec<(bool, [f64; 3])> {
+    let mut found = vec![(true, [0.0, 0.0, 2.0])];
+    // Drills a hole, from the level `from` to which the tool may have to be raised first.
+    let hole =
+        |found: &mut Vec<_>, from: f64, [x, y]: [f64; 2], [depth, retract, initial]: [f64; 3]| {
+            found.push((true, [x, y, from]));
+            if from > retract {
+                found.push((true, [x, y, retract]));
+            }
+            found.push((false, [x, y, depth]));
+            let clear = if returns_to_r { retract } else { initial.max(retract) };
+            if is_tapping {
+                found.push((false, [x, y, retract]));
+            }
+            if !is_tapping || clear > retract {
+                found.push((true, [x, y, clear]));
+            }
+            clear
+        };
+    hole(&mut found, 2.0, [1.0, 1.0], [-1.0, 1.0, 2.0]);
+    found.push((true, [1.0, 1.0, 3.0]));
+    hole(&mut found, 3.0, [1.0, 2.0], [0.5, 3.0, 2.0]);
+    found.push((true, [1.0, 2.0, 5.0]));
+    hole(&mut found, 5.0, [1.0, 3.0], [4.0, 5.0, 2.0]);
+    for (start, [depth, retract]) in [(10.0, [-1.0, 1.0]), (20.0, [0.5, 3.0]), (30.0, [4.0, 5.0])] {
+        found.push((true, [start, 0.0, 2.0]));
+        let mut from = 2.0;
+        if retract > from {
+            from = retract;
+            found.push((true, [start, 0.0, from]));
+        }
+        for k in [1.0, 2.0] {
+            from = hole(&mut found, from, [start + k, k], [depth, retract, 2.0]);
+        }
+    }
+    found
+}
+
+/// All programs of `g81` and `g84`. The planes permute the axes.
+#[test]
+fn cycles_in_three_planes_and_with_both_retracts() {
+    let Some(folder) = folder() else { return };
+    let mut count = 0;
+    for (cycle, retract) in [("g81", "g98"), ("g81", "g99"), ("g84", "g98"), ("g84", "g99")] {
+        // The axes of the hole's position and of its depth, as these programs write them.
+        for (plane, axes) in [("g17", [0, 1, 2]), ("g18", [0, 2, 1]), ("g19", [1, 2, 0])] {
+            let name = format!("{plane}-{retract}-{cycle}");
+            // One program of G84 has a G81 among its cycles, by mistake.
+            let program =
+                text(&folder.join(format!("interp/{cycle}/{name}.ngc"))).replace("g81", cycle);
+            let (steps, error) = steps(&program);
+            assert_eq!(error, None, "{name}");
+            let expected = holes(cycle == "g84", retract == "g99");
+            assert_eq!(steps.len(), expected.len(), "{name}");
+            for (step, (rapid, position)) in steps.iter().zip(expected) {
+                assert_eq!(step.rapid, rapid, "{name}: {step:?}");
+                for (axis, wanted) in axes.into_iter().zip(position) {
+                    let value = step.end[axis].expect("a coordinate");
+                    assert!((value - 25.4 * wanted).abs() < 1e-12, "{name}: {step:?}");
+                }
+                count += 1;
+            }
+        }
+    }
+    println!("{count} motions of cycles");
+}

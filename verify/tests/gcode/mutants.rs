@@ -1,0 +1,191 @@
+//! Damaged programs: the interpreter ends with steps or with an error that names a line, whatever it reads.
+
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Interpreter, Rule};
+
+const THREE_AXES: &str = "%\nO1000 (PLATE)\nN10 G17 G21 G40 G49 G80 G90 G94 G98\nN20 G91 G28 Z0.\nN30 T1 M6\n\
+    N40 G54 G90 G0 X10. Y10. S3000 M3\nN50 G43 H1 Z50. M8\nN60 G99 G81 R2. Z-12.5 F150.\nN70 X20.\nN80 G98 Y20.\n\
+    N90 G80\nN100 G83 X5. Y5. R2. Z-20. Q4. F80.\nN110 G80 G0 Z50.\nN120 X0. Y0.\nN130 G1 Z-2. F200.\n\
+    N140 G2 X10. Y10. R10.\nN150 G3 X0. Y20. I-10. J0.\nN160 G3 I5. Z-3. P2\n/N170 M1\nN180 M98 P2000 L3\n\
+    N190 G18 G2 X5. Z2. R25. F100.\nN200 G17 G0 Z50. M9\nN210 G53 Z0.\nN220 M30\nO2000\nG91 G1 X1.5 F100.\n\
+    G52 X1.\nM98 P3000 L2\nG90\nM99\nO3000\nG91 Y0.25\nG90\nM99\n%\n";
+
+const FIVE_AXES: &str = "G21 G90 G17 G94\nT5 M6\nG54\nG0 X0. Y0. Z100. A0. C0.\nG43.4 H5 Z50.\n\
+    G1 X1.5 Y-2.25 Z10. A-15.5 C30. F1200.\nX2.5 Y-2.5 Z9.75 A-16.25 C33.125\nG2 X5. Y0. I1.25 J1.25 A-17.\n\
+    X6. Y1. R4. C40.\nG49\nG43.5 H5\nG1 X1. Y1. Z20. I0. J0.5 K0.866 F500.\nX2. I0.1 J0.5 K0.86\nG49\nG91 G28 Z0.\n\
+    G90\nM30\n";
+
+const TILTED: &str = "G20 G90\nG55\nT2 M6\n#1 = 2.5\n#<depth> = [0.125 * #1 - 1.]\nG68.2 X1. Y2. Z-0.5 I30. J45. K-90.\n\
+    G53.1\nG0 G43 H2 X0 Y0 Z2.\nG81 X[#1/2] Y.5 Z#<depth> R.1 F10.\nX1.5\nG80\nG69\nG68 X0 Y0 R30.\nG1 X1. Y0. F20.\nG69\n\
+    G92 X0\nG1 X-.5\nG92.1\nG10 L2 P2 X1. Y1. R10.\nG0 X0 Y0\nM2\n";
+
+const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z100 A0 C0\nTRAORI\nG54\n\
+    G1 X10.125 Y5.5 Z2 A10.5 C-20.25 F1000\nX11 Y6 Z1.5 A11 C-21\nG3 X12. Y7. I0.5 J0.5\nTRAFOOF\nG54\nG0 Z100\nM30\n";
+
+const LINUXCNC: &str = "o<hole> sub\n#3=[#31+1]\nG91 G81 X1 Z-2 R-1 L2 F100\nG80 G90\no<hole> endsub\n#31=2\nG21 G64 P0.01\n\
+    G0 X0 Y0 Z5\no<hole> call\nM428\nG1 C90 F500\nG1 A20 X#31\nM429\nG0 Z[SQRT[25]*2]\nG30 Z6\nG19 G2 Y1 Z11 J.5 K.5\nM2\n";
+
+const SEEDS: [&str; 5] = [THREE_AXES, FIVE_AXES, TILTED, SINUMERIK, LINUXCNC];
+
+/// Pieces that mutations insert.
+const PIECES: [&str; 48] = [
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G28",
+    "G30",
+    "G53",
+    "G80",
+    "G81",
+    "G83",
+    "G91",
+    "G90",
+    "G20",
+    "G92",
+    "G52",
+    "G68.2",
+    "G69",
+    "G43.4",
+    "G43.5",
+    "G49",
+    "G10 L2 P1",
+    "G54.1 P9",
+    "M98 P1000",
+    "M98 P2000 L9999",
+    "M99",
+    "M30",
+    "M428",
+    "O2000",
+    "o<hole> call",
+    "o<hole> sub",
+    "o1 if [1]",
+    "#1=",
+    "#<depth>",
+    "[",
+    "]",
+    "(",
+    ")",
+    ";",
+    "%",
+    "/",
+    "-",
+    ".",
+    "99999999",
+    "0.000001",
+    "X",
+    "R",
+    "\n",
+    "\u{e9}",
+];
+
+fn setups() -> [ControlSetup; 2] {
+    let known = ControlSetup {
+        start: [Some(0.0); 6],
+        work_offsets: [Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]); 9],
+        lengths: BTreeMap::from([(1, 80.0), (2, 90.0), (5, 120.0), (7, 60.0)]),
+        home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
+        ..ControlSetup::default()
+    };
+    let rules = ControlRules::named("haas").expect("a control");
+    let rules =
+        rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
+    let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
+    let rules =
+        rules.with(Rule::Dialect, Choice::Rs274Ngc).with(Rule::PresetEnd, Choice::EndsPreset);
+    let unknown = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    [ControlSetup { rules, ..known }, ControlSetup { rules: unknown, ..ControlSetup::default() }]
+}
+
+#[test]
+fn seeds_are_read() {
+    for setup in setups() {
+        for seed in SEEDS {
+            let steps =
+                Interpreter::new(seed, &setup).expect("a program").collect::<Result<Vec<_>, _>>();
+            let count = steps.expect("steps").len();
+            assert!(count >= 5, "{count}\n{seed}");
+        }
+    }
+}
+
+fn mutate(seed: &str, random: &mut impl FnMut(usize) -> usize) -> String {
+    let mut text: Vec<char> = seed.chars().collect();
+    for _ in 0..1 + random(3) {
+        let at = random(text.len());
+        match random(8) {
+            0 => drop(text.remove(at)),
+            1 => text.insert(at, char::from(b' ' + random(95) as u8)),
+            2 => text[at] = char::from(b'0' + random(10) as u8),
+            3 => text[at] = char::from(b'A' + random(26) as u8),
+            4 => drop(text.drain(at..(at + 1 + random(30)).min(text.len()))),
+            5 => {
+                let piece: Vec<char> = text[at..(at + 1 + random(60)).min(text.len())].to_vec();
+                let to = random(text.len());
+                text.splice(to..to, piece);
+            }
+            6 => text.truncate(at),
+            _ => drop(text.splice(at..at, PIECES[random(PIECES.len())].chars())),
+        }
+        if text.is_empty() {
+            text.push('X');
+        }
+    }
+    text.into_iter().collect()
+}
+
+/// Reads `MUTANTS` damaged programs, ten thousand by default.
+#[test]
+fn mutants_end_with_steps_or_with_a_line() {
+    let count: u64 = match std::env::var("MUTANTS") {
+        Ok(text) => text.parse().expect("MUTANTS is a whole number"),
+        Err(_) => 10_000,
+    };
+    let mut random = Pcg64Mcg::seed_from_u64(7);
+    let mut random =
+        |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
+    let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
+    let setups = setups();
+    for index in 0..count {
+        let text = mutate(SEEDS[random(SEEDS.len())], &mut random);
+        let lines = text.split(['\n', '\r']).count();
+        let begin = Instant::now();
+        match Interpreter::new(&text, &setups[index as usize % 2]) {
+            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+            Ok(mut interpreter) => {
+                let mut error = None;
+                for step in interpreter.by_ref() {
+                    match step {
+                        Ok(step) => {
+                            steps += 1;
+                            let numbers = step.start.iter().chain(&step.end).flatten();
+                            assert!(
+                                numbers.into_iter().all(|value| value.is_finite()),
+                                "{step:?}\n{text}"
+                            );
+                            assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
+                        }
+                        Err(fault) => error = Some(fault),
+                    }
+                }
+                assert!(interpreter.next().is_none(), "steps after the end\n{text}");
+                match error {
+                    None => whole += 1,
+                    Some(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+                }
+            }
+        }
+        if begin.elapsed() > slowest.0 {
+            slowest = (begin.elapsed(), text);
+        }
+    }
+    println!(
+        "{count} mutants: {whole} read to the end, {steps} steps, the slowest in {:?}",
+        slowest.0
+    );
+    assert!(slowest.0 < Duration::from_secs(60), "{}", slowest.1);
+    assert!(whole > 0 && whole < count);
+}

@@ -1,0 +1,151 @@
+//! G-code on machines where something is unknown, or means another position than it seems to.
+
+use crate::block;
+use crate::oracle::Mounted;
+use nalgebra::{Point3, Vector3};
+use touchoff::certify::TriangleBvh;
+use touchoff::{Pose, Unit};
+use touchoff_verify::gcode::ControlSetup;
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{FindingKind, MachineProgram, Move, ToolSelection, Verifier};
+
+/// Returns a program on a machine of the library, with the origin of G54 if it is given.
+fn program(
+    machine: &str,
+    origin: Option<[f64; 6]>,
+    lengths: &[(u32, f64)],
+    blocks: &str,
+) -> Result<MachineProgram, String> {
+    let machine = Machine::named(machine).expect("a machine of the library");
+    let mut setup =
+        ControlSetup { lengths: lengths.iter().copied().collect(), ..Default::default() };
+    setup.work_offsets[0] = origin;
+    let text = format!("G21 G90 G94 F100.\n{blocks}\nM30\n");
+    MachineProgram::new("part.nc", text, machine, setup).map_err(|error| error.to_string())
+}
+
+fn moves(program: &MachineProgram) -> Vec<Move> {
+    let moves = program.moves(ToolSelection::All, None, Unit::Millimetre);
+    moves.expect("the part").collect()
+}
+
+/// Returns the pose at the end of the last move.
+fn last_pose(program: &MachineProgram) -> Pose {
+    moves(program).last().expect("a move").path.pose(1.0)
+}
+
+#[test]
+fn an_aligned_tool_is_tilted_wherever_it_stands() {
+    let blocks =
+        "G0 A0. C0.\nG43 H1\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nG0 X0. Y0. Z50.\nG1 Z-1.";
+    let program = program("A-C trunnion", None, &[], blocks).expect("a program");
+    let expected = Vector3::new(0.0, -0.5, 0.75f64.sqrt());
+    let pose = last_pose(&program);
+    assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
+    assert!((pose.tip().coords - expected * -1.0).norm() < 1e-12, "{pose:?}");
+    let unknown = &program.summary().unknown;
+    assert!(!unknown.is_empty() && unknown.iter().all(|unknown| unknown.open_line.is_none()));
+}
+
+#[test]
+fn a_shift_at_an_unknown_position_leaves_positions_unknown() {
+    let program = program("3-axis", None, &[], "G92 X50. Y0. Z5.\nG0 X50. Y0. Z5.\nG1 X32.");
+    let program = program.expect("a program");
+    let [unknown] = &program.summary().unknown[..] else { panic!("{:?}", program.summary()) };
+    assert_eq!((unknown.count, unknown.open_line), (2, Some(3)));
+}
+
+#[test]
+fn a_program_cannot_move_the_part() {
+    let blocks = "G10 L2 P1 Z-5.\nG54 G0 X0. Y0. Z9.\nG1 X5.";
+    for origin in [None, Some([0.0, 0.0, -450.0, 0.0, 0.0, 0.0])] {
+        let refused = program("3-axis", origin, &[], blocks).expect_err("it moves the part");
+        assert!(refused.contains("the program sets G54"), "{refused}");
+    }
+}
+
+/// With rates, each axis moves at its own: the slower ones go on alone.
+#[test]
+fn rapid_rates_bend_the_path() {
+    let file = "name = \"fast x\"\naxis = [{ letter = \"X\", kind = \"linear\", carries = \"table\", rapid = 20000 }, \
+                { letter = \"Y\", kind = \"linear\", carries = \"table\", rapid = 10000 }, { letter = \"Z\", kind = \
+                \"linear\", carries = \"tool\", rapid = 5000 }]\n";
+    let machine = Machine::parse(file, "fast.toml").expect("a machine");
+    let text = "G21 G90 G0 X0. Y0. Z0.\nX20. Y20. Z0.\nX20. Y20. Z5.\nG1 X0. Y0. Z0. F100.\nM30\n";
+    let program = MachineProgram::new("a.nc", text.to_owned(), machine, ControlSetup::default());
+    let moves = moves(&program.expect("a program"));
+    let ends: Vec<_> = moves.iter().map(|step| (step.line, step.path.pose(1.0).tip())).collect();
+    let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    let expected = [
+        (1, at(0.0, 0.0, 0.0)),
+        // X arrives after 1/1000 min, when Y is halfway.
+        (2, at(20.0, 10.0, 0.0)),
+        (2, at(20.0, 20.0, 0.0)),
+        (3, at(20.0, 20.0, 5.0)),
+        (4, at(0.0, 0.0, 0.0)),
+    ];
+    assert_eq!(ends.len(), expected.len(), "{ends:?}");
+    for ((line, tip), (expected_line, expected)) in ends.iter().zip(expected) {
+        assert!(*line == expected_line && (tip - expected).norm() < 1e-12, "{ends:?}");
+    }
+    for (from, to) in [("rapid = 5000", "rapid = 0"), (", rapid = 5000", "")] {
+        let error = Machine::parse(&file.replace(from, to), "fast.toml").expect_err("refused");
+        assert!(error.to_string().contains("axis Z"), "{error}");
+    }
+}
+
+#[test]
+fn what_turns_has_to_be_given() {
+    let turn = "G0 X0. Y0. Z50. B0. C0.\nG1 B30.";
+    let refused = program("B head + C table", None, &[], turn).expect_err("no length");
+    assert!(refused.contains("the length of the tool matters"), "{refused}");
+    assert!(
+        program("B head + C table", None, &[], "G43.4 H1\nG0 X0. Y0. Z50. B0. C0.\nG1 B30.")
+            .is_ok()
+    );
+    let turn = "G0 X0. Y0. Z50. A0. C0.\nG1 C30.";
+    let refused = program("A-C trunnion", None, &[], turn).expect_err("no origin");
+    assert!(refused.contains("the position of the part on it matters"), "{refused}");
+    // Under tool centre point control the start of a head's motion is unknown without a length.
+    let blocks = "G0 X0. Y0. Z50. B0. C0.\nG43.4 H1\nG1 X9. Y0. Z50. B30.\nG1 X12.";
+    let program = program("B head + C table", None, &[], blocks).expect("a program");
+    let unknown = program.summary().unknown.iter().map(|unknown| unknown.count).sum::<usize>();
+    assert_eq!(unknown, 2, "{:?}", program.summary());
+}
+
+/// The length of another tool moves the tip, and is found.
+#[test]
+fn another_length_moves_the_tip() {
+    let blocks = "T1 M6\nG43 H2 G0 X0. Y0. Z50.\nG1 Z9.";
+    let program = program("3-axis", None, &[(1, 80.0), (2, 70.0)], blocks).expect("a program");
+    assert_eq!(program.summary().other_lengths, [(4, 2, 1)]);
+    assert!((last_pose(&program).tip().z - (9.0 - 10.0)).abs() < 1e-12);
+}
+
+/// A position by itself, as after a retract to an unknown height, is queried and not bounded from the one before.
+#[test]
+fn the_approach_of_a_position_by_itself_is_queried() {
+    let bvh = TriangleBvh::new(&block([-8.0, -8.0, -8.0], [8.0, 8.0, 0.0]));
+    let blocks = "G0 X500. Y0. Z9.\nG1 X150.\nX500.\nG91 G28 Z0.\nG90 G0 X0. Y0. Z1.";
+    let program = program("3-axis", None, &[], blocks).expect("a program");
+    let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
+    let report = verifier.check_moves(moves(&program), &|_| ()).expect("it can be checked");
+    assert!((report.approach.distance - 1.0).abs() < 0.1, "{:?}", report.approach);
+    assert!(!report.approach.is_far(), "{:?}", report.approach);
+}
+
+/// A resolution below rounding is taken as that, and the search ends.
+#[test]
+fn a_resolution_of_0_ends() {
+    let bvh = TriangleBvh::new(&block([-8.0, -8.0, -8.0], [8.0, 8.0, 0.0]));
+    let tilted =
+        "G0 X0. Y0. Z9.\nG68.2 X0. Y0. Z0. I0. J3. K0.\nG0 X5. Y0. Z2.\nG1 Z-0.5\nG3 X-5. I-5.";
+    for (machine, blocks) in [("3-axis", "G0 X-20. Y0. Z9.\nG1 Z-0.5\nX20."), ("3-axis", tilted)] {
+        let program = program(machine, None, &[], blocks).expect("a program");
+        let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
+        let verifier = verifier.with_resolution(0.0).expect("a length");
+        let report = verifier.check_moves(moves(&program), &|_| ()).expect("it can be checked");
+        let is_deep = |kind: &FindingKind| matches!(kind, FindingKind::Deep { .. });
+        assert!(report.findings.iter().any(|found| is_deep(&found.kind)), "{:?}", report.findings);
+    }
+}
