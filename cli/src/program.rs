@@ -7,10 +7,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
-use touchoff_verify::Program;
 use touchoff_verify::gcode::ControlRules;
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Approach, VerifyReport};
+use touchoff_verify::{Approach, Program, VerifyReport};
 
 /// Reads a program for a tool and a part in that unit.
 ///

@@ -12,8 +12,7 @@ use touchoff::{Tool, Unit, mesh::shapes};
 use touchoff_postures::path::{PathRequest, Pattern};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Directions, Rules};
-use touchoff_verify::Program;
-use touchoff_verify::Verifier;
+use touchoff_verify::{Program, Verifier};
 
 touchoff::tool! {
     tool Slim "2 mm ball, 25 mm long" {

@@ -5,8 +5,7 @@ use std::io::Write;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Unit};
-use touchoff_verify::Program;
-use touchoff_verify::{FindingKind, Verifier};
+use touchoff_verify::{FindingKind, Program, Verifier};
 
 touchoff::tool! {
     tool EndMill "12 mm across, 20 mm of it cut, in a holder 50 mm wide" {

@@ -4,11 +4,10 @@ use crate::error::EngineError;
 use serde::Serialize;
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
-use touchoff_verify::Program;
 use touchoff_verify::gcode::{ControlSetup, Spindle};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::program::ProgramFile;
-use touchoff_verify::{MachineProgram, Move, ToolSelection};
+use touchoff_verify::{MachineProgram, Move, Program, ToolSelection};
 
 /// Greatest number of motions that the page holds in memory.
 pub(crate) const MAX_MOTIONS: usize = 200_000;

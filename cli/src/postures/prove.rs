@@ -8,8 +8,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::tool::Tool;
 use touchoff_postures::Rules;
 use touchoff_postures::path::MOTION_TOLERANCE_FRACTION;
-use touchoff_verify::Program;
-use touchoff_verify::{Finding, FindingKind, Move, Verifier};
+use touchoff_verify::{Finding, FindingKind, Move, Program, Verifier};
 
 /// A cutter location, with a flag that is set if the tool arrives in rapid traverse.
 pub(super) type Location = (Pose, bool);

@@ -9,11 +9,10 @@ use crate::program::{self, read_control, read_machine};
 use std::iter;
 use std::path::Path;
 use touchoff::Unit;
-use touchoff_verify::Program;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::{Machine, Side};
 use touchoff_verify::program::ProgramFile;
-use touchoff_verify::{Gap, MachineProgram, Move, ToolSelection};
+use touchoff_verify::{Gap, MachineProgram, Move, Program, ToolSelection};
 
 /// The machine of G-code for which none is named.
 pub(crate) const DEFAULT_MACHINE: &str = "3-axis";

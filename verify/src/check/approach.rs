@@ -4,10 +4,9 @@
 use super::moves::{self, Move, MovePath, RapidBox};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use nalgebra::Point3;
-use touchoff::Interval;
-use touchoff::Pose;
 use touchoff::certify::Certifier;
 use touchoff::tool::{ProfileSegment, Symmetry};
+use touchoff::{Interval, Pose};
 
 /// Location of a program relative to the part. Lengths are in the part's unit, points in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,12 +5,9 @@ use super::{Finding, FindingKind, Verifier, VerifyError};
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 use std::mem;
-use touchoff::Interval;
-use touchoff::Motion;
-use touchoff::Pose;
-use touchoff::SurfaceId;
 use touchoff::certify::{Certifier, MotionDepth, MotionVerdict};
 use touchoff::tool::Symmetry;
+use touchoff::{Interval, Motion, Pose, SurfaceId};
 
 /// Checks motions one after another.
 pub(super) struct Checker<'a> {

@@ -2,11 +2,8 @@
 
 use super::Approach;
 use crate::program::ProgramError;
-use touchoff::Interval;
-use touchoff::MotionError;
-use touchoff::Pose;
-use touchoff::SurfaceId;
 use touchoff::certify::{AllowanceError, NotCertifiable, Witness};
+use touchoff::{Interval, MotionError, Pose, SurfaceId};
 
 /// A reason for which a program cannot be checked.
 #[derive(Debug, thiserror::Error)]

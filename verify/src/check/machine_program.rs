@@ -19,8 +19,7 @@ use nalgebra::Vector3;
 use resolve::{AnyRapid, Resolved, Resolver};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use touchoff::Motion;
-use touchoff::Unit;
+use touchoff::{Motion, Unit};
 
 mod fault;
 mod gap;

@@ -5,10 +5,8 @@ use crate::machine::JointMotion;
 use crate::program::{CutterLocation, Program};
 use nalgebra::{Point3, Vector3};
 use std::iter;
-use touchoff::Pose;
-use touchoff::Unit;
 use touchoff::tool::{Symmetry, ToolInfo};
-use touchoff::{Motion, MotionError};
+use touchoff::{Motion, MotionError, Pose, Unit};
 
 /// A motion of a program.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use super::flow::Flow;
 use super::label::{Label, Role};
 use super::modal::{FeedMode, Motion};
 use super::motion::Control;
-use super::next_run::{self, Difference};
+use super::next_run;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
@@ -30,8 +30,19 @@ pub struct Interpreter<'a> {
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
     finished: bool,
-    /// Itself before the first block, until the end.
+    /// The end of the program, once it was executed.
+    end: Option<End>,
+    /// Itself before the first block.
     first: Option<Box<Interpreter<'a>>>,
+}
+
+/// The word that ends a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// M2 or M30, at which some controls set modes.
+    Stop,
+    /// `%`.
+    Percent,
 }
 
 impl<'a> Interpreter<'a> {
@@ -65,6 +76,7 @@ impl<'a> Interpreter<'a> {
             control,
             switch: None,
             finished: false,
+            end: None,
             first: None,
         };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
@@ -72,7 +84,12 @@ impl<'a> Interpreter<'a> {
 
     /// Returns the notes about the blocks that were executed so far, by line.
     pub fn notes(&self) -> Vec<ProgramNote> {
-        self.control.notes.list()
+        let mut notes = self.control.notes.list();
+        if let (Some(first), Some(end)) = (&self.first, self.end) {
+            notes.extend(next_run::note(first, &self.control, end));
+        }
+        notes.sort_by_key(|note| note.line);
+        notes
     }
 
     /// Returns the rules of the control on which the blocks depend that were executed so far, each with the first line.
@@ -84,7 +101,7 @@ impl<'a> Interpreter<'a> {
     fn advance(&mut self) -> Result<(), GcodeError> {
         let located = |(line, fault)| GcodeError { line, fault };
         let Some((line, text)) = self.flow.next_line().map_err(located)? else {
-            self.finish(false);
+            self.finish(End::Percent);
             return Ok(());
         };
         let mut block = mem::take(&mut self.block);
@@ -99,15 +116,9 @@ impl<'a> Interpreter<'a> {
         Ok(!self.finished)
     }
 
-    /// Ends the program, and notes what it leaves for its next run. `resets` is set for an end by M2 or M30.
-    fn finish(&mut self, resets: bool) {
+    fn finish(&mut self, end: End) {
         self.finished = true;
-        let first = self.first.take();
-        let difference =
-            first.and_then(|first| next_run::difference(&first, &self.control, resets));
-        if let Some(Difference { line, words }) = difference {
-            self.control.notes.left_modes = Some((line, words));
-        }
+        self.end = Some(end);
     }
 
     /// Executes the block of a line, and those after semicolons if they end a block.
@@ -206,7 +217,7 @@ impl<'a> Interpreter<'a> {
         }
         match block.code_of(Group::Stop).map(|code| code.tenths) {
             Some(20 | 300) => {
-                self.finish(true);
+                self.finish(End::Stop);
                 if let Some(line) = self.flow.text_after_end() {
                     self.control.notes.add(line, Subject::TextAfterEnd);
                 }

@@ -1,13 +1,14 @@
 //! The next run of a program: it starts with what the control keeps from the end of the run before.
 //!
-//! Which modes a control keeps is mostly a parameter of it, so both are executed, block by block, from the place at which the
-//! first run ended: the program as it starts, and as it starts with all modes that it left, or with one of them. It depends on none
-//! of them if its motions are the same. From the block on in which both controls agree, they are. The operator may have turned the switch for
-//! optional blocks between the runs.
+//! Most modes are kept or set by parameters of a control, so two runs are executed block by block, from the place at which the
+//! first run ended: the program as it starts, and as it starts with all modes that it left, or with one of them. Where their
+//! motions are the same, the program depends on none of these modes. The runs end at the block from which on both controls agree.
+//! They are executed at both positions of the switch for optional blocks, which the operator can turn between runs.
 
 use super::Plane;
-use super::interpreter::Interpreter;
+use super::interpreter::{End, Interpreter};
 use super::motion::Control;
+use super::note::{NoteKind, ProgramNote};
 use super::rules::{Choice, Rule};
 use super::state::{LengthOffset, Rotation, Tcp};
 use super::{Step, StepPath};
@@ -54,19 +55,11 @@ const MODES: [Mode; 13] = [
     Mode::Staged,
 ];
 
-/// A block of which the next run makes something else.
-pub(super) struct Difference {
-    /// Its line.
-    pub(super) line: usize,
-    /// The words that left what makes the difference, as a list.
-    pub(super) words: String,
-}
-
-/// Returns the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
+/// Notes the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
 ///
-/// `first` is the program before its first block. `resets` is set for an end by M2 or M30, at which some controls set modes.
-pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> Option<Difference> {
-    let end = left.stated(Rule::ProgramEnd).filter(|_| resets);
+/// `first` is the program before its first block.
+pub(super) fn note(first: &Interpreter, left: &Control, end: End) -> Option<ProgramNote> {
+    let end = left.stated(Rule::ProgramEnd).filter(|_| end == End::Stop);
     let is_reset = |mode: Mode| match end {
         Some(Choice::SetsModes) => matches!(mode, Mode::Plane | Mode::Distance | Mode::WorkOffset),
         Some(Choice::CancelsLength) => mode == Mode::Length,
@@ -75,23 +68,23 @@ pub(super) fn difference(first: &Interpreter, left: &Control, resets: bool) -> O
     };
     let keeps = |mode: &Mode| mode.differs(&first.control, left) && !is_reset(*mode);
     let kept: Vec<Mode> = MODES.into_iter().filter(keeps).collect();
+    if kept.is_empty() {
+        return None;
+    }
     let all = first_difference(first, left, &kept);
-    // Two that cancel each other do so only where the control keeps both.
-    let is_exact = end == Some(Choice::SetsModes) || kept.len() < 2;
-    let alone: Vec<(Mode, usize)> = match all.is_some() || !is_exact {
-        true => kept
-            .iter()
-            .filter_map(|mode| Some((*mode, first_difference(first, left, &[*mode])?)))
-            .collect(),
-        false => Vec::new(),
-    };
+    // LinuxCNC keeps all others for certain. Elsewhere, one of two that cancel each other may be set.
+    if all.is_none() && end == Some(Choice::SetsModes) {
+        return None;
+    }
+    let alone = |mode: Mode| Some((mode, first_difference(first, left, &[mode])?));
+    let alone: Vec<(Mode, usize)> = kept.iter().copied().filter_map(alone).collect();
     let line = alone.iter().map(|(_, line)| *line).chain(all).min()?;
     let guilty: Vec<Mode> = match alone.is_empty() {
         true => kept,
         false => alone.into_iter().map(|(mode, _)| mode).collect(),
     };
     let words: Vec<String> = guilty.into_iter().map(|mode| mode.word(left)).collect();
-    Some(Difference { line, words: words.join(", ") })
+    Some(ProgramNote { line, count: 1, kind: NoteKind::LeftModes { words: words.join(", ") } })
 }
 
 /// Returns the line of the first block that is executed otherwise if some modes are kept, at any position of the switch for
@@ -133,7 +126,7 @@ fn under_each<'a>(start: &Interpreter<'a>, rule: Rule) -> Vec<Interpreter<'a>> {
 fn run_beside(run: &mut Interpreter, next: &mut Interpreter) -> Option<usize> {
     while !run.control.agrees(&next.control) {
         let lengths = [&*run, next].map(|run| run.control.state.length);
-        // What stops both is the program's, and known from its first run.
+        // The first run has shown what stops the program itself.
         let more = run.execute_line().ok()?;
         let line = run.control.line;
         if next.execute_line().is_err() {

@@ -116,8 +116,6 @@ pub(super) enum Subject {
 pub(super) struct Notes {
     /// First line and number.
     found: BTreeMap<Subject, (usize, usize)>,
-    /// The line and the words of [`NoteKind::LeftModes`].
-    pub(super) left_modes: Option<(usize, String)>,
 }
 
 impl Notes {
@@ -130,21 +128,14 @@ impl Notes {
         self.found.entry(subject).or_insert((line, 1));
     }
 
-    /// Returns the notes by line.
+    /// Returns the notes.
     pub(super) fn list(&self) -> Vec<ProgramNote> {
         let note = |(subject, (line, count)): (&Subject, &(usize, usize))| ProgramNote {
             line: *line,
             count: *count,
             kind: subject.kind(),
         };
-        let left = self.left_modes.iter().map(|(line, words)| ProgramNote {
-            line: *line,
-            count: 1,
-            kind: NoteKind::LeftModes { words: words.clone() },
-        });
-        let mut notes: Vec<ProgramNote> = self.found.iter().map(note).chain(left).collect();
-        notes.sort_by_key(|note| note.line);
-        notes
+        self.found.iter().map(note).collect()
     }
 }
 

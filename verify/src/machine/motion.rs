@@ -5,8 +5,7 @@ use super::chain::{Chain, RoundingBound, UNIT_ROUNDOFF};
 use super::path::{LinearPath, PreparedPath};
 use super::{JointError, Joints, Letter};
 use nalgebra::{Matrix3, Point3};
-use touchoff::Pose;
-use touchoff::{Motion, MotionError};
+use touchoff::{Motion, MotionError, Pose};
 
 /// The motion of a machine between two blocks: what the control interpolates from t = 0 to 1.
 ///

@@ -2,8 +2,7 @@
 
 use std::io;
 
-use touchoff::PoseError;
-use touchoff::Unit;
+use touchoff::{PoseError, Unit};
 
 /// A reason for which a program is refused. The message names the file, the line, the reason and the remedy.
 #[derive(Debug, thiserror::Error)]

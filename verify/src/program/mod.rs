@@ -26,10 +26,9 @@ pub use write::{AptHeader, Cutter, WriteError, apt_unit};
 use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
-use touchoff::Pose;
-use touchoff::Unit;
 use touchoff::read_regular_file;
 use touchoff::tool::{Symmetry, ToolInfo};
+use touchoff::{Pose, Unit};
 
 /// A 5-axis program: its cutter locations, in order.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,9 +9,8 @@ use super::csv::{END, HEAD};
 use super::decimals::{Decimals, rounded};
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
-use touchoff::Pose;
-use touchoff::Unit;
 use touchoff::tool::{ProfileSegment, ToolInfo};
+use touchoff::{Pose, Unit};
 
 /// A reason for which a program cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -1,9 +1,8 @@
 //! Errors of stocks.
 
 use super::MAX_POINTS;
-use touchoff::CloudError;
-use touchoff::Unit;
 use touchoff::mesh::{LARGEST_COORDINATE, MeshError};
+use touchoff::{CloudError, Unit};
 
 /// A reason for which a stock cannot be built, advanced or compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

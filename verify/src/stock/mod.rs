@@ -68,11 +68,8 @@ use contact::OpenContacts;
 use lattice::Lattice;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
-use touchoff::Cloud;
-use touchoff::TriangleId;
-use touchoff::Unit;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
-use touchoff::{InsidePoint, InsideQuery, PointBvh};
+use touchoff::{Cloud, InsidePoint, InsideQuery, PointBvh, TriangleId, Unit};
 
 /// The greatest number of points of a stock. A point takes some 34 bytes, and 110 while the stock is built: at
 /// most 2.2 gigabytes.

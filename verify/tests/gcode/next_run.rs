@@ -1,4 +1,4 @@
-//! What a program leaves for its next run, against the same blocks executed twice in one program.
+//! The next run of a program, against the same blocks executed twice in one program.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -6,8 +6,7 @@ use nalgebra::Vector3;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, SurfaceId, Tool, Unit};
-use touchoff_verify::Program;
-use touchoff_verify::{FindingKind, Verifier, VerifyReport};
+use touchoff_verify::{FindingKind, Program, Verifier, VerifyReport};
 
 touchoff::tool! {
     tool BallByRegions "a ball without a profile" {

@@ -12,8 +12,7 @@ use oracle::{Mounted, Random, SURFACES, ToolPose, Worst, interpolate, sample_poi
 use touchoff::certify::{TriangleBvh, Witness};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Unit};
-use touchoff_verify::Program;
-use touchoff_verify::{Finding, FindingKind, Verifier};
+use touchoff_verify::{Finding, FindingKind, Program, Verifier};
 
 pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")

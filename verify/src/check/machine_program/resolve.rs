@@ -609,7 +609,7 @@ impl<'a> Resolver<'a> {
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
         if is_tip {
             let is_turned = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
-            // Where the part is that of the table as it stands, it stands at the offset.
+            // The part stands at the offset, if it is taken with the table as it stands.
             let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
                 && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
             if state.origin_rotation != 0.0 || is_turned || is_table_turned {

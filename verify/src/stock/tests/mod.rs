@@ -9,9 +9,8 @@ mod part;
 use super::*;
 use nalgebra::Vector3;
 use std::path::{Path, PathBuf};
-use touchoff::Motion;
-use touchoff::Pose;
 use touchoff::tool::Tool;
+use touchoff::{Motion, Pose};
 
 touchoff::tool! {
     tool Mill "an end mill whose shank is as wide as its flute" {
