@@ -190,7 +190,6 @@ fn a_whole_number_after_r_is_either_on_haas() {
     let scene = Scene::new(blocks).obstacle([-8.0, 8.0, -1.0], [-4.0, 15.0, 9.0]);
     let scene = scene.with("anyway = true");
     scene.gives(&HAAS, 1, &["the clamp", "under whole_radii = \"units\""]);
-    scene.gives(&LINUXCNC, 1, &["the clamp"]);
     scene.gives(&FANUC, 0, &[]);
     scene.gives(&[], 1, &["the clamp"]);
 }
@@ -304,7 +303,7 @@ fn a_work_offset_far_from_the_part_is_named() {
 
 #[test]
 fn limits_of_rotary_axes_need_no_work_offset() {
-    let blocks = "T1 M6\nS9000 M3\nG43.4 H1\nG0 X0. Y0. Z30. A0. C0.\nG1 A45.\nG1 A0.";
+    let blocks = "T1 M6\nS9000 M3\nG43 H1\nM428\nG0 X0. Y0. Z30. A0. C0.\nG1 A45.\nG1 A0.";
     let scene = Scene::new(blocks).with("machine = \"A-C trunnion\"\nanyway = true");
     scene.gives(&LINUXCNC, 1, &["A goes to 45.0000°, beyond its limit of 30°"]);
     let said =
@@ -627,7 +626,7 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     };
     scene(&turned).gives(&FANUC, 2, &["`tcp_start`"]);
     scene(&turned).gives(&[], 2, &["`tcp_start`"]);
-    scene(&turned).gives(&LINUXCNC, 0, &[]);
+    scene(&turned.replace("G43.4 H1", "G43 H1\nM428")).gives(&LINUXCNC, 0, &[]);
     let at_zero = blocks.replace("G43.4 H1", "G0 A0. C0.\nG43.4 H1");
     scene(&at_zero).gives(&FANUC, 0, &[]);
     let in_its_block = at_zero.replace("G43.4 H1", "G43.4 H1 C90.");
@@ -643,9 +642,11 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     let mut offset = scene(&at_zero);
     offset.job = offset.job.replace("-400]", "-400, 0, 0, 30]");
     offset.gives(&FANUC, 0, &[]);
-    for control in [&LINUXCNC[..], &HAAS, &[]] {
+    for control in [&HAAS[..], &[]] {
         offset.gives(control, 2, &["G54 turns the table"]);
     }
+    offset.bench.write("a.nc", program(&at_zero.replace("G43.4 H1", "G43 H1\nM428")));
+    offset.gives(&LINUXCNC, 2, &["G54 turns the table"]);
 }
 
 /// A control computes tips with the length offset that is in force, also under tool centre point control.
@@ -956,7 +957,10 @@ fn a_length_that_counts_always_is_along_z_and_returns_with_d1() {
     let edge = Scene::of(&format!("{start}D0\nX-5.\nD1 Z20.\nG1 X4. Z1.\nM30\n")).placed();
     edge.with("anyway = true").gives_natively(0, &[]);
     let plane = Scene::of(&format!("{start}G18\nG0 Z21.\nM30\n")).placed();
-    plane.gives_natively(2, &["G18 while the length of the tool counts without G43"]);
+    plane.gives_natively(
+        2,
+        &["G18 or G19 is in force and the length of the tool counts without G43"],
+    );
     // An end near the start turns the arc of a control that moves its centre.
     let arc = Scene::of(&format!("{start}G0 X30.\nG3 X30.001 Y-0.1 I-30. J0.\nM30\n")).placed();
     arc.gives_natively(2, &["the radii of an arc differ"]);
@@ -992,7 +996,78 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
     shift.gives(&[], 2, &["shifts on native Sinumerik: state `dialect`"]);
     shift.gives(&SIEMENS, 2, &["G59 is a shift in native programs of Sinumerik"]);
     // Words that move nothing, and the end of a block of Heidenhain.
-    Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n")).gives(&LINUXCNC, 0, &[]);
+    let passed = Scene::new(&format!("{begin}G103 P1\nG187 P2\nM83\nM84\nG0 Z20.*\n"));
+    passed.with("anyway = true").gives(&HAAS, 0, &[]);
+}
+
+/// Where a control stops with an error, what the program has set stays for the next one.
+#[test]
+fn words_at_which_a_control_stops_are_refused() {
+    let begin = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    let long = format!("X-6.{}Y0.", " ".repeat(300));
+    for (block, word) in [
+        ("G103 P1", "G103 is no word of LinuxCNC"),
+        ("G43.4 H1", "G43.4 is no word of LinuxCNC"),
+        ("M29 S100", "M29 is no word of LinuxCNC"),
+        ("M62", "M62 needs P"),
+        ("G4 X1.", "G4 needs P with a time"),
+        ("G82 X4. Z1. R2.", "G82 needs P with the time"),
+        ("G81 X4. Z1. R2. K2", "K is used by no G or M word"),
+        ("D1", "D is used by no G or M word"),
+        ("S-100", "S-100"),
+        ("G0 G28 Z0.", "G28 and G0"),
+        ("M8 M9", "M8 and M9"),
+        ("M3 M5", "M3 and M5"),
+        ("X-6. *", "`*` is an error on LinuxCNC"),
+        ("(ABORT,stop)", "at which LinuxCNC stops"),
+        (long.as_str(), "longer than the 251 bytes"),
+    ] {
+        Scene::new(&format!("{begin}{block}")).gives(&LINUXCNC, 2, &[word]);
+    }
+    let passed =
+        "G61\nG64 P0.01\nM7\nM8\nM9\nM62 P1\nG4 P0.5\nG82 X4. Z1. R2. P1\nX5.\nG80\nG0 Z20.";
+    Scene::new(&format!("{begin}{passed}")).gives(&LINUXCNC, 0, &[]);
+    Scene::new(&format!("{begin}G61.1")).gives(&FANUC, 2, &["G61.1 is a word of LinuxCNC alone"]);
+    for (block, word) in [("(a comment)", "`(` is no word"), ("G64", "G64 is another word")] {
+        let text = format!(
+            "%A G71 *\nN10 G90 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\n{block}\nN90 %A G71 *\n"
+        );
+        Scene::of(&text).gives(&[], 2, &[word]);
+    }
+}
+
+/// Motions in a plane whose tool is not along it, and the way in which the axes turn there.
+#[test]
+fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {
+    let scene = |blocks: &str| {
+        let start = "T1 M6\nS9000 M3\nG0 A0. C0.\nG43 H1 Z60.\n";
+        let scene = Scene::new(&format!("{start}{blocks}")).placed();
+        scene.with("machine = \"A-C trunnion\"\nanyway = true")
+    };
+    let plane = "G68.2 X0 Y0 Z0 I0 J20. K0";
+    scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.")).gives(&FANUC, 0, &[]);
+    let not_aligned = "a length offset is in force in a tilted plane that is not aligned";
+    scene(&format!("{plane}\nX-6. Y0. Z30.")).gives(&FANUC, 2, &[not_aligned]);
+    let in_feed = "a motion at feed rate is in force, at which Fanuc turns the axes";
+    scene(&format!("G1 Z50.\n{plane}\nG53.1")).gives(&FANUC, 2, &[in_feed]);
+}
+
+/// Words whose values are positions of the work offset that TRAFOOF has deselected.
+#[test]
+fn words_after_trafoof_need_a_work_offset_as_positions_do() {
+    for word in ["G52 X1.", "G92 X1.", "G28 Z50.", "G68 X0. Y0. R0."] {
+        let start = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20.\nTRAORI\nG54\nX-5.\nTRAFOOF";
+        let scene = Scene::new(&format!("{start}\n{word}\nG54")).placed();
+        let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
+        scene.gives_natively(2, &["since TRAORI and TRAFOOF deselect it"]);
+    }
+    let blocks = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\nTRAORI\nG54\nG18 G0 X-5.";
+    let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"\nanyway = true");
+    scene.gives(
+        &SIEMENS,
+        2,
+        &["G18 or G19 is in force and the length of the tool counts without G43"],
+    );
 }
 
 /// The repeats of a cycle are those after L, or after K; the other word says nothing.

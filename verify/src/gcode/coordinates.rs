@@ -195,10 +195,12 @@ impl Control {
     }
 
     /// Returns whether the length offset matters to the motion of a block in program coordinates. It moves Z alone, but in a
-    /// rotated plane.
+    /// rotated plane, or the normal of the plane where it counts without a word.
     pub(super) fn depends_on_length(&self, block: &Block) -> bool {
         let is_cycle = matches!(self.modal.motion, Some(Motion::Cycle(_)));
-        is_programmed(block) && (block.has('Z') || is_cycle || self.state.rotation != Rotation::Off)
+        let normal = AXES[self.modal.plane.normal()];
+        let is_moved = block.has('Z') || block.has(normal);
+        is_programmed(block) && (is_moved || is_cycle || self.state.rotation != Rotation::Off)
     }
 
     /// Gives the length offset the value that the control gives it without a word, before a motion to which it matters.
@@ -668,12 +670,29 @@ impl Control {
         if matches!(self.modal.motion, Some(Motion::Cycle(_))) {
             return Err(combination(code, "a canned cycle is in force", "write G80 before"));
         }
+        if matches!(self.modal.motion, Some(Motion::Feed | Motion::Arc { .. })) {
+            let condition = "a motion at feed rate is in force, at which Fanuc turns the axes";
+            return Err(combination(code, condition, "write G0 before"));
+        }
         let mut end = self.position;
         end[3..].fill(None);
         let commanded = [false, false, false, true, true, true];
         self.push(true, end, commanded, StepPath::Align);
         self.change(|state| state.rotation = Rotation::Tilted { frame, aligned: true });
         Ok(())
+    }
+}
+
+impl Control {
+    /// Returns whether a block has a position that depends on the work offset.
+    pub(super) fn uses_offset(&self, block: &Block) -> bool {
+        let is_absolute = !self.modal.incremental && block.has_any("XYZABC");
+        let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
+        let rotation = block.code_of(Group::Rotation).map(|code| code.tenths);
+        is_programmed(block)
+            || matches!(one_shot, Some(520 | 531 | 920))
+            || matches!(rotation, Some(680 | 682))
+            || is_absolute && matches!(one_shot, Some(280 | 300))
     }
 }
 

@@ -12,6 +12,7 @@ use super::motion::Control;
 use super::next_run;
 use super::note::{ProgramNote, Subject};
 use super::rules::{Choice, Rule};
+use super::state::Tcp;
 use super::{ControlSetup, GcodeError, GcodeFault, Step, text};
 use std::collections::BTreeMap;
 use std::mem;
@@ -179,6 +180,7 @@ impl<'a> Interpreter<'a> {
             self.control.notes.add(line, Subject::OmittedOptionalBlock);
             return Ok(());
         }
+        self.control.check_line(text)?;
         block.parse(text, &mut self.parameters)?;
         self.control.check_assignment(block)?;
         if is_optional {
@@ -313,11 +315,21 @@ impl Control {
         if self.depends_on_length(block) {
             self.length_without_word();
         }
-        if let Some(needed) = self.needs_offset.filter(|_| is_programmed(block)) {
+        if self.modal.plane != Plane::Xy
+            && is_programmed(block)
+            && (self.length_implicit || self.state.tcp == Tcp::Transformation)
+        {
+            return Err(GcodeFault::Combination {
+                word: "a position".to_owned(),
+                condition: "G18 or G19 is in force and the length of the tool counts without G43, across the plane",
+                remedy: "post the program in G17",
+            });
+        }
+        if let Some(needed) = self.needs_offset.filter(|_| self.uses_offset(block)) {
             return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
         }
-        if is_programmed(block)
-            && !self.offset_stated
+        if !self.offset_stated
+            && self.uses_offset(block)
             && self.choice(Rule::StartOffset) == Choice::NoOffset
         {
             let needed = "a work offset (G54) before, since this control starts without one";
@@ -394,7 +406,8 @@ impl Control {
 
     /// Reads the settings that convert and interpret the other words.
     fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        if block.passed_over.contains(&READ_AHEAD) {
+        let takes_p = |code: &Code| *code == READ_AHEAD || code.letter == 'M' && is_output(*code);
+        if block.passed_over.iter().any(takes_p) {
             block.take('P');
         }
         let tenths = |group| block.code_of(group).map(|code| code.tenths);
@@ -422,13 +435,6 @@ impl Control {
             self.modal.retract_to_r = Some(retract == 990);
         }
         if let Some(plane) = tenths(Group::Plane) {
-            if plane != 170 && self.stated(Rule::ToolLength) == Some(Choice::Always) {
-                return Err(GcodeFault::Combination {
-                    word: format!("G{}", plane / 10),
-                    condition: "the length of the tool counts without G43, along the axis across the plane",
-                    remedy: "post the program in G17",
-                });
-            }
             self.select(match plane {
                 170 => Plane::Xy,
                 180 => Plane::Zx,
@@ -446,6 +452,11 @@ impl Control {
 
 /// The number of blocks that a Haas reads ahead (G103 P).
 const READ_AHEAD: Code = Code { letter: 'G', tenths: 1030 };
+
+/// Returns whether an M word sets an output of LinuxCNC (M62 to M65).
+fn is_output(code: Code) -> bool {
+    matches!(code.tenths, 620 | 630 | 640 | 650)
+}
 
 /// Takes the words of a path mode.
 fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {

@@ -59,6 +59,7 @@ mod expression;
 mod flow;
 mod interpreter;
 mod label;
+mod linuxcnc;
 mod modal;
 mod motion;
 mod next_run;

@@ -5,9 +5,10 @@
 use super::GcodeFault;
 use super::block::Block;
 use super::code::{Code, Group};
+use super::linuxcnc;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
-use super::state::{Rotation, Tcp};
+use super::state::{LengthOffset, Rotation, Tcp};
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -29,6 +30,16 @@ impl Control {
             return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
         }
         let dialect = self.stated(Rule::Dialect);
+        if dialect == Some(Choice::Rs274Ngc) {
+            linuxcnc::check_words(block)?;
+        }
+        if dialect == Some(Choice::Iso)
+            && let Some(code) = block.codes().find(is_of_linuxcnc)
+        {
+            let meaning = "a word of LinuxCNC alone";
+            let remedy = "post the program for this control, or state another `dialect`";
+            return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+        }
         if let Some(code) = block.code_of(Group::Kinematics)
             && dialect != Some(Choice::Rs274Ngc)
         {
@@ -44,6 +55,24 @@ impl Control {
             });
         }
         Ok(())
+    }
+
+    /// Refuses a line that the control does not read, whatever its words.
+    pub(super) fn check_line(&self, text: &str) -> Result<(), GcodeFault> {
+        match self.stated(Rule::Dialect) {
+            Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
+            Some(Choice::Heidenhain) => {
+                let is_other = |c: &char| matches!(c, '(' | '#');
+                let Some(found) = linuxcnc::outside_comment(text).chars().find(is_other) else {
+                    return Ok(());
+                };
+                let meaning = "no word of DIN/ISO programs of Heidenhain";
+                let remedy =
+                    "write comments after `;` and numbers as such, or state another `dialect`";
+                Err(GcodeFault::NotRead { word: format!("`{found}`"), meaning, remedy })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses values that depend on when the assignment of their block takes effect.
@@ -72,6 +101,18 @@ impl Control {
                 condition: "its block has another M word, of which Haas and Fanuc as delivered execute one",
                 remedy: "write them in two blocks",
             });
+        }
+        let is_spindle = |code: &Code| is_m(code) && matches!(code.tenths, 30 | 40 | 50 | 190);
+        let mut spindle = block.codes().filter(is_spindle);
+        if let (Some(first), Some(second)) = (spindle.next(), spindle.next()) {
+            return Err(GcodeFault::SameGroup {
+                first: first.to_string(),
+                second: second.to_string(),
+            });
+        }
+        if let Some(value) = block.value('S').filter(|speed| *speed < 0.0) {
+            let expected = "a number from 0";
+            return Err(GcodeFault::NotAllowed { word: 'S', value, expected });
         }
         if block.has('P')
             && let Some(code) = block.code_of(Group::WorkOffset).filter(|code| code.tenths != 541)
@@ -146,7 +187,15 @@ impl Control {
 
     /// Refuses motions in a tilted plane whose meaning depends on G53.1.
     pub(super) fn check_tilted(&self, block: &Block) -> Result<(), GcodeFault> {
-        let Rotation::Tilted { aligned, .. } = self.state.rotation else { return Ok(()) };
+        let Rotation::Tilted { aligned, frame } = self.state.rotation else { return Ok(()) };
+        let has_length = self.state.tcp == Tcp::Off && self.state.length != LengthOffset::Off;
+        if !aligned && has_length && frame.rotation[(2, 2)] != 1.0 && block.has_any("XYZ") {
+            return Err(GcodeFault::Combination {
+                word: "a position".to_owned(),
+                condition: "a length offset is in force in a tilted plane that is not aligned",
+                remedy: "write G53.1 after G68.2, or G49 before",
+            });
+        }
         let moved = AXES.into_iter().filter(|letter| block.has(*letter));
         let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
         for letter in moved {
@@ -171,12 +220,17 @@ fn is_other_word(code: Code) -> bool {
     match (code.letter, code.tenths) {
         ('G', tenths) => matches!(
             tenths,
-            100 | 200 | 210 | 280 | 300 | 430..=449 | 490 | 520..=599 | 680..=699 | 730 | 740 | 810..=869 | 890 | 920..=929
-                | 980 | 990
+            90 | 100 | 150 | 200 | 210 | 230 | 280 | 300 | 430..=449 | 490 | 520..=599 | 610..=649 | 670..=699 | 730 | 740
+                | 810..=869 | 890 | 920..=979 | 980 | 990
         ),
         ('M', tenths) => matches!(tenths, 890 | 980 | 990),
         _ => false,
     }
+}
+
+/// Returns whether Fanuc and Haas stop at a word of LinuxCNC.
+fn is_of_linuxcnc(code: &Code) -> bool {
+    matches!((code.letter, code.tenths), ('G', 591..=593 | 611 | 901 | 911 | 922 | 923))
 }
 
 /// Refuses two words that would use the axis words of a block.

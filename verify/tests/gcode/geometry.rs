@@ -18,9 +18,16 @@ fn at_zero() -> ControlSetup {
     }
 }
 
+/// Executes a program as LinuxCNC does, and one with words of other controls as they do.
 fn steps_of(program: &str, setup: &ControlSetup) -> Vec<Step> {
     let program = format!("{program}\nM30\n");
-    read(&program, setup).unwrap_or_else(|error| panic!("{program}{error}")).0
+    let is_iso =
+        ["G43.4", "G43.5", "G234", "G68 ", "M29"].iter().any(|word| program.contains(word));
+    let mut setup = setup.clone();
+    if is_iso {
+        setup.rules = setup.rules.with(Rule::Dialect, Choice::Iso);
+    }
+    read(&program, &setup).unwrap_or_else(|error| panic!("{program}{error}")).0
 }
 
 fn ends(program: &str, setup: &ControlSetup) -> Vec<Position> {

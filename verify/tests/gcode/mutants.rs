@@ -20,7 +20,7 @@ const FIVE_AXES: &str = "G21 G90 G17 G94\nT5 M6\nG54\nG0 X0. Y0. Z100. A0. C0.\n
 
 const TILTED: &str = "G20 G90\nG55\nT2 M6\n#1 = 2.5\n#<depth> = [0.125 * #1 - 1.]\nG68.2 X1. Y2. Z-0.5 I30. J45. K-90.\n\
     G53.1\nG0 G43 H2 X0 Y0 Z2.\nG81 X[#1/2] Y.5 Z#<depth> R.1 F10.\nX1.5\nG80\nG69\nG68 X0 Y0 R30.\nG1 X1. Y0. F20.\nG69\n\
-    G92 X0\nG1 X-.5\nG92.1\nG10 L2 P2 X1. Y1. R10.\nG0 X0 Y0\nM2\n";
+    G92 X0\nG1 X-.5\nG92.1\nG10 L2 P2 X1. Y1.\nG0 X0 Y0\nM2\n";
 
 const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z100 A0 C0\nTRAORI\nG54\n\
     G1 X10.125 Y5.5 Z2 A10.5 C-20.25 F1000\nX11 Y6 Z1.5 A11 C-21\nG3 X12. Y7. I0.5 J0.5\nTRAFOOF\nG54\nG0 Z100\nM30\n";
@@ -28,7 +28,13 @@ const SINUMERIK: &str = "; FLANK\nG17 G21 G40 G90 G94\nT7 D1 M6\nG54\nG0 X0 Y0 Z
 const LINUXCNC: &str = "o<hole> sub\n#3=[#31+1]\nG91 G81 X1 Z-2 R-1 L2 F100\nG80 G90\no<hole> endsub\n#31=2\nG21 G64 P0.01\n\
     G0 X0 Y0 Z5\no<hole> call\nM428\nG1 C90 F500\nG1 A20 X#31\nM429\nG0 Z[SQRT[25]*2]\nG30 Z6\nG19 G2 Y1 Z11 J.5 K.5\nM2\n";
 
-const SEEDS: [&str; 5] = [THREE_AXES, FIVE_AXES, TILTED, SINUMERIK, LINUXCNC];
+const SEEDS: [(&str, Choice); 5] = [
+    (THREE_AXES, Choice::Rs274Ngc),
+    (FIVE_AXES, Choice::Iso),
+    (TILTED, Choice::Iso),
+    (SINUMERIK, Choice::Sinumerik),
+    (LINUXCNC, Choice::Rs274Ngc),
+];
 
 /// Pieces that mutations insert.
 const PIECES: [&str; 48] = [
@@ -82,7 +88,7 @@ const PIECES: [&str; 48] = [
     "\u{e9}",
 ];
 
-fn setups() -> [ControlSetup; 2] {
+fn setups(dialect: Choice) -> [ControlSetup; 2] {
     let known = ControlSetup {
         start: [Some(0.0); 6],
         work_offsets: [Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]); 9],
@@ -94,16 +100,15 @@ fn setups() -> [ControlSetup; 2] {
     let rules =
         rules.with(Rule::OptionalBlocks, Choice::LeftOut).with(Rule::Rotary, Choice::Shortest);
     let rules = rules.with(Rule::WholeNumbers, Choice::Units).with(Rule::Unit, Choice::Millimetre);
-    let rules =
-        rules.with(Rule::Dialect, Choice::Rs274Ngc).with(Rule::PresetEnd, Choice::EndsPreset);
-    let unknown = ControlRules::default().with(Rule::Dialect, Choice::Rs274Ngc);
+    let rules = rules.with(Rule::Dialect, dialect).with(Rule::PresetEnd, Choice::EndsPreset);
+    let unknown = ControlRules::default().with(Rule::Dialect, dialect);
     [ControlSetup { rules, ..known }, ControlSetup { rules: unknown, ..ControlSetup::default() }]
 }
 
 #[test]
 fn seeds_are_read() {
-    for setup in setups() {
-        for seed in SEEDS {
+    for (seed, dialect) in SEEDS {
+        for setup in setups(dialect) {
             let steps =
                 Interpreter::new(seed, &setup).expect("a program").collect::<Result<Vec<_>, _>>();
             let count = steps.expect("steps").len();
@@ -148,12 +153,13 @@ fn mutants_end_with_steps_or_with_a_line() {
     let mut random =
         |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
     let (mut whole, mut steps, mut slowest) = (0u64, 0u64, (Duration::ZERO, String::new()));
-    let setups = setups();
+    let setups = SEEDS.map(|(_, dialect)| setups(dialect));
     for index in 0..count {
-        let text = mutate(SEEDS[random(SEEDS.len())], &mut random);
+        let seed = random(SEEDS.len());
+        let text = mutate(SEEDS[seed].0, &mut random);
         let lines = text.split(['\n', '\r']).count();
         let begin = Instant::now();
-        match Interpreter::new(&text, &setups[index as usize % 2]) {
+        match Interpreter::new(&text, &setups[seed][index as usize % 2]) {
             Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
             Ok(mut interpreter) => {
                 let mut error = None;

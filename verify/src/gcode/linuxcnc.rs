@@ -1,0 +1,135 @@
+//! What LinuxCNC does not read. Where a control stops with an error, the modes in force stay for its next program.
+//!
+//! Each was run with its interpreter (`rs274`). Words of its configurations for five axes (M428, G68.2, G53.1, G69) are read.
+
+use super::GcodeFault;
+use super::block::Block;
+use super::code::{Code, Group};
+
+/// The longest line, in bytes without its end (`LINELEN` of the interpreter).
+const MAX_LINE: usize = 251;
+
+/// Refuses a line, whatever its words.
+pub(super) fn check_line(text: &str) -> Result<(), GcodeFault> {
+    let (word, meaning, remedy) = if text.len() > MAX_LINE {
+        ("the line", "longer than the 251 bytes that LinuxCNC reads", "write two lines")
+    } else if outside_comment(text).trim_end().ends_with('*') {
+        ("`*`", "an error on LinuxCNC", "remove it, or state another `dialect`")
+    } else if text.split('(').skip(1).any(is_abort) {
+        ("(abort,", "a comment at which LinuxCNC stops", "remove it")
+    } else {
+        return Ok(());
+    };
+    Err(GcodeFault::NotRead { word: word.to_owned(), meaning, remedy })
+}
+
+/// Returns the text of a line before its comment that begins with a semicolon.
+pub(super) fn outside_comment(text: &str) -> &str {
+    text.split(';').next().unwrap_or_default()
+}
+
+fn is_abort(comment: &str) -> bool {
+    let start = comment.trim_start().as_bytes();
+    start.get(..6).is_some_and(|start| start.eq_ignore_ascii_case(b"abort,"))
+}
+
+/// Refuses the words of a block that are known elsewhere.
+pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
+    if let Some(code) = block.codes().find(is_unknown) {
+        let (meaning, remedy) = ("no word of LinuxCNC", "remove it, or state another `dialect`");
+        return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
+    }
+    for code in block.codes() {
+        let (is_missing, needed) = match (code.letter, code.tenths) {
+            ('M', 620..=650) => (!block.has('P'), "P with the number of an output"),
+            ('M', 670 | 680) => (!block.has('E'), "E with the number of an output"),
+            ('G', 960) => (!block.has('S'), "S with a speed"),
+            ('G', 40) => (block.value('P').is_none_or(|time| time < 0.0), "P with a time from 0"),
+            ('G', 820 | 860 | 890) => (!block.has('P'), "P with the time of its dwell"),
+            _ => continue,
+        };
+        if is_missing {
+            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+        }
+    }
+    let cycle = block.code_of(Group::Motion).map_or(0, |code| code.tenths);
+    let unused = match cycle {
+        730 | 810 | 830 | 850 => "DKP",
+        740 | 820 | 840 | 860 | 890 => "DK",
+        _ => "D",
+    };
+    if let Some(word) = unused.chars().find(|letter| block.has(*letter)) {
+        return Err(GcodeFault::Unused { word });
+    }
+    if cycle >= 730 && block.value('L') == Some(0.0) {
+        let expected = "a number of repeats from 1";
+        return Err(GcodeFault::NotAllowed { word: 'L', value: 0.0, expected });
+    }
+    let is_return = |code: &Code| matches!(code.tenths, 280 | 300);
+    let motion = block.code_of(Group::Motion);
+    if let Some((code, motion)) = block.code_of(Group::OneShot).filter(is_return).zip(motion) {
+        return Err(same_group(code, motion));
+    }
+    let codes = || block.codes().filter_map(|code| m_group(code).map(|group| (group, code)));
+    for (index, (group, code)) in codes().enumerate() {
+        if let Some((_, other)) = codes().skip(index + 1).find(|(other, _)| *other == group) {
+            return Err(same_group(code, other));
+        }
+    }
+    Ok(())
+}
+
+fn same_group(first: Code, second: Code) -> GcodeFault {
+    GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
+}
+
+/// Returns whether a word is read for other controls only.
+fn is_unknown(code: &Code) -> bool {
+    match code.letter {
+        'G' => matches!(
+            code.tenths,
+            50 | 51
+                | 80
+                | 90
+                | 150
+                | 230
+                | 434
+                | 435
+                | 500
+                | 501
+                | 541
+                | 670
+                | 680
+                | 1030
+                | 1870
+                | 2340
+        ),
+        _ => matches!(
+            code.tenths,
+            100 | 110 | 120 | 290 | 310 | 330 | 410..=440 | 830 | 840 | 880 | 890
+        ),
+    }
+}
+
+/// Returns the modal group of an M word that neither moves nor stops (RS274/NGC, table 4).
+fn m_group(code: Code) -> Option<u32> {
+    match (code.letter, code.tenths) {
+        ('M', 620..=680) => Some(5),
+        ('M', 30 | 40 | 50 | 190) => Some(7),
+        ('M', 70 | 80 | 90) => Some(8),
+        ('M', 480..=530) => Some(9),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_251_bytes_at_most() {
+        let line = |blanks: usize| format!("X1{}Y1", " ".repeat(blanks));
+        assert!(check_line(&line(247)).is_ok());
+        assert!(check_line(&line(248)).is_err());
+    }
+}
