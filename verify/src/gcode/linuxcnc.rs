@@ -45,6 +45,7 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
             ('M', 670 | 680) => (!block.has('E'), "E with the number of an output"),
             ('G', 960) => (!block.has('S'), "S with a speed"),
             ('G', 40) => (block.value('P').is_none_or(|time| time < 0.0), "P with a time from 0"),
+            ('G', 20 | 30) => (!block.has_any("XYZABCIJKR"), "its end, its centre or its radius"),
             ('G', 820 | 860 | 890) => (!block.has('P'), "P with the time of its dwell"),
             _ => continue,
         };
