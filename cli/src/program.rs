@@ -9,14 +9,14 @@ use touchoff::Unit;
 use touchoff::tool::ToolInfo;
 use touchoff_verify::gcode::ControlRules;
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Approach, Program, VerifyReport};
+use touchoff_verify::{Approach, ClData, VerifyReport};
 
 /// Reads a program for a tool and a part in that unit.
 ///
 /// # Errors
 /// If it cannot be read, or its unit, poses or cutter do not fit.
-pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, Failure> {
-    let program = Program::read(path)?;
+pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<ClData, Failure> {
+    let program = ClData::read(path)?;
     check(&program, info, unit, path)?;
     Ok(program)
 }
@@ -26,7 +26,7 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, 
 /// # Errors
 /// If its unit, poses or cutter do not fit.
 pub(crate) fn check(
-    program: &Program,
+    program: &ClData,
     info: &ToolInfo,
     unit: Unit,
     path: &Path,
@@ -74,7 +74,7 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
 }
 
 /// Returns the words that were ignored, and how often each occurs; `None` if there are none.
-pub(crate) fn ignored_words(programs: &[Program]) -> Option<String> {
+pub(crate) fn ignored_words(programs: &[ClData]) -> Option<String> {
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for (_, word) in programs.iter().flat_map(|program| &program.ignored) {
         *words.entry(word).or_default() += 1;
@@ -87,7 +87,7 @@ pub(crate) fn ignored_words(programs: &[Program]) -> Option<String> {
 }
 
 /// Prints the words that were ignored.
-pub(crate) fn print_ignored(programs: &[Program]) {
+pub(crate) fn print_ignored(programs: &[ClData]) {
     if let Some(words) = ignored_words(programs) {
         message!("ignored, as they move nothing: {words}");
     }

@@ -17,7 +17,7 @@ use std::time::Instant;
 use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
 use touchoff::{Contact, Part, Probe, Unit, Wrench};
-use touchoff_verify::Program;
+use touchoff_verify::ClData;
 
 #[derive(Serialize)]
 struct Row<'a> {
@@ -169,7 +169,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
 }
 
 /// Prints a description of the input.
-fn about(arguments: &Run, part: &Part, program: &Program, info: &ToolInfo) {
+fn about(arguments: &Run, part: &Part, program: &ClData, info: &ToolInfo) {
     program::print_ignored(std::slice::from_ref(program));
     message!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",

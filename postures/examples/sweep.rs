@@ -12,7 +12,7 @@ use touchoff::{Tool, Unit, mesh::shapes};
 use touchoff_postures::path::{PathRequest, Pattern};
 use touchoff_postures::sweep::{PostureSweep, SweepStats};
 use touchoff_postures::{Directions, Rules};
-use touchoff_verify::{Program, Verifier};
+use touchoff_verify::{ClData, Verifier};
 
 touchoff::tool! {
     tool Slim "2 mm ball, 25 mm long" {
@@ -90,7 +90,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         path.locations.len(),
         path.contact_points
     );
-    let program = Program::new("tube", Some(Unit::Millimetre), path.locations)?;
+    let program = ClData::new("tube", Some(Unit::Millimetre), path.locations)?;
     let report = Verifier::new(&bvh, &Slim)?.with_tolerance(rules.tolerance)?.check(&program)?;
     println!("{} findings", report.findings.len());
     Ok(())

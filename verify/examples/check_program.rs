@@ -5,7 +5,7 @@ use std::io::Write;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Unit};
-use touchoff_verify::{FindingKind, Program, Verifier};
+use touchoff_verify::{ClData, FindingKind, Verifier};
 
 touchoff::tool! {
     tool EndMill "12 mm across, 20 mm of it cut, in a holder 50 mm wide" {
@@ -43,7 +43,7 @@ FINI
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (low, high) = (Point3::new(0.0, -60.0, 0.0), Point3::new(20.0, 60.0, 30.0));
     let wall = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
-    let program = Program::parse(PROGRAM, "wall.apt")?;
+    let program = ClData::parse(PROGRAM, "wall.apt")?;
     // Allow 0.01 mm everywhere, and keep the holder 1 mm away.
     let verifier =
         Verifier::new(&wall, &EndMill)?.with_tolerance(0.01)?.with_allowance("holder", -1.0)?;

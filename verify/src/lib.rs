@@ -5,14 +5,14 @@
 //! gcode (text, by the rules of a control) ──machine──▶ moves ──▶ stock ──▶ contacts with material that is left
 //! ```
 //!
-//! A [`Verifier`] checks the moves of one tool against one body, from a [`Program`] of cutter locations or a
+//! A [`Verifier`] checks the moves of one tool against one body, from a [`ClData`] of cutter locations or a
 //! [`MachineProgram`]. Lengths are in the part's unit, frames are right-handed, and a tool's axis points from the tip to the
 //! spindle.
 //!
 //! ```
 //! # use nalgebra::{Point3, Vector3};
 //! use touchoff::{Unit, certify::TriangleBvh, mesh::shapes};
-//! use touchoff_verify::{Program, Verifier};
+//! use touchoff_verify::{ClData, Verifier};
 //!
 //! touchoff::tool! {
 //!     tool Ball "6 mm ball" {
@@ -26,7 +26,7 @@
 //! let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
 //! let bvh = TriangleBvh::new(&block);
 //! // One location per line: tip x, y, z and axis i, j, k. The name is for messages.
-//! let program = Program::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
+//! let program = ClData::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
 //! let report = Verifier::new(&bvh, &Ball)?.with_tolerance(0.01)?.check(&program)?;
 //! assert!(!report.is_clear());
 //! # Ok(()) }
@@ -50,4 +50,4 @@ pub use check::{
     MachineProgramError, MachineSummary, Move, MovePath, RapidBox, StepFault, Tilt, ToolSelection,
     ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError, VerifyReport,
 };
-pub use program::{CutterLocation, Program, ProgramError};
+pub use program::{ClData, CutterLocation, ProgramError};

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use touchoff::tool::Tool;
 use touchoff::{Pose, Unit};
-use touchoff_verify::program::{AptHeader, Cutter, Decimals, Program, WriteError};
+use touchoff_verify::program::{AptHeader, ClData, Cutter, Decimals, WriteError};
 
 touchoff::tool! {
     tool Ball "6 mm ball, flute to 10" {
@@ -62,13 +62,13 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
 }
 
-fn apt(program: &Program, header: &AptHeader<'_>) -> String {
+fn apt(program: &ClData, header: &AptHeader<'_>) -> String {
     let mut out = Vec::new();
     program.write_apt(&mut out, header).expect("it can be written");
     String::from_utf8(out).expect("UTF-8")
 }
 
-fn csv(program: &Program) -> String {
+fn csv(program: &ClData) -> String {
     let mut out = Vec::new();
     program.write_csv(&mut out).expect("it can be written");
     String::from_utf8(out).expect("UTF-8")
@@ -89,7 +89,7 @@ fn writes_programs_in_the_usual_form() {
         (pose([1.0, 2.5, 0.0], [0.0, 0.0, 1.0]), true),
         (pose([1e-7, -2.0, 1e9], [0.6, 0.0, 0.8]), false),
     ];
-    let program = Program::new("made", Some(Unit::Inch), poses).expect("two poses");
+    let program = ClData::new("made", Some(Unit::Inch), poses).expect("two poses");
     let cutter = Cutter::of(Flat.info(), Unit::Inch);
     let text = apt(&program, &AptHeader { part: "WALL $ 1; 2", cutter, ..AptHeader::default() });
     assert_eq!(
@@ -102,7 +102,7 @@ fn writes_programs_in_the_usual_form() {
         "# touchoff program: complete only with its last line `# end of program`\nx,y,z,i,j,k\n1,2.5,0,0,0,1\n\
          0.0000001,-2,1000000000,0.6,0,0.8\n# end of program\n"
     );
-    let read = Program::parse(&text, "again.cl").expect("it is a program");
+    let read = ClData::parse(&text, "again.cl").expect("it is a program");
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
     assert_eq!(read.check_cutter(Flat.info(), Unit::Inch).expect("the same"), None);
     assert_eq!(read.unit, Some(Unit::Inch));
@@ -124,14 +124,14 @@ fn writes_the_words_of_tool_spindle_and_feed_with_few_decimals() {
         decimals: Some(Decimals::of(unit)),
         ..AptHeader::default()
     };
-    let program = Program::new("made", Some(Unit::Millimetre), poses).expect("two poses");
+    let program = ClData::new("made", Some(Unit::Millimetre), poses).expect("two poses");
     let text = apt(&program, &header(Unit::Millimetre));
     assert_eq!(
         text,
         "PARTNO/A\nUNITS/MM\nMULTAX/ON\nLOADTL/7\nSPINDL/8000,CLW\nFEDRAT/600.5,MMPM\nRAPID\n\
          GOTO/0.33333,0,100,0,0,1\nGOTO/0.66667,-2.5,0.0001,0.267261242,0.534522484,0.801783726\nFINI\n"
     );
-    let read = Program::parse(&text, "again.cl").expect("it is a program");
+    let read = ClData::parse(&text, "again.cl").expect("it is a program");
     let words: Vec<&str> = read.ignored.iter().map(|(_, word)| word.as_str()).collect();
     assert_eq!(words, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
     assert_eq!(read.locations[1].pose.tip(), Point3::new(0.66667, -2.5, 0.0001));
@@ -139,16 +139,16 @@ fn writes_the_words_of_tool_spindle_and_feed_with_few_decimals() {
     // A program that was read is written as the same text.
     assert_eq!(apt(&read, &header(Unit::Millimetre)), text);
 
-    let inch = Program::new("made", Some(Unit::Inch), poses).expect("two poses");
+    let inch = ClData::new("made", Some(Unit::Inch), poses).expect("two poses");
     let text = apt(&inch, &header(Unit::Inch));
     assert!(
         text.contains("FEDRAT/600.5,IPM\n") && text.contains("GOTO/0.3333333,-0.000002,100,"),
         "{text}"
     );
-    let refused = |program: &Program, header: &AptHeader<'_>| {
+    let refused = |program: &ClData, header: &AptHeader<'_>| {
         program.write_apt(&mut Vec::new(), header).expect_err("it is refused")
     };
-    let unknown = Program::new("made", None, poses).expect("two poses");
+    let unknown = ClData::new("made", None, poses).expect("two poses");
     assert!(matches!(refused(&unknown, &header(Unit::Inch)), WriteError::FeedUnit));
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         for header in [
@@ -163,22 +163,22 @@ fn writes_the_words_of_tool_spindle_and_feed_with_few_decimals() {
 #[test]
 fn rejects_programs_that_apt_cannot_express() {
     let poses = [(pose([0.0; 3], [0.0, 0.0, 1.0]), false)];
-    let metre = Program::new("made", Some(Unit::Metre), poses).expect("a pose");
+    let metre = ClData::new("made", Some(Unit::Metre), poses).expect("a pose");
     let error = metre.write_apt(&mut Vec::new(), &AptHeader::default()).expect_err("no such unit");
     assert_eq!(
         error.to_string(),
         "APT-CL has no word for m: write the program in mm or inch, or as a table"
     );
-    let program = Program::new("made", None, poses).expect("a pose");
+    let program = ClData::new("made", None, poses).expect("a pose");
     for part in ["A\nGOTO/1,2,3", "A\r", "\u{1b}[2J"] {
         let header = AptHeader { part, ..AptHeader::default() };
         let error = program.write_apt(&mut Vec::new(), &header).expect_err("no line");
         assert!(matches!(error, WriteError::Part { .. }), "{error}");
     }
     assert!(!apt(&program, &AptHeader::default()).contains("UNITS"));
-    let error = Program::new("made", None, []).expect_err("no pose").to_string();
+    let error = ClData::new("made", None, []).expect_err("no pose").to_string();
     assert!(error.starts_with("made: holds no position"), "{error}");
-    let inch = Program::new("made", Some(Unit::Inch), poses).expect("a pose");
+    let inch = ClData::new("made", Some(Unit::Inch), poses).expect("a pose");
     let error = inch.check_unit(Unit::Millimetre).expect_err("they differ").to_string();
     assert!(error.starts_with("made: UNITS says inch"), "{error}");
 }
@@ -218,13 +218,13 @@ proptest! {
     #[test]
     fn written_programs_are_read_back(poses in poses(), inches in any::<Option<bool>>()) {
         let unit = inches.map(|inches| if inches { Unit::Inch } else { Unit::Millimetre });
-        let program = Program::new("made", unit, poses).expect("a pose at least");
+        let program = ClData::new("made", unit, poses).expect("a pose at least");
         let text = apt(&program, &AptHeader { part: "A", ..AptHeader::default() });
         prop_assert!(text.lines().all(|line| line.len() <= 72), "{}", text);
-        let read = Program::parse(&text, "again").expect("it is a program");
+        let read = ClData::parse(&text, "again").expect("it is a program");
         prop_assert_eq!(read.unit, unit);
         prop_assert_eq!(&read.ignored, &[(1, "PARTNO".to_owned())]);
-        let table = Program::parse(csv(&program), "again").expect("it is a table");
+        let table = ClData::parse(csv(&program), "again").expect("it is a table");
         prop_assert_eq!((read.locations.len(), table.locations.len()), (program.locations.len(), program.locations.len()));
         for ((original, copy), row) in program.locations.iter().zip(&read.locations).zip(&table.locations) {
             prop_assert_eq!(original.rapid, copy.rapid);
@@ -234,7 +234,7 @@ proptest! {
             }
         }
         // A program that was read once is written the same, except for that rounding of an axis.
-        let read_twice = Program::parse(apt(&read, &AptHeader { part: "A", ..AptHeader::default() }), "again");
+        let read_twice = ClData::parse(apt(&read, &AptHeader { part: "A", ..AptHeader::default() }), "again");
         let read_twice = read_twice.expect("it is a program");
         for (original, copy) in read.locations.iter().zip(&read_twice.locations) {
             prop_assert_eq!((original.line, original.rapid), (copy.line, copy.rapid));
@@ -250,8 +250,8 @@ proptest! {
             let tip = Point3::new(0.1, -2.0, 1.0 / 3.0);
             (norm > 1e-2).then(|| Pose::from_quaternion(tip, quaternion.map(|c| c / norm)).expect("a turn"))
         });
-        let Ok(program) = Program::new("made", None, poses.map(|pose| (pose, false))) else { return Ok(()) };
-        let read = Program::parse(csv(&program), "again").expect("it is a table");
+        let Ok(program) = ClData::new("made", None, poses.map(|pose| (pose, false))) else { return Ok(()) };
+        let read = ClData::parse(csv(&program), "again").expect("it is a table");
         for (original, copy) in program.locations.iter().zip(&read.locations) {
             prop_assert!(copy.pose.has_spin());
             prop_assert!(rotation_difference(&original.pose, &copy.pose) < 1e-14);

@@ -7,7 +7,7 @@ use touchoff::tool::ToolInfo;
 use touchoff_verify::gcode::{ControlSetup, Spindle};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::program::ProgramFile;
-use touchoff_verify::{MachineProgram, Move, Program, ToolSelection};
+use touchoff_verify::{ClData, MachineProgram, Move, ToolSelection};
 
 /// Greatest number of motions that the page holds in memory.
 pub(crate) const MAX_MOTIONS: usize = 200_000;
@@ -16,7 +16,7 @@ pub(crate) const MAX_MOTIONS: usize = 200_000;
 #[derive(Debug)]
 pub(crate) enum OpenProgram {
     /// Positions, a program per tool change.
-    Locations(Vec<Program>),
+    Locations(Vec<ClData>),
     /// G-code on a machine, in the readings of all controls that are known.
     Machine(Vec<MachineProgram>),
 }

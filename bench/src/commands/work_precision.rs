@@ -11,7 +11,7 @@ use touchoff::tool::Interpreted;
 use touchoff::{Tool, Unit};
 use touchoff_bench::page::Page;
 use touchoff_bench::work_precision::{self, Plan, Row, UserScene};
-use touchoff_verify::Program;
+use touchoff_verify::ClData;
 
 /// The scene name that stands for all scenes.
 const ALL: &str = "all";
@@ -104,7 +104,7 @@ fn read_own<'t>(
     tool: &'t dyn Tool,
     path: &Path,
 ) -> Result<UserScene<'t>, Box<dyn Error>> {
-    let program = Program::read(path)?;
+    let program = ClData::read(path)?;
     program.check_unit(unit)?;
     program.check_poses(tool.info())?;
     if let Some(line) = program.check_cutter(tool.info(), unit)? {

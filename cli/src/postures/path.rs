@@ -18,7 +18,7 @@ use touchoff::Motion;
 use touchoff::certify::TriangleBvh;
 use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
-use touchoff_verify::Program;
+use touchoff_verify::ClData;
 use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
 
 #[derive(Serialize)]
@@ -155,7 +155,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         decimals: Some(Decimals::of(unit)),
     };
     let written = |locations: &[Location]| {
-        let program = Program::new(&name, Some(unit), locations.iter().copied())?;
+        let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
         let mut text = Vec::new();
         if post.is_some() {
             return Ok((program, text));
@@ -165,7 +165,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         } else {
             program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
         }
-        Ok((Program::parse(&text, &name)?, text))
+        Ok((ClData::parse(&text, &name)?, text))
     };
     let (locations, text) = prover.settle(mem::take(&mut path.locations), written)?;
     let (text, locations) = match &post {

@@ -8,7 +8,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::tool::Tool;
 use touchoff_postures::Rules;
 use touchoff_postures::path::MOTION_TOLERANCE_FRACTION;
-use touchoff_verify::{Finding, FindingKind, Move, Program, Verifier};
+use touchoff_verify::{ClData, Finding, FindingKind, Move, Verifier};
 
 /// A cutter location, with a flag that is set if the tool arrives in rapid traverse.
 pub(super) type Location = (Pose, bool);
@@ -75,7 +75,7 @@ impl<'a> Prover<'a> {
     pub(super) fn settle<T>(
         &self,
         mut locations: Vec<Location>,
-        write: impl Fn(&[Location]) -> Result<(Program, T), Failure>,
+        write: impl Fn(&[Location]) -> Result<(ClData, T), Failure>,
     ) -> Result<(Vec<Location>, T), Failure> {
         loop {
             let (program, written) = write(&locations)?;

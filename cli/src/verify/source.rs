@@ -12,7 +12,7 @@ use touchoff::Unit;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::{Machine, Side};
 use touchoff_verify::program::ProgramFile;
-use touchoff_verify::{Gap, MachineProgram, Move, Program, ToolSelection};
+use touchoff_verify::{ClData, Gap, MachineProgram, Move, ToolSelection};
 
 /// The machine of G-code for which none is named.
 pub(crate) const DEFAULT_MACHINE: &str = "3-axis";
@@ -20,7 +20,7 @@ pub(crate) const DEFAULT_MACHINE: &str = "3-axis";
 /// A program that was read.
 pub(crate) enum CheckedProgram {
     /// Positions of the tip with the axis, a program per tool change.
-    Locations(Vec<Program>),
+    Locations(Vec<ClData>),
     /// G-code, in each of its readings.
     Machine(Vec<MachineProgram>),
 }
@@ -191,7 +191,7 @@ impl CheckedProgram {
     }
 
     /// Returns the programs of positions of a tool.
-    fn programs(&self, selection: ToolSelection) -> impl Iterator<Item = &Program> {
+    fn programs(&self, selection: ToolSelection) -> impl Iterator<Item = &ClData> {
         let programs = match self {
             CheckedProgram::Locations(programs) => &programs[..],
             CheckedProgram::Machine(_) => &[],
@@ -292,7 +292,7 @@ impl CheckedProgram {
 }
 
 /// Returns the motions to the first position after a tool change, which the program does not state.
-fn tool_changes(programs: &[Program]) -> Option<Gap> {
+fn tool_changes(programs: &[ClData]) -> Option<Gap> {
     let [_, changed @ ..] = programs else { return None };
     let line = changed.first()?.locations[0].line;
     let count = changed.len();

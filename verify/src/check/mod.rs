@@ -41,7 +41,7 @@ pub use machine_program::{
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;
 
-use crate::program::Program;
+use crate::program::ClData;
 use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
@@ -59,7 +59,7 @@ use touchoff::tool::{Tool, ToolInfo};
 /// use touchoff::certify::TriangleBvh;
 /// use touchoff_verify::{FindingKind, Verifier};
 /// use touchoff::{Interval, Unit, mesh::shapes};
-/// use touchoff_verify::Program;
+/// use touchoff_verify::ClData;
 ///
 /// touchoff::tool! {
 ///     tool Ball "6 mm" {
@@ -73,7 +73,7 @@ use touchoff::tool::{Tool, ToolInfo};
 /// let (low, high) = (Point3::new(-5., -5., -9.), Point3::new(5., 5., 0.));
 /// let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
 /// // Both points are clear of the block; the way between them is not.
-/// let program = Program::parse("-20,0,-0.5,0,0,1\n20,0,-0.5,0,0,1\n", "across.csv")?;
+/// let program = ClData::parse("-20,0,-0.5,0,0,1\n20,0,-0.5,0,0,1\n", "across.csv")?;
 /// let report = Verifier::new(&block, &Ball)?.with_tolerance(0.01)?.check(&program)?;
 /// let [finding] = &report.findings[..] else { panic!("{report:?}") };
 /// assert_eq!((finding.from, finding.line), (Some(1), 2));
@@ -188,7 +188,7 @@ impl<'a> Verifier<'a> {
     /// # Errors
     /// If the program states another unit than the part's, or another cutter than the tool, or if its poses
     /// have no spin and the tool is a solid without an axis.
-    pub fn check(&self, program: &Program) -> Result<VerifyReport, VerifyError> {
+    pub fn check(&self, program: &ClData) -> Result<VerifyReport, VerifyError> {
         self.check_with_progress(program, &|_| ())
     }
 
@@ -199,7 +199,7 @@ impl<'a> Verifier<'a> {
     /// As for [`Verifier::check`].
     pub fn check_with_progress(
         &self,
-        program: &Program,
+        program: &ClData,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {
         program.check_unit(self.bvh.unit())?;

@@ -2,7 +2,7 @@
 
 use crate::gcode::WorkOffset;
 use crate::machine::JointMotion;
-use crate::program::{CutterLocation, Program};
+use crate::program::{ClData, CutterLocation};
 use nalgebra::{Point3, Vector3};
 use std::iter;
 use touchoff::tool::{Symmetry, ToolInfo};
@@ -135,7 +135,7 @@ impl Move {
     ///
     /// # Panics
     /// As [`Move::between`].
-    pub fn all(program: &Program, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
+    pub fn all(program: &ClData, symmetry: Symmetry) -> impl Iterator<Item = Move> + '_ {
         let locations = &program.locations;
         let before = iter::once(None).chain(locations.iter().map(Some));
         before
@@ -147,7 +147,7 @@ impl Move {
     /// turns about the common normal of both axes, a solid about one fixed axis.
     ///
     /// # Panics
-    /// Panics if a solid is given a pose without a spin ([`Program::check_poses`](crate::Program::check_poses)).
+    /// Panics if a solid is given a pose without a spin ([`ClData::check_poses`](crate::ClData::check_poses)).
     pub fn between(from: Option<&CutterLocation>, to: &CutterLocation, symmetry: Symmetry) -> Move {
         let before = from.map_or(&to.pose, |from| &from.pose);
         let path = match between(before, &to.pose, symmetry) {

@@ -12,7 +12,7 @@
 //! `TOOL PATH` after `END-OF-PATH` begins another operation.
 //!
 //! Words that can neither move the tool nor change the meaning of positions are listed in
-//! [`Program::ignored`](super::Program::ignored). Every other word is refused (`words` has the lists).
+//! [`ClData::ignored`](super::ClData::ignored). Every other word is refused (`words` has the lists).
 
 use super::words::{is_prose, refuse_motions, skip_statement};
 use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown};

@@ -5,7 +5,7 @@
 //! Columns are separated by commas, semicolons or tabs, as the first row has them; `#` opens a comment, blank lines
 //! are skipped, and a first row may have the names above.
 //!
-//! A table that [`Program::write_csv`](super::Program::write_csv) wrote announces in its first line, a comment,
+//! A table that [`ClData::write_csv`](super::ClData::write_csv) wrote announces in its first line, a comment,
 //! that it ends with an end mark, another comment. Without that mark the table was truncated and is refused.
 //! Tables of other programs need none.
 
@@ -149,20 +149,20 @@ fn with_remedy(fault: ProgramFault) -> ProgramFault {
 mod tests {
     use super::super::tests::{fan, refusal, shared};
     use super::END;
-    use crate::program::{CutterLocation, Program};
+    use crate::program::{ClData, CutterLocation};
     use nalgebra::{Point3, Vector3};
     use std::path::Path;
     use touchoff::Pose;
 
     fn locations(text: &str) -> Vec<CutterLocation> {
-        Program::parse(text, "part.csv").expect("it is a table").locations
+        ClData::parse(text, "part.csv").expect("it is a table").locations
     }
 
     /// No truncated table that was written here is taken for a whole one.
     #[test]
     fn no_beginning_is_a_table() {
         let pose = |x| Pose::from_axis(Point3::new(x, 0.5, -12.25), Vector3::z()).expect("a pose");
-        let made = Program::new("made", None, [1.0, 2.0, 3.0].map(|x| (pose(x), false)));
+        let made = ClData::new("made", None, [1.0, 2.0, 3.0].map(|x| (pose(x), false)));
         let mut whole = Vec::new();
         made.expect("poses").write_csv(&mut whole).expect("memory");
         let whole = String::from_utf8(whole).expect("UTF-8");
@@ -170,7 +170,7 @@ mod tests {
         let last = whole.trim_end().len();
         assert_eq!(locations(&whole[..last]).len(), 3);
         for end in 0..last {
-            assert!(Program::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
+            assert!(ClData::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
         }
         assert_eq!(
             refusal(whole.trim_end().trim_end_matches(END)),
@@ -184,7 +184,7 @@ mod tests {
             .replace("25,0,0,1,,,,,", "25,0,0,1");
         assert_eq!(locations(&sheet).len(), 3, "{sheet}");
         let after = format!("{whole}4,5,6,0,0,1\n");
-        assert!(Program::parse(after, "part.csv").is_err());
+        assert!(ClData::parse(after, "part.csv").is_err());
     }
 
     #[test]
@@ -193,7 +193,7 @@ mod tests {
         let (text, rows) = fan();
         let path = folder.path().join("fan.csv");
         std::fs::write(&path, text).expect("a file");
-        let program = Program::read(path).expect("it is a table");
+        let program = ClData::read(path).expect("it is a table");
         assert_eq!((program.locations.len(), program.unit), (25, None));
         assert!(program.ignored.is_empty());
         for ((stop, [x, y, z, i, j, k]), line) in program.locations.iter().zip(rows).zip(2..) {
@@ -209,7 +209,7 @@ mod tests {
     }
 
     fn the_published_fan(path: &Path) {
-        let program = Program::read(path).expect("it is a table");
+        let program = ClData::read(path).expect("it is a table");
         assert_eq!(program.locations.len(), 25);
         assert_eq!(program.unit, None);
         assert!(program.ignored.is_empty());

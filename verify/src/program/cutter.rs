@@ -1,13 +1,13 @@
 //! Comparison of the cutter that a program states with the tool at hand.
 
-use super::{Cutter, Program, ProgramError};
+use super::{ClData, Cutter, ProgramError};
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
 
 /// Tolerance of lengths as a fraction of the diameter: cutters are written with few digits.
 const ROUNDED: f64 = 1e-3;
 
-impl Program {
+impl ClData {
     /// Compares the arguments of APT's `CUTTER`, and of NX's `TLDATA/MILL`, with a tool. `part` is the unit of
     /// a program that states none. Returns the line of a `CUTTER` that cannot be compared because two numbers
     /// do not describe the tool (see [`Cutter::of`]).

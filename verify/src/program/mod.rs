@@ -8,7 +8,7 @@
 //! - it begins with another letter: APT-CL;
 //! - anything else is refused.
 //!
-//! Coordinates are in the part's unit. A table does not state its unit. APT may, and [`Program::check_unit`]
+//! Coordinates are in the part's unit. A table does not state its unit. APT may, and [`ClData::check_unit`]
 //! compares it with the part's.
 
 mod apt;
@@ -30,9 +30,9 @@ use touchoff::read_regular_file;
 use touchoff::tool::{Symmetry, ToolInfo};
 use touchoff::{Pose, Unit};
 
-/// A 5-axis program: its cutter locations, in order.
+/// CL data, a program of one tool: its cutter locations, in order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Program {
+pub struct ClData {
     /// Unit of length that the file states with APT's `UNITS`.
     pub unit: Option<Unit>,
     /// The cutter locations, at least one.
@@ -53,7 +53,7 @@ pub struct Program {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProgramFile {
     /// Positions of the tip with the axis, from a table or APT-CL: a program per tool change, at least one.
-    Locations(Vec<Program>),
+    Locations(Vec<ClData>),
     /// The text of a G-code program.
     Gcode(String),
 }
@@ -77,11 +77,11 @@ impl ProgramFile {
     /// letter with a number, or the head of a Heidenhain program.
     ///
     /// # Errors
-    /// If the content is not text, or as for [`Program::parse_tools`].
+    /// If the content is not text, or as for [`ClData::parse_tools`].
     pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ProgramFile, ProgramError> {
         match decode(content.as_ref()) {
             Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
-            _ => Program::parse_tools(content, name).map(ProgramFile::Locations),
+            _ => ClData::parse_tools(content, name).map(ProgramFile::Locations),
         }
     }
 }
@@ -97,7 +97,7 @@ pub struct CutterLocation {
     pub rapid: bool,
 }
 
-impl Program {
+impl ClData {
     /// Creates a program from poses, each with a flag that is set if the tool arrives in rapid traverse. `name`
     /// is the program's name in errors. Poses are in the unit that is stated, or in the part's.
     ///
@@ -107,14 +107,14 @@ impl Program {
         name: &str,
         unit: Option<Unit>,
         poses: impl IntoIterator<Item = (Pose, bool)>,
-    ) -> Result<Program, ProgramError> {
+    ) -> Result<ClData, ProgramError> {
         let location = |(line, (pose, rapid))| CutterLocation { line, pose, rapid };
         let locations: Vec<CutterLocation> = (1..).zip(poses).map(location).collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        Ok(Program {
+        Ok(ClData {
             unit,
             locations,
             ignored: Vec::new(),
@@ -128,11 +128,11 @@ impl Program {
     /// Reads a program of one tool from a file.
     ///
     /// # Errors
-    /// If the file cannot be read, or as for [`Program::parse`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Program, ProgramError> {
+    /// If the file cannot be read, or as for [`ClData::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<ClData, ProgramError> {
         let file = path.as_ref().display().to_string();
         match read_regular_file(path) {
-            Ok(bytes) => Program::parse(bytes, &file),
+            Ok(bytes) => ClData::parse(bytes, &file),
             Err(source) => Err(ProgramError::Read { file, source }),
         }
     }
@@ -141,10 +141,10 @@ impl Program {
     ///
     /// # Errors
     /// If a line is refused, the tool changes, or there is no position.
-    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<Program, ProgramError> {
+    pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ClData, ProgramError> {
         let tapes = assemble(content.as_ref());
         let tapes = tapes.and_then(|Tapes { tapes, several }| several.map_or(Ok(tapes), Err));
-        Program::from_tapes(tapes, name).map(|mut programs| programs.swap_remove(0))
+        ClData::from_tapes(tapes, name).map(|mut programs| programs.swap_remove(0))
     }
 
     /// Reads the programs of several tools from the content of a file: one per tool change of APT, at least one. Each has
@@ -152,17 +152,14 @@ impl Program {
     ///
     /// # Errors
     /// If a line is refused, or if there is no position.
-    pub fn parse_tools(
-        content: impl AsRef<[u8]>,
-        name: &str,
-    ) -> Result<Vec<Program>, ProgramError> {
-        Program::from_tapes(assemble(content.as_ref()).map(|read| read.tapes), name)
+    pub fn parse_tools(content: impl AsRef<[u8]>, name: &str) -> Result<Vec<ClData>, ProgramError> {
+        ClData::from_tapes(assemble(content.as_ref()).map(|read| read.tapes), name)
     }
 
     fn from_tapes(
         tapes: Result<Vec<Tape>, Located>,
         name: &str,
-    ) -> Result<Vec<Program>, ProgramError> {
+    ) -> Result<Vec<ClData>, ProgramError> {
         let file = name.to_owned();
         let mut tapes = match tapes {
             Err((line, fault)) => return Err(ProgramError::Line { file, line, fault }),
@@ -172,7 +169,7 @@ impl Program {
         if tapes.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        let program = |tape: Tape| Program {
+        let program = |tape: Tape| ClData {
             unit: tape.unit.map(|(unit, _)| unit),
             unit_line: tape.unit.map(|(_, line)| line),
             locations: tape.locations,

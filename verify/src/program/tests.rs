@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// Returns the message for content that is refused.
 pub(super) fn refusal(content: impl AsRef<[u8]>) -> String {
-    Program::parse(content, "part.cl").expect_err("it is refused").to_string()
+    ClData::parse(content, "part.cl").expect_err("it is refused").to_string()
 }
 
 /// Returns a table like published ones, and its rows: a fan of tilted tool axes over an arc, rounded to four
@@ -97,7 +97,7 @@ fn refuses_what_is_neither_format() {
 
 #[test]
 fn names_a_file_that_is_absent() {
-    let error = Program::read("no/such.cl").expect_err("it is absent").to_string();
+    let error = ClData::read("no/such.cl").expect_err("it is absent").to_string();
     assert!(error.starts_with("no/such.cl: cannot be read ("), "{error}");
     assert!(error.ends_with("): check the path and its permissions"), "{error}");
 }
@@ -140,7 +140,7 @@ fn survives_mutations() {
                     _ => bytes.truncate(at + 1),
                 }
             }
-            match Program::parse(&bytes, "mutant") {
+            match ClData::parse(&bytes, "mutant") {
                 Ok(program) => assert!(!program.locations.is_empty()),
                 Err(error) => assert!(error.to_string().starts_with("mutant:")),
             }

@@ -4,7 +4,7 @@
 //! post-processor reads those. A tip is read back exactly. An axis is normalised once more when it is read,
 //! which may change its components by a unit of roundoff. APT-CL can also be rounded to [`Decimals`].
 
-use super::Program;
+use super::ClData;
 use super::csv::{END, HEAD};
 use super::decimals::{Decimals, rounded};
 use std::fmt::{self, Display, Formatter};
@@ -137,7 +137,7 @@ fn feed_unit(unit: Option<Unit>) -> Result<&'static str, WriteError> {
     }
 }
 
-impl Program {
+impl ClData {
     /// Writes the program as APT-CL: `PARTNO`, `UNITS` if the unit is known, `MULTAX/ON`, `LOADTL`, `CUTTER`,
     /// `SPINDL`, `FEDRAT`, one `GOTO` per cutter location, `RAPID` before those that are reached in rapid
     /// traverse, `FINI`. Spins are not written, since APT has none.

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, SurfaceId, Tool, Unit};
-use touchoff_verify::{FindingKind, Program, Verifier, VerifyReport};
+use touchoff_verify::{ClData, FindingKind, Verifier, VerifyReport};
 
 touchoff::tool! {
     tool BallByRegions "a ball without a profile" {
@@ -35,7 +35,7 @@ touchoff::tool! {
 /// Checks a program with a tolerance and allowances.
 fn check(mesh: &Mesh, text: &str, tolerance: f64, allowances: &[(&str, f64)]) -> VerifyReport {
     let bvh = TriangleBvh::new(mesh);
-    let program = Program::parse(text, "part.cl").expect("a program");
+    let program = ClData::parse(text, "part.cl").expect("a program");
     let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
     let verifier = verifier.with_tolerance(tolerance).expect("a length");
     let verifier = allowances.iter().fold(verifier, |verifier, (name, allowance)| {
@@ -95,7 +95,7 @@ fn finds_a_gouge_between_two_locations_at_its_deepest() {
 #[test]
 fn a_tilt_clears_a_nut() {
     let wall = TriangleBvh::new(&block([-50.0, -60.0, -60.0], [0.0, 60.0, 60.0]));
-    let program = Program::parse("5,-1,0,0,0,1\n5,1,0,0,0,1\n", "wall.csv").expect("a program");
+    let program = ClData::parse("5,-1,0,0,0,1\n5,1,0,0,0,1\n", "wall.csv").expect("a program");
     let verifier = Verifier::new(&wall, &Mounted).expect("a profile");
     let report = verifier.check(&program).expect("it can be checked");
     let nut = Mounted.info().surface_named("nut");
@@ -108,7 +108,7 @@ fn a_tilt_clears_a_nut() {
     assert!((tilt.angle - least).abs() < 2e-4, "{tilt:?}, {least}");
     assert!((tilt.axis - expected).norm() < 2e-4, "{tilt:?}, {expected}");
     // A tip in the wall is not mended by a tilt.
-    let program = Program::parse("-1,-1,0,0,0,1\n-1,1,0,0,0,1\n", "in.csv").expect("a program");
+    let program = ClData::parse("-1,-1,0,0,0,1\n-1,1,0,0,0,1\n", "in.csv").expect("a program");
     let report = verifier.check(&program).expect("it can be checked");
     assert!(!report.findings.is_empty());
     assert!(report.findings.iter().all(|found| verifier.tilt(found).is_none()));
@@ -217,7 +217,7 @@ fn finds_motions_between_opposite_axes() {
 fn reports_undecided_motions() {
     let bvh = TriangleBvh::new(&pillar());
     let program =
-        Program::parse("-30,0,1e-7,0,0,1\n30,0,1e-7,0.01,0,1\n", "a.csv").expect("two stops");
+        ClData::parse("-30,0,1e-7,0,0,1\n30,0,1e-7,0.01,0,1\n", "a.csv").expect("two stops");
     let verifier = Verifier::new(&bvh, &Mounted).expect("a profile").with_budget(1);
     let report = verifier.check(&program).expect("it can be checked");
     let undecided =
@@ -228,7 +228,7 @@ fn reports_undecided_motions() {
 #[test]
 fn rejects_unsupported_tools_and_arguments() {
     let bvh = TriangleBvh::new(&pillar());
-    let spinless = Program::parse("-30,0,9,0,0,1\n30,0,9,0,0,1\n", "a.csv").expect("two stops");
+    let spinless = ClData::parse("-30,0,9,0,0,1\n30,0,9,0,0,1\n", "a.csv").expect("two stops");
     let error = Verifier::new(&bvh, &Brick).expect("proved").check(&spinless).err();
     assert!(error.is_some_and(|error| error.to_string().contains("an axis does not place")));
     let margin =
@@ -246,7 +246,7 @@ fn rejects_unsupported_tools_and_arguments() {
                 && verifier().with_resolution(invalid).is_err()
         );
     }
-    let inch = Program::parse("UNITS/INCHES\nGOTO/1,2,3\nFINI\n", "inch.cl").expect("a program");
+    let inch = ClData::parse("UNITS/INCHES\nGOTO/1,2,3\nFINI\n", "inch.cl").expect("a program");
     let message = verifier().check(&inch).expect_err("another unit").to_string();
     assert!(message.starts_with("inch.cl:1: UNITS says inch"), "{message}");
 }
@@ -267,7 +267,7 @@ fn tools_by_regions_and_by_profile_give_the_same_findings() {
     let bvh = TriangleBvh::new(&pillar());
     let text =
         "-30,0,-0.5,0,0,1\n30,0,-0.5,0,0,1\n30,0,8,0,0.6,0.8\n0,0,-0.25,0,0,1\n0,0,-20,0,0,1\n";
-    let program = Program::parse(text, "a.csv").expect("a program");
+    let program = ClData::parse(text, "a.csv").expect("a program");
     let check = |verifier: Verifier<'_>| {
         let verifier = verifier.with_tolerance(0.01).expect("a length");
         verifier.check(&program).expect("it can be checked")

@@ -12,7 +12,7 @@ use oracle::{Mounted, Random, SURFACES, ToolPose, Worst, interpolate, sample_poi
 use touchoff::certify::{TriangleBvh, Witness};
 use touchoff::mesh::shapes;
 use touchoff::{Interval, Mesh, Pose, SurfaceId, Unit};
-use touchoff_verify::{Finding, FindingKind, Program, Verifier};
+use touchoff_verify::{ClData, Finding, FindingKind, Verifier};
 
 pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
@@ -151,7 +151,7 @@ fn findings_agree_with_brute_force() {
             let walk = walk(&mut Random::new(seed + 1), 60);
             let pose = |(tip, axis): &ToolPose| Pose::from_axis(*tip, *axis).expect("an axis");
             let poses = walk.iter().map(|(state, rapid)| (pose(state), *rapid));
-            let program = Program::new("walk", None, poses).expect("stops");
+            let program = ClData::new("walk", None, poses).expect("stops");
             let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
             let verifier = verifier.with_tolerance(tolerance).expect("a length");
             let verifier = verifier.with_resolution(RESOLUTION).expect("a length");

@@ -79,7 +79,7 @@ fn a_path_states_tool_feed_and_spindle_and_keeps_to_a_tilt() {
     };
     assert_eq!(free["points_left_out"].as_u64(), Some(sum(&free)), "{free}");
     let lowest = |text: &str| {
-        let program = touchoff_verify::Program::parse(text, "words.apt").expect("a program");
+        let program = touchoff_verify::ClData::parse(text, "words.apt").expect("a program");
         program.locations.iter().map(|location| location.pose.axis().z).fold(1.0, f64::min)
     };
     let limit = 30f64.to_radians().cos();

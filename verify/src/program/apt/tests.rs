@@ -1,11 +1,11 @@
 use super::super::tests::{flank, refusal, shared};
-use crate::program::Program;
+use crate::program::ClData;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 use touchoff::Unit;
 
-fn program(text: &str) -> Program {
-    Program::parse(text, "part.cl").expect("it is a program")
+fn program(text: &str) -> ClData {
+    ClData::parse(text, "part.cl").expect("it is a program")
 }
 
 #[test]
@@ -14,7 +14,7 @@ fn reads_a_flank_pass_from_a_file() {
     let (text, stops) = flank();
     let path = folder.path().join("flank.apt");
     std::fs::write(&path, &text).expect("a file");
-    let program = Program::read(path).expect("it is a program");
+    let program = ClData::read(path).expect("it is a program");
     assert_eq!(program.unit, Some(Unit::Millimetre));
     let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
     assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
@@ -33,7 +33,7 @@ fn reads_a_flank_pass_from_a_file() {
 }
 
 fn the_impeller(path: &Path) {
-    let program = Program::read(path).expect("it is a program");
+    let program = ClData::read(path).expect("it is a program");
     assert_eq!(program.unit, Some(Unit::Millimetre));
     let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
     assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
@@ -182,8 +182,8 @@ type ToolLines = (Option<u32>, Vec<usize>);
 
 /// Returns the tools of a program, each with the lines of its positions.
 fn tools(text: &str) -> Result<Vec<ToolLines>, String> {
-    let programs = Program::parse_tools(text, "part.cl").map_err(|error| error.to_string())?;
-    let lines = |program: &Program| program.locations.iter().map(|at| at.line).collect();
+    let programs = ClData::parse_tools(text, "part.cl").map_err(|error| error.to_string())?;
+    let lines = |program: &ClData| program.locations.iter().map(|at| at.line).collect();
     Ok(programs.iter().map(|program| (program.tool, lines(program))).collect())
 }
 
@@ -194,7 +194,7 @@ fn a_tool_change_begins_another_program() {
                 GOTO/7,8,9\nLOADTL/0\nFINI\n";
     let expected = vec![(Some(3), vec![2, 5, 7]), (Some(7), vec![10, 11, 12]), (Some(3), vec![15])];
     assert_eq!(tools(text), Ok(expected));
-    let programs = Program::parse_tools(text, "part.cl").expect("three programs");
+    let programs = ClData::parse_tools(text, "part.cl").expect("three programs");
     assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
     // The axis stays as APT has it.
     assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
@@ -366,6 +366,6 @@ fn no_beginning_is_a_program() {
     let whole = "PARTNO/A\nUNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nGOTO/4,5,6,$\n0,1,0\nFINI";
     assert_eq!(program(whole).locations.len(), 2);
     for end in 0..whole.len() {
-        assert!(Program::parse(&whole[..end], "part.cl").is_err(), "{:?}", &whole[..end]);
+        assert!(ClData::parse(&whole[..end], "part.cl").is_err(), "{:?}", &whole[..end]);
     }
 }
