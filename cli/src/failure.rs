@@ -21,12 +21,10 @@ impl Failure {
             Failure::Usage(_)
             | Failure::IsInput { .. }
             | Failure::Program(_)
-            | Failure::Job { .. }
+            | Failure::Job(_)
+            | Failure::Numbers { .. }
             | Failure::MeshForJob { .. }
-            | Failure::NoTool { .. }
             | Failure::SeveralEntries { .. }
-            | Failure::SeveralTools { .. }
-            | Failure::WorkOffset { .. }
             | Failure::Machine(_)
             | Failure::Control(_)
             | Failure::MachineProgram(_)
@@ -111,10 +109,13 @@ pub(crate) enum Failure {
     /// A tool library could not be imported.
     #[error(transparent)]
     Import(#[from] touchoff_import::ImportError),
-    /// A job file cannot be used.
+    /// A job cannot be read or checked.
+    #[error(transparent)]
+    Job(#[from] touchoff_verify::JobError),
+    /// The list of numbers in a folder of tools is refused.
     #[error("{file}: {message}")]
-    Job {
-        /// The job file.
+    Numbers {
+        /// The list.
         file: String,
         /// The reason.
         message: String,
@@ -136,28 +137,6 @@ pub(crate) enum Failure {
         file: String,
         /// The tools with this number.
         tools: Vec<String>,
-    },
-    /// No tool is given for a number of the program.
-    #[error("{}", no_tool(*number))]
-    NoTool {
-        /// The number; `None` for motions before the first tool change.
-        number: Option<u32>,
-    },
-    /// A program changes tools, and one was given.
-    #[error("the program uses T{first} and T{second}: give its tools by number in a job file")]
-    SeveralTools {
-        /// The first tool.
-        first: u32,
-        /// Another tool.
-        second: u32,
-    },
-    /// A work offset of a job has another name, or another number of coordinates.
-    #[error(
-        "work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3"
-    )]
-    WorkOffset {
-        /// The given name.
-        name: String,
     },
     /// A file could not be read.
     #[error("{file}: cannot be read ({source}): check the path and its permissions")]
@@ -320,7 +299,7 @@ pub(crate) enum Failure {
     /// The inside of the part is unknown.
     #[error(
         "{file}: {}: repair the mesh, or check its surface alone with `--surface-only`",
-        crate::part::NO_INSIDE
+        touchoff_verify::job::NO_INSIDE
     )]
     NoInside {
         /// The part.
@@ -468,18 +447,5 @@ fn near_codes(near: &str) -> String {
     match near {
         "" => "`touchoff explain` lists all codes".to_owned(),
         near => format!("did you mean `{near}`?"),
-    }
-}
-
-/// Returns the message for a number without a tool.
-fn no_tool(number: Option<u32>) -> String {
-    match number {
-        Some(number) => format!(
-            "no tool is given for T{number}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
-             the job"
-        ),
-        None => "the program moves before its first tool change, or names no tool: give one tool in the job, or use \
-                 `--tool`"
-            .to_owned(),
     }
 }

@@ -282,8 +282,10 @@ fn read_numbers(folder: &Path) -> Result<Numbers, Failure> {
     let file = folder.join(NUMBERS);
     let name = || file.display().to_string();
     match std::fs::read_to_string(&file) {
-        Ok(text) => toml::from_str(&text)
-            .map_err(|error| Failure::Job { file: name(), message: error.message().to_owned() }),
+        Ok(text) => toml::from_str(&text).map_err(|error| Failure::Numbers {
+            file: name(),
+            message: error.message().to_owned(),
+        }),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Numbers::new()),
         Err(source) => Err(Failure::Unreadable { file: name(), source }),
     }

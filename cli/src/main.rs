@@ -15,7 +15,6 @@ mod failure;
 mod fmt;
 mod haptic;
 mod import;
-mod lengths;
 mod live;
 mod loaded_tool;
 mod part;

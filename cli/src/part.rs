@@ -2,7 +2,6 @@
 
 use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
-use crate::lengths::format_length;
 use crate::loaded_tool::LoadedTool;
 use crate::output::refuse_inputs;
 use crate::progress::Progress;
@@ -12,6 +11,7 @@ use touchoff::cloud::MAX_BLUE_NOISE_POINTS;
 use touchoff::mesh::Geometry;
 use touchoff::tool::ToolInfo;
 use touchoff::{Cloud, CloudError, CoveringRadius, Mesh, Part, Probe, Sampling, Tool, Unit};
+use touchoff_verify::job::NO_INSIDE;
 
 /// The file extension of saved parts.
 const SAVED: &str = "touchoff";
@@ -105,10 +105,6 @@ pub(crate) fn load(
     }
 }
 
-/// The message for a mesh that does not determine its inside.
-pub(crate) const NO_INSIDE: &str = "the part's inside is undefined: its mesh leaks, is not consistently oriented, or \
-                                    is inside out, as a whole or in one connected component";
-
 /// Fails for a part whose inside is undefined; with `surface_only` prints a warning instead.
 ///
 /// # Errors
@@ -160,8 +156,8 @@ fn sample_cloud(
         if dense == DenseSampling::Certify { MAX_POINTS_OF_RUN } else { MAX_BLUE_NOISE_POINTS };
     let reason = format!(
         "a sampling error of {} needs a sample within {} of every point of the surface (L = {lipschitz:.4})",
-        format_length(error, unit),
-        format_length(radius, unit),
+        unit.format(error),
+        unit.format(radius),
     );
     let progress = Progress::spinner("sampling", json);
     let sampling = Sampling { count: max_points, method, seed };
@@ -191,17 +187,14 @@ pub(crate) fn print_covering_radius(part: &Part, tool: Option<&dyn Tool>, unit: 
     let status = if proved { "proved" } else { "estimated" };
     let bound = match tool.map(|tool| Probe::new(part, tool).sampling_error_bound()) {
         Some(Some(error)) => {
-            format!(
-                ": the true depth exceeds the reported one by at most {}",
-                format_length(error, unit)
-            )
+            format!(": the true depth exceeds the reported one by at most {}", unit.format(error))
         }
         Some(None) => ": no bound on the error of depth is proved for this tool".to_owned(),
         None => String::new(),
     };
     message!(
         "every point of the surface is within {} of a sample ({status}){bound}",
-        format_length(radius, unit)
+        unit.format(radius)
     );
 }
 

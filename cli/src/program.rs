@@ -1,14 +1,11 @@
 //! Programs: reading, checks against tool and unit, position relative to the part, and ignored words.
 
 use crate::failure::Failure;
-use crate::lengths::{format_length, format_point};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
-use touchoff_verify::gcode::ControlRules;
-use touchoff_verify::machine::Machine;
 use touchoff_verify::{Approach, ClData, VerifyReport};
 
 /// Reads a program for a tool and a part in that unit.
@@ -56,19 +53,19 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
         "program: {} positions, tips in {} in {unit}, {} in feed and {} in rapid traverse",
         report.moves,
         extent(tips, unit),
-        format_length(travel[0], unit),
-        format_length(travel[1], unit),
+        unit.format(travel[0]),
+        unit.format(travel[1]),
     );
     match (distance, proved_clearance) {
         (0.0, _) => message!("nearest approach: contact, line {line}"),
         (_, None) => {
-            message!("nearest approach: {} or less, line {line}", format_length(distance, unit));
+            message!("nearest approach: {} or less, line {line}", unit.format(distance));
         }
         (_, Some(keeps)) => message!(
             "nearest approach: {}, line {line}; at least {} on all motions, more than the tool's diameter of {}",
-            format_length(distance, unit),
-            format_length(keeps, unit),
-            format_length(diameter, unit),
+            unit.format(distance),
+            unit.format(keeps),
+            unit.format(diameter),
         ),
     }
 }
@@ -95,47 +92,10 @@ pub(crate) fn print_ignored(programs: &[ClData]) {
 
 /// Formats a box by its two corners.
 pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
-    format!("{} to {}", format_point(&low, unit), format_point(&high, unit))
-}
-
-/// Reads a control by its name, or from a file.
-///
-/// # Errors
-/// If there is no such control, or its file is refused.
-pub(crate) fn read_control(name: &Path) -> Result<ControlRules, Failure> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => ControlRules::parse(&text, &file)?,
-        None => ControlRules::named(&name.to_string_lossy())?,
-    })
-}
-
-/// Reads a machine by its name, or from a file.
-///
-/// # Errors
-/// If there is no such machine, or its file is refused.
-pub(crate) fn read_machine(name: &Path) -> Result<Machine, Failure> {
-    Ok(match toml_text(name)? {
-        Some((text, file)) => Machine::parse(&text, &file)?,
-        None => Machine::named(&name.to_string_lossy())?,
-    })
+    format!("{} to {}", unit.format_point(&low), unit.format_point(&high))
 }
 
 /// Returns whether a machine or a control is given by its file, and not by its name.
 pub(crate) fn is_toml(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension == "toml")
-}
-
-/// Returns the text of a file that is named, and its name for messages; `None` for another name.
-///
-/// # Errors
-/// If the file cannot be read.
-fn toml_text(name: &Path) -> Result<Option<(String, String)>, Failure> {
-    if !is_toml(name) {
-        return Ok(None);
-    }
-    let file = name.display().to_string();
-    match std::fs::read_to_string(name) {
-        Ok(text) => Ok(Some((text, file))),
-        Err(source) => Err(Failure::Unreadable { file, source }),
-    }
 }

@@ -2,10 +2,9 @@
 
 use crate::arguments::Run;
 use crate::failure::Failure;
-use crate::lengths::{format_length, format_number};
 use crate::loaded_tool::LoadedTool;
 use crate::output::Output;
-use crate::part::{self, DenseSampling, LoadedPart, NO_INSIDE};
+use crate::part::{self, DenseSampling, LoadedPart};
 use crate::program;
 use crate::progress::Progress;
 use crate::timing::{Timing, nanoseconds};
@@ -18,6 +17,7 @@ use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
 use touchoff::{Contact, Part, Probe, Unit, Wrench};
 use touchoff_verify::ClData;
+use touchoff_verify::job::NO_INSIDE;
 
 #[derive(Serialize)]
 struct Row<'a> {
@@ -72,7 +72,7 @@ impl<'a> Certified<'a> {
         if self.inside == Some(true) {
             return "wholly inside the material".to_owned();
         }
-        let [low, high] = self.certified_depth.map(|depth| format_number(depth, unit));
+        let [low, high] = self.certified_depth.map(|depth| unit.format_number(depth));
         let depth = if low == high { high } else { format!("{low} to {high}") };
         format!("{depth} {}", self.surface.unwrap_or_default())
     }
@@ -151,9 +151,9 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
             let proved = certified.map(|c| format!("{}; ", c.format(unit)));
             let each: Vec<String> = surfaces
                 .iter()
-                .map(|(name, depth)| format!("{name} {}", format_number(*depth, unit)))
+                .map(|(name, depth)| format!("{name} {}", unit.format_number(*depth)))
                 .collect();
-            let depth = format_number(evaluation.depth(), unit);
+            let depth = unit.format_number(evaluation.depth());
             let (line, points) = (location.line, evaluation.colliding);
             let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
             writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
@@ -286,14 +286,14 @@ impl Summary {
                 "{} of {} poses in contact, deepest {} at line {line}",
                 self.in_contact,
                 self.poses,
-                format_length(depth, unit),
+                unit.format(depth),
             ),
             None => message!("none of {} poses in contact", self.poses),
         }
         for (name, (poses, depth, line)) in &self.surfaces {
             message!(
                 "  {name:<12} {poses:>6} poses, deepest {} at line {line}",
-                format_length(*depth, unit)
+                unit.format(*depth)
             );
         }
         let timing = Timing::of(&mut self.times);
@@ -318,8 +318,8 @@ impl Summary {
                  median {:.2}, p99 {:.2}, max {:.2}",
                 proved.in_contact,
                 self.poses,
-                format_number(low, unit),
-                format_length(high, unit),
+                unit.format_number(low),
+                unit.format(high),
                 timing.mean / 1e3,
                 timing.p50 as f64 / 1e3,
                 timing.p99 as f64 / 1e3,

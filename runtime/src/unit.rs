@@ -1,5 +1,6 @@
 //! Units of length. Every tool and every part states its unit; none is guessed.
 
+use nalgebra::Point3;
 use std::fmt;
 use std::str::FromStr;
 
@@ -38,6 +39,31 @@ impl Unit {
             Unit::Metre => "m",
         }
     }
+
+    /// Formats a length with its unit, for people: to a tenth of a micrometre or about as finely.
+    pub fn format(self, length: f64) -> String {
+        format!("{} {self}", self.format_number(length))
+    }
+
+    /// Formats a length without its unit. What rounds to 0 has no sign.
+    pub fn format_number(self, length: f64) -> String {
+        let decimals = match self {
+            Unit::Millimetre => 4,
+            Unit::Inch => 5,
+            Unit::Metre => 7,
+        };
+        let text = format!("{length:.decimals$}");
+        match text.strip_prefix('-') {
+            Some(zero) if zero.bytes().all(|byte| b"0.".contains(&byte)) => zero.to_owned(),
+            _ => text,
+        }
+    }
+
+    /// Formats a point without its unit.
+    pub fn format_point(self, point: &Point3<f64>) -> String {
+        let [x, y, z] = [point.x, point.y, point.z].map(|value| self.format_number(value));
+        format!("({x}, {y}, {z})")
+    }
 }
 
 impl fmt::Display for Unit {
@@ -59,5 +85,17 @@ impl FromStr for Unit {
             .into_iter()
             .find(|unit| unit.symbol() == word)
             .ok_or_else(|| ParseUnitError(word.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        assert_eq!(Unit::Millimetre.format_number(-1e-9), "0.0000");
+        assert_eq!(Unit::Millimetre.format_number(-1e-4), "-0.0001");
+        assert_eq!(Unit::Inch.format_number(-0.0), "0.00000");
     }
 }

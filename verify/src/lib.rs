@@ -41,6 +41,7 @@ struct VerifyPage;
 
 mod check;
 pub mod gcode;
+pub mod job;
 pub mod machine;
 pub mod program;
 pub mod stock;
@@ -50,4 +51,5 @@ pub use check::{
     MachineProgramError, MachineSummary, Move, MovePath, RapidBox, StepFault, Tilt, ToolSelection,
     ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError, VerifyReport,
 };
+pub use job::{Job, JobError, JobFile, JobReport, JobTool, Program, Verdict};
 pub use program::{ClData, CutterLocation, ProgramError};

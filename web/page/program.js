@@ -132,9 +132,10 @@ export class ProgramView {
     result: ({ result, tolerance, milliseconds }) => {
       this.timeline.setResult(result.findings, tolerance);
       const seconds = (milliseconds / 1000).toFixed(1);
-      const [text, kind] = verdict(result, this.facts);
+      const [text, kind] = verdict(result);
       id('verdict').textContent = `${text} (${result.motions} motions, proved in ${seconds} s)`;
       id('verdict').className = kind;
+      id('program-notes').textContent = [...this.facts.notes, ...result.remarks].join('\n');
       id('findings').hidden = false;
       id('findings-list').replaceChildren(...result.findings.map((finding) => this.#row(finding)));
       id('canvas').dataset.findings = String(result.findings.length);
@@ -227,9 +228,9 @@ export class ProgramView {
  * nothing.
  * @returns {[string, string]}
  */
-function verdict({ findings, clear, inside_known: known, far, unit_factor: factor }, { open, faults }) {
+function verdict({ findings, others, open, clear, inside_known: known, far, unit_factor: factor }) {
   if (findings.length) return [`${findings.length} finding${findings.length === 1 ? '' : 's'}`, 'bad'];
-  if (faults.length) return [faults.join('; '), 'bad'];
+  if (others.length) return [others.join('; '), 'bad'];
   if (!known) return ['no findings at the surface; the part is not closed, so a tool inside it is not found', 'open'];
   if (open.length) return [`no findings in what was checked; ${open.join('; ')}`, 'open'];
   if (factor) return [`no findings, but all feed lies outside the part, and would fit if it were ${factor} times as large: check the units`, 'open'];

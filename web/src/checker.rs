@@ -1,9 +1,8 @@
 //! The check of a program, for a thread of its own beside the loop.
 
 use crate::error::EngineError;
-use crate::findings::CheckedProgram;
-use crate::program::{self, OpenProgram};
-use crate::{part, tool};
+use crate::findings::CheckResult;
+use crate::{part, program, tool};
 use nalgebra::UnitQuaternion;
 use self_cell::self_cell;
 use std::fmt;
@@ -12,7 +11,7 @@ use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Pose, SurfaceId, Tool};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Move, Verifier, VerifyError};
+use touchoff_verify::{Job, JobTool, Move, Program, ToolSelection, VerifyError};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// Tolerance of depth at a position, and of clearance, as fractions of the tool's length from its tip.
@@ -46,7 +45,9 @@ self_cell!(
 pub struct Checker {
     bvh: Option<Rc<TriangleBvh>>,
     tool: Option<Rc<Interpreted>>,
-    program: Option<OpenProgram>,
+    program: Option<Program>,
+    /// The number of the tool whose motions are taken.
+    number: Option<u32>,
     moves: Vec<Move>,
     judge: Option<Judge>,
 }
@@ -115,7 +116,7 @@ impl Checker {
         machine: &str,
     ) -> Result<String, JsError> {
         let program = self.program.insert(program::read(bytes, name, machine)?);
-        Ok(serde_json::to_string(&program.facts())?)
+        Ok(serde_json::to_string(&program::facts(program))?)
     }
 
     /// Takes the motions of the tool with a number in the program. Returns the tips at the ends of motions, and 1 after each that
@@ -161,11 +162,11 @@ impl Checker {
     fn load(&mut self, number: Option<u32>) -> Result<Vec<f32>, EngineError> {
         let (bvh, tool) = self.pair()?;
         let program = self.program.as_ref().ok_or(EngineError::NotLoaded)?;
-        let moves = program.moves(number, (tool.info(), bvh.unit()))?;
+        let moves = program::moves(program, number, tool.info(), bvh.unit())?;
         let pair = Pair { bvh: Rc::clone(bvh), tool: Rc::clone(tool) };
         let judge = Judge::try_new(pair, |pair| Certifier::new(&pair.bvh, &*pair.tool));
         self.judge = Some(judge.map_err(VerifyError::from)?);
-        self.moves = moves;
+        (self.number, self.moves) = (number, moves);
         let tips = self.moves.iter().flat_map(|step| {
             let tip = step.path.pose(1.0).tip();
             [tip.x, tip.y, tip.z, f64::from(u8::from(step.rapid))].map(|value| value as f32)
@@ -173,14 +174,15 @@ impl Checker {
         Ok(tips.collect())
     }
 
-    fn verified(&self, tolerance: f64) -> Result<CheckedProgram, EngineError> {
+    fn verified(&self, tolerance: f64) -> Result<CheckResult, EngineError> {
         let (bvh, tool) = self.pair()?;
-        if self.moves.is_empty() {
-            return Err(EngineError::NotLoaded);
-        }
-        let verifier = Verifier::new(bvh, &**tool)?.with_tolerance(tolerance)?;
-        let report = verifier.check_moves(self.moves.iter().cloned(), &checked_motions)?;
-        Ok(CheckedProgram::of(&report, tool.info()))
+        let program = self.program.as_ref().filter(|_| !self.moves.is_empty());
+        let mut job = Job::new(program.ok_or(EngineError::NotLoaded)?, bvh);
+        let mut tool = JobTool::of_all(&**tool);
+        tool.motions = ToolSelection::Number(self.number);
+        job.tools.push(tool);
+        job.tolerance = tolerance;
+        Ok(CheckResult::of(&job.check(&checked_motions)?))
     }
 
     fn state_at(&mut self, position: f64) -> Result<Vec<f64>, EngineError> {

@@ -4,9 +4,9 @@ use crate::program::MAX_MOTIONS;
 use touchoff::mesh::{GeometryError, MeshError};
 use touchoff::{CloudError, ParseUnitError, PoseError};
 use touchoff_haptics::SettingError;
-use touchoff_verify::machine::{JointError, MachineError};
+use touchoff_verify::machine::MachineError;
 use touchoff_verify::program::ProgramError;
-use touchoff_verify::{MachineProgramError, VerifyError};
+use touchoff_verify::{JobError, VerifyError};
 
 /// A request that could not be met. The message is meant for people.
 #[derive(Debug, thiserror::Error)]
@@ -32,16 +32,13 @@ pub(crate) enum EngineError {
     /// A program cannot be read, or does not fit the part or the tool.
     #[error(transparent)]
     Program(#[from] ProgramError),
-    /// G-code cannot be executed on the machine.
-    #[error(transparent)]
-    MachineProgram(#[from] MachineProgramError),
     /// A machine is unknown, or its file cannot be read.
     #[error(transparent)]
     Machine(#[from] MachineError),
-    /// A machine cannot make a motion.
+    /// A program cannot be interpreted or checked.
     #[error(transparent)]
-    Joint(#[from] JointError),
-    /// A program cannot be checked.
+    Job(#[from] JobError),
+    /// A tool cannot be certified.
     #[error(transparent)]
     Verify(#[from] VerifyError),
     /// A program has more motions than the page holds.

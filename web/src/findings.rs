@@ -3,13 +3,14 @@
 use serde::Serialize;
 use touchoff::SurfaceId;
 use touchoff::tool::ToolInfo;
-use touchoff_verify::{Finding, FindingGroup, FindingKind, VerifyReport};
+use touchoff_verify::job::{FindingDetail, Severity};
+use touchoff_verify::{Finding, FindingGroup, FindingKind, JobReport, Verdict};
 
 /// The result of a check.
 #[derive(Debug, Serialize)]
-pub(crate) struct CheckedProgram {
+pub(crate) struct CheckResult {
     motions: usize,
-    /// `true` if it is proved that nothing is deeper than allowed.
+    /// `true` if it is proved that nothing is deeper than allowed, in every reading of the program.
     clear: bool,
     /// `false` if the part has no inside, so that a tool wholly inside it is not found.
     inside_known: bool,
@@ -19,8 +20,14 @@ pub(crate) struct CheckedProgram {
     far: bool,
     /// The factor by which all positions in feed, outside the part's box, would fit into it.
     unit_factor: Option<f64>,
-    /// The findings, the worst first.
+    /// The findings at the part in the first reading, the worst first.
     findings: Vec<FindingRow>,
+    /// Sentences about other violations: of the machine, and in other readings.
+    others: Vec<String>,
+    /// Sentences about what the machine does that is no violation.
+    remarks: Vec<String>,
+    /// Sentences about what allows no verdict.
+    open: Vec<String>,
 }
 
 /// A finding on consecutive motions.
@@ -44,18 +51,35 @@ struct FindingRow {
     triangle: Option<u32>,
 }
 
-impl CheckedProgram {
-    pub(crate) fn of(report: &VerifyReport, info: &ToolInfo) -> CheckedProgram {
-        let mut groups = FindingGroup::join(&report.findings);
-        groups.sort_by(|one, other| other.worst.kind.severity(&one.worst.kind));
-        CheckedProgram {
-            motions: report.motions,
-            clear: report.is_clear(),
-            inside_known: report.inside_known,
-            distance: report.approach.distance,
-            far: report.approach.is_far(),
-            unit_factor: report.approach.unit_factor,
-            findings: groups.iter().map(|group| FindingRow::of(group, info)).collect(),
+impl CheckResult {
+    /// Summarises the check of one tool at the part.
+    pub(crate) fn of(report: &JobReport<'_>) -> CheckResult {
+        let (mut findings, mut others, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
+        for finding in report.findings() {
+            match &finding.detail {
+                FindingDetail::Surface { pair: 0, group, .. } => {
+                    findings.push(FindingRow::of(group, report.job.tools[0].tool.info()));
+                }
+                _ => {
+                    let is_remark = finding.severity == Severity::Remark;
+                    let list = if is_remark { &mut remarks } else { &mut others };
+                    list.push(format!("line {}: {}", finding.line, finding.text));
+                }
+            }
+        }
+        let open = report.gaps.iter().filter(|gap| gap.is_open);
+        let first = &report.pairs[0].report;
+        CheckResult {
+            motions: first.motions,
+            clear: report.verdict() == Verdict::Clean,
+            inside_known: first.inside_known,
+            distance: first.approach.distance,
+            far: first.approach.is_far(),
+            unit_factor: first.approach.unit_factor,
+            findings,
+            others,
+            remarks,
+            open: open.map(ToString::to_string).collect(),
         }
     }
 }

@@ -21,8 +21,13 @@ pub(crate) struct ParamArguments {
 
 impl ParamArguments {
     /// Creates the arguments from values as `--set` takes them.
-    pub(crate) fn new(set: Vec<String>) -> ParamArguments {
-        ParamArguments { set, root: None }
+    pub(crate) fn new(set: Vec<String>, root: Option<PathBuf>) -> ParamArguments {
+        ParamArguments { set, root }
+    }
+
+    /// Returns the values, and the root of mounts.
+    pub(crate) fn into_parts(self) -> (Vec<String>, Option<PathBuf>) {
+        (self.set, self.root)
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -9,7 +9,6 @@ use crate::loaded_tool::{built_in, load_file, read_source};
 use crate::output::{Output, file_name};
 use crate::part;
 use crate::program::is_toml;
-use crate::verify::{CheckedProgram, DEFAULT_MACHINE};
 use page::{Content, Page};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -20,7 +19,9 @@ use std::path::Path;
 use tool_dsl::compile;
 use tools_library::{SOURCES, TOOLS};
 use touchoff::Unit;
+use touchoff_verify::Program;
 use touchoff_verify::gcode::ControlSetup;
+use touchoff_verify::job::DEFAULT_MACHINE;
 
 /// The part and the tool that the page begins with.
 #[derive(Serialize)]
@@ -115,9 +116,9 @@ fn read_part(file: &Path, unit: Unit) -> Result<(BeginPart, Vec<u8>), Failure> {
 
 /// Reads a program's file, after a check that it can be followed.
 fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Vec<u8>), Failure> {
-    let machine = match CheckedProgram::open(file, machine, &ControlSetup::default())? {
-        CheckedProgram::Locations(_) => None,
-        CheckedProgram::Machine(_) => {
+    let machine = match Program::read(file, machine, &ControlSetup::default())? {
+        Program::Locations(_) => None,
+        Program::Machine(_) => {
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
             let text = is_toml(machine).then(|| std::fs::read_to_string(machine));
             Some(BeginMachine { name: file_name(machine), text: text.transpose()? })

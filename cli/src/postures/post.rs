@@ -5,12 +5,12 @@ use super::joints::{Target, rotary_travel, sequence};
 use super::prove::{Location, Prover};
 use crate::arguments::postures::MachineArguments;
 use crate::failure::Failure;
-use crate::program::read_machine;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 use touchoff::{Motion, Pose, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use touchoff_verify::job::read_machine;
 use touchoff_verify::machine::{Chain, Joints, Letter, Machine, Setup};
 use touchoff_verify::program::Decimals;
 use touchoff_verify::{MachineProgram, ToolSelection};
@@ -228,7 +228,8 @@ impl Post {
             }
             text.push('\n');
         }
-        text += "M30\n";
+        // A control can keep tool centre point control for its next program.
+        text += if rotary.is_empty() { "M30\n" } else { "G49\nM30\n" };
         PostedText { text, header_lines }
     }
 

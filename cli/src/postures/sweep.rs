@@ -3,7 +3,6 @@
 use super::{TriangleTotals, default_tolerance, percent, refine, touched};
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
-use crate::lengths::format_length;
 use crate::loaded_tool::LoadedTool;
 use crate::output::{Output, refuse_inputs};
 use crate::part;
@@ -293,12 +292,12 @@ impl Summary {
                 out,
                 "divided: {triangles_divided} triangles into {pieces} pieces, down to {}; {triangles_partly_reached} \
                  are reached in part",
-                format_length(*finest, unit)
+                unit.format(*finest)
             )?;
         }
         for tool in &self.tools {
             let stickout = tool.stick_out.map_or(String::new(), |[least, most]| {
-                let [least, most] = [least, most].map(|value| format_length(value, unit));
+                let [least, most] = [least, most].map(|value| unit.format(value));
                 format!("; least stick-out {least} to {most}")
             });
             let ToolSummary { name, triangles_reached, triangles_best, .. } = tool;

@@ -2,11 +2,12 @@
 
 use crate::failure::Failure;
 use crate::timing::nanoseconds;
-use crate::verify::{CheckedPair, Inputs};
+use crate::verify::Inputs;
 use std::time::Instant;
 use touchoff::certify::Certifier;
 use touchoff::{Cloud, Law, Part, Probe, Sampling, SurfaceId};
-use touchoff_verify::FindingKind;
+use touchoff_verify::job::PairReport;
+use touchoff_verify::{FindingKind, JobReport};
 
 /// Number of positions per tool at which force and distances are computed.
 const SAMPLES: usize = 2000;
@@ -58,15 +59,14 @@ pub(super) fn points(inputs: &Inputs) -> Result<Part, Failure> {
 /// # Errors
 /// If the tool cannot be certified.
 pub(super) fn follow(
-    inputs: &Inputs,
+    checked: &JobReport<'_>,
     part: &Part,
-    (tool, pair): (usize, &CheckedPair<'_>),
+    pair: &PairReport,
 ) -> Result<Along, Failure> {
-    let program_tool = &inputs.tools[tool];
-    let (unit, info) = (inputs.job.unit, program_tool.tool().info());
-    let mut certifier =
-        Certifier::new(&inputs.bodies[0].bvh, program_tool.tool()).map_err(Failure::from)?;
-    let mut probe = Probe::new(part, program_tool.tool()).with_law(Law::Gradient);
+    let tool = checked.tool(pair);
+    let (unit, info) = (checked.job.unit(), tool.tool.info());
+    let mut certifier = Certifier::new(checked.body(pair).bvh, tool.tool).map_err(Failure::from)?;
+    let mut probe = Probe::new(part, tool.tool).with_law(Law::Gradient);
     let surfaces = || info.surfaces.iter().enumerate();
     let cuts = |id: SurfaceId| info.surface(id).cutting;
     let others: Vec<SurfaceId> =
@@ -75,11 +75,16 @@ pub(super) fn follow(
     let size = reach.high.max(-reach.low).max(info.radius()) * info.unit.factor_to(unit);
     let tolerance = size * 1e-6;
     let stride = pair.report.moves.div_ceil(SAMPLES).max(1);
-    let mut along =
-        Along { tool, lines: Vec::new(), stride, samples: Vec::new(), findings: Vec::new() };
-    for (location, step) in
-        inputs.program.moves(pair.reading, program_tool, None, unit)?.enumerate()
-    {
+    let mut along = Along {
+        tool: pair.tool,
+        lines: Vec::new(),
+        stride,
+        samples: Vec::new(),
+        findings: Vec::new(),
+    };
+    let program = checked.job.program;
+    let moves = program.moves(pair.reading, tool.motions, info.symmetry, None, unit)?;
+    for (location, step) in moves.enumerate() {
         along.lines.push(u32::try_from(step.line).unwrap_or(u32::MAX));
         if location % stride != 0 {
             continue;

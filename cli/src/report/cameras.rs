@@ -3,11 +3,12 @@
 use super::body::Shown;
 use super::tool_shape::ToolShape;
 use crate::picture::camera::Camera;
-use crate::verify::{Entry, EntrySource, Inputs};
+use crate::verify::Inputs;
 use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
 use touchoff::certify::Witness;
-use touchoff_verify::FindingKind;
+use touchoff_verify::job::{FindingDetail, JobFinding};
+use touchoff_verify::{FindingKind, JobReport};
 
 /// The place of a finding, and how to look at it.
 pub(super) struct Place {
@@ -29,25 +30,24 @@ const MAX_RISE: f64 = 0.97;
 impl Place {
     /// Returns the place of a finding; `None` if it has none, such as a limit of an axis.
     pub(super) fn of(
-        entry: &Entry<'_>,
-        (inputs, shown): (&Inputs, &[Shown]),
+        finding: &JobFinding,
+        (inputs, checked, shown): (&Inputs, &JobReport<'_>, &[Shown]),
         shapes: &[ToolShape],
     ) -> Option<Place> {
-        match entry.source {
-            EntrySource::Machine => None,
-            EntrySource::Stock(finding) => {
-                let is_its = |tool: &crate::verify::ProgramTool| {
-                    tool.number.is_none() || tool.number == finding.tool_number
-                };
-                let shape = shapes.get(inputs.tools.iter().position(is_its)?)?;
+        match &finding.detail {
+            FindingDetail::Machine(_) => None,
+            FindingDetail::Stock(finding) => {
+                let tools = &checked.job.tools;
+                let tool = tools.iter().position(|tool| tool.number() == finding.tool_number);
+                let shape = shapes.get(tool?)?;
                 let toward = above_horizon(Vector3::new(1.0, -1.5, 1.3));
                 let extent = extent(&shown[0], shape);
-                let target = Point3::from(finding.point);
+                let target = finding.point;
                 Some(Place { body: None, tool: None, target, toward, extent })
             }
-            EntrySource::Surface(pair, finding) => {
-                let bodies = inputs.bodies.len();
-                let (tool, body) = (pair / bodies, pair % bodies);
+            FindingDetail::Surface { pair, group, .. } => {
+                let (finding, pair) = (&group.worst, &checked.pairs[*pair]);
+                let (tool, body) = (pair.tool, pair.body);
                 let witness = match finding.kind {
                     FindingKind::Deep { witness, .. } | FindingKind::Near { witness, .. } => {
                         Some(witness)

@@ -4,12 +4,12 @@ use super::body::{Shown, normal};
 use crate::failure::Failure;
 use crate::picture::Scale;
 use crate::postures::picture::MapValues;
-use crate::verify::{CutStock, Inputs, Verification};
 use nalgebra::Point3;
 use std::collections::HashMap;
 use touchoff::{Cloud, Escaped, Mesh, Part, Probe, TriangleId, Unit};
-use touchoff_verify::FindingKind;
+use touchoff_verify::job::CutStock;
 use touchoff_verify::stock::PartComparison;
+use touchoff_verify::{FindingKind, JobReport};
 
 /// A quantity on a body as it is shown.
 pub(super) struct Layer {
@@ -26,7 +26,7 @@ pub(super) struct Layer {
 /// # Errors
 /// If the points of the body cannot be made ready for queries.
 pub(super) fn depths(
-    (inputs, verification): (&Inputs, &Verification<'_>),
+    checked: &JobReport<'_>,
     (index, shown): (usize, &Shown),
 ) -> Result<Layer, Failure> {
     let mut values = vec![None; shown.triangles.len()];
@@ -35,13 +35,9 @@ pub(super) fn depths(
         *value = Some(value.map_or(depth, |known| known.max(depth)));
     };
     let part = Part::from_cloud(&cloud(shown)?);
-    let bodies = inputs.bodies.len();
-    for (number, pair) in verification.pairs.iter().enumerate() {
-        if number % bodies != index || pair.report.findings.is_empty() {
-            continue;
-        }
-        let mut probe =
-            Probe::new(&part, inputs.tools[number / bodies % inputs.tools.len()].tool());
+    let pairs = checked.pairs.iter().filter(|pair| pair.body == index);
+    for pair in pairs.filter(|pair| !pair.report.findings.is_empty()) {
+        let mut probe = Probe::new(&part, checked.tool(pair).tool);
         for finding in &pair.report.findings {
             let FindingKind::Deep { surface, allowed, depth, witness, .. } = finding.kind else {
                 continue;

@@ -25,7 +25,7 @@ use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::postures::picture::quantity;
 use crate::progress::Progress;
-use crate::verify::{CheckedPair, Entry, Inputs, Job, Verification};
+use crate::verify::{self, Inputs};
 use along::Along;
 use body::Shown;
 use cameras::Place;
@@ -38,6 +38,8 @@ use std::time::{Duration, Instant};
 use tool_shape::ToolShape;
 use touchoff::Escaped;
 use touchoff_postures::PostureMap;
+use touchoff_verify::JobReport;
+use touchoff_verify::job::JobFinding;
 use touchoff_verify::stock::PartComparison;
 
 /// Side of a view of the part, in pixels.
@@ -65,10 +67,10 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
             "a report on a part needs `--unit`, `--tool` and `--program`; or name a job file",
         ));
     }
-    let job = Job::new(
-        if is_job { [Some(subject.clone()), None] } else { [None, Some(subject.clone())] },
-        check,
-    )?;
+    let job = match is_job {
+        true => verify::job_file(Some(subject.clone()), None, check)?,
+        false => verify::job_file(None, Some(subject.clone()), check)?,
+    };
     let named = job.files().into_iter().map(|(_, file)| file.to_owned());
     let named: Vec<PathBuf> = named.chain([subject.clone()]).chain(map.clone()).collect();
     refuse_inputs([&*output], named.iter().map(|file| &**file))?;
@@ -78,26 +80,25 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     };
     let inputs = Inputs::read(job)?;
     if let Some((map, file)) = &map {
-        check_part(map, file, (&inputs.bodies[0].mesh, &inputs.job.part))?;
+        check_part(map, file, (&inputs.bodies[0].mesh, &inputs.file.part))?;
     }
     let mut times = vec![("reading the inputs", start.elapsed())];
     let check = Instant::now();
-    let verification = inputs.check(json)?;
-    let entries = verification.entries();
+    let job = inputs.job();
+    let checked = verify::check(&job, json)?;
     times.push(("proving the motions, and cutting the stock", check.elapsed()));
-    verification.print()?;
-    let status = verification.status(&entries);
+    verify::print(&inputs, &checked)?;
 
     let progress = Progress::spinner("writing the report", json);
     let job_file = is_job.then_some(&*subject);
     let map = map.as_ref().map(|(map, file)| (map, &**file));
-    let content = Content::new((&inputs, &verification, &entries), (job_file, map), times)?;
+    let content = Content::new(&inputs, &checked, (job_file, map), times)?;
     let html = page::html(&content)?;
     drop(progress);
     let megabytes = html.len() as f64 / 1e6;
     write_file(&output, html)?;
     message!("{}: {megabytes:.1} MB, opens in a browser", output.display());
-    Ok(ExitCode::from(status))
+    Ok(verify::exit(checked.verdict()))
 }
 
 /// A picture, as PNG.
@@ -109,8 +110,7 @@ struct Picture {
 /// The content of a report.
 struct Content<'a> {
     inputs: &'a Inputs,
-    verification: &'a Verification<'a>,
-    entries: &'a [Entry<'a>],
+    checked: &'a JobReport<'a>,
     /// The map that colours the part.
     map: Option<(&'a PostureMap, &'a Path)>,
     comparison: Option<PartComparison>,
@@ -131,17 +131,16 @@ struct Content<'a> {
 
 impl<'a> Content<'a> {
     fn new(
-        (inputs, verification, entries): (&'a Inputs, &'a Verification<'a>, &'a [Entry<'a>]),
+        inputs: &'a Inputs,
+        checked: &'a JobReport<'a>,
         (job_file, map): (Option<&Path>, Option<(&'a PostureMap, &'a Path)>),
         mut times: Vec<(&'static str, Duration)>,
     ) -> Result<Content<'a>, Failure> {
-        let (unit, bodies) = (inputs.job.unit, &inputs.bodies);
+        let (unit, bodies) = (inputs.file.unit, &inputs.bodies);
         let start = Instant::now();
         let points = along::points(inputs)?;
-        let first = |(_, pair): &(usize, &CheckedPair<'_>)| pair.is_part && pair.reading == 0;
-        let pairs = verification.pairs.iter().enumerate().filter(first);
-        let along = pairs
-            .map(|(number, pair)| along::follow(inputs, &points, (number / bodies.len(), pair)));
+        let pairs = checked.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0);
+        let along = pairs.map(|pair| along::follow(checked, &points, pair));
         let along = along.collect::<Result<_, Failure>>()?;
         times.push(("depth, clearance and force along the program", start.elapsed()));
 
@@ -155,7 +154,7 @@ impl<'a> Content<'a> {
             .collect();
         let mut layers = Vec::new();
         for (index, body) in shown.iter().enumerate() {
-            let layer = colouring::depths((inputs, verification), (index, body))?;
+            let layer = colouring::depths(checked, (index, body))?;
             if index == 0 || layer.scale.has_values {
                 layers.push(layer);
             }
@@ -175,7 +174,7 @@ impl<'a> Content<'a> {
             }
         }
         let mut comparison = None;
-        if let Some(cut) = verification.cut() {
+        if let Some(cut) = checked.cut() {
             let deviations = cut.stock.compare(&bodies[0].bvh)?;
             if let Some((body, layer)) = colouring::stock(cut, &deviations, shown.len())? {
                 shown.push(body);
@@ -184,30 +183,33 @@ impl<'a> Content<'a> {
             comparison = Some(deviations);
         }
         let shapes: Vec<ToolShape> =
-            inputs.tools.iter().map(|tool| ToolShape::new(tool.tool().info(), unit)).collect();
-        let places: Vec<Option<Place>> =
-            entries.iter().map(|entry| Place::of(entry, (inputs, &shown), &shapes)).collect();
-        let pictures = Pictures { inputs, shown: &shown, layers: &layers, shapes: &shapes };
+            checked.job.tools.iter().map(|tool| ToolShape::new(tool.tool.info(), unit)).collect();
+        let places: Vec<Option<Place>> = checked
+            .findings()
+            .iter()
+            .map(|finding| Place::of(finding, (inputs, checked, &shown), &shapes))
+            .collect();
+        let pictures =
+            Pictures { inputs, checked, shown: &shown, layers: &layers, shapes: &shapes };
         let title = pictures.title();
         let scene = Scene::new((&shown, &layers), &shapes, &places, (&title, unit));
         let sheets = layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
         let mut close_ups: Vec<(usize, Picture)> = Vec::new();
-        for (index, (entry, place)) in entries.iter().zip(&places).enumerate() {
+        for (index, (finding, place)) in checked.findings().iter().zip(&places).enumerate() {
             let Some(place) = place else { continue };
             let mut drawn = close_ups.iter().filter_map(|(drawn, _)| places[*drawn].as_ref());
             if close_ups.len() < CLOSE_UPS && !drawn.any(|drawn| drawn.shows(place)) {
-                close_ups.push((index, pictures.close_up((index, entry), place)?));
+                close_ups.push((index, pictures.close_up((index, finding), place)?));
             }
         }
         times.push(("pictures", start.elapsed()));
 
         let job_file = job_file.map(|file| ("job".to_owned(), file));
         let map_file = map.map(|(_, file)| ("posture map".to_owned(), file));
-        let files = job_file.into_iter().chain(inputs.job.files()).chain(map_file);
+        let files = job_file.into_iter().chain(inputs.file.files()).chain(map_file);
         Ok(Content {
             inputs,
-            verification,
-            entries,
+            checked,
             map,
             comparison,
             files: files
@@ -227,6 +229,7 @@ impl<'a> Content<'a> {
 /// The common part of all pictures of a report.
 struct Pictures<'a> {
     inputs: &'a Inputs,
+    checked: &'a JobReport<'a>,
     shown: &'a [Shown],
     layers: &'a [Layer],
     shapes: &'a [ToolShape],
@@ -238,7 +241,7 @@ impl Pictures<'_> {
         let shown = &self.shown[layer.body];
         let facets: Vec<_> = facets(shown.corners(), &layer.values, &layer.scale).collect();
         let body =
-            if layer.body == 0 { file_name(&self.inputs.job.part) } else { shown.name.clone() };
+            if layer.body == 0 { file_name(&self.inputs.file.part) } else { shown.name.clone() };
         let title = format!("{}: {}", Escaped(&body), layer.scale.quantity);
         let heading = Heading { title: title.clone(), subtitle: self.subtitle() };
         let legend = Legend::Scale(&layer.scale);
@@ -249,7 +252,7 @@ impl Pictures<'_> {
     /// Draws the place of a finding with the tool.
     fn close_up(
         &self,
-        (index, entry): (usize, &Entry<'_>),
+        (index, finding): (usize, &JobFinding),
         place: &Place,
     ) -> Result<Picture, Failure> {
         let body = place.body.unwrap_or(0);
@@ -267,30 +270,30 @@ impl Pictures<'_> {
         let tool = place.tool.as_ref().map(|(tool, pose)| self.shapes[*tool].facets(pose));
         let facets =
             facets(shown.corners(), values, &layer.scale).chain(tool.into_iter().flatten());
-        let line = format!("{}:{}", Escaped(&file_name(&self.inputs.job.program)), entry.line);
+        let line = format!("{}:{}", Escaped(&file_name(&self.inputs.file.program)), finding.line);
         let heading = Heading {
-            title: format!("{}. {} at {line}", index + 1, entry.rule),
+            title: format!("{}. {} at {line}", index + 1, finding.rule),
             subtitle: self.title(),
         };
         let png =
             close_up(facets, &place.camera(), (&heading, &layer.scale, shown.unit), CLOSE_UP)?;
-        Ok(Picture { caption: format!("{}. {line}: {}", index + 1, entry.text), png })
+        Ok(Picture { caption: format!("{}. {line}: {}", index + 1, finding.text), png })
     }
 
     /// Describes the part, the program, the tools and the unit.
     fn title(&self) -> String {
-        format!("{}: {}", Escaped(&file_name(&self.inputs.job.part)), self.subtitle())
+        format!("{}: {}", Escaped(&file_name(&self.inputs.file.part)), self.subtitle())
     }
 
     /// Describes the program, the tools and the unit.
     fn subtitle(&self) -> String {
-        let names = self.inputs.tools.iter().map(|tool| {
-            let number = tool.number.map_or(String::new(), |number| format!("T{number} "));
-            format!("{number}{}", tool.tool().info().name)
+        let names = self.checked.job.tools.iter().map(|tool| {
+            let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
+            format!("{number}{}", tool.tool.info().name)
         });
         let names: Vec<String> = names.collect();
-        let program = file_name(&self.inputs.job.program);
-        let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.job.unit);
+        let program = file_name(&self.inputs.file.program);
+        let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.file.unit);
         Escaped(&text).to_string()
     }
 }

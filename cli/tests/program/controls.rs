@@ -71,6 +71,14 @@ impl Scene {
         self.gives(&["--control", &control], status, words);
     }
 
+    /// As [`Scene::gives`], on a control that reads the words of Fanuc and moves as LinuxCNC does.
+    fn gives_straight(&self, status: i32, words: &[&str]) {
+        let rules = ControlRules::named("linuxcnc").expect("a control");
+        let rules = rules.with(Rule::Dialect, Choice::Iso).to_toml();
+        let control = self.bench.write("straight.toml", rules);
+        self.gives(&["--control", &control], status, words);
+    }
+
     /// Asserts the status and words of the output with more options.
     fn gives(&self, more: &[&str], status: i32, words: &[&str]) {
         let output = self.run(more);
@@ -713,8 +721,8 @@ fn an_alignment_that_controls_choose_in_different_ways_is_not_followed() {
         let scene = Scene::new(blocks).placed();
         scene.with("machine = \"A-C trunnion\"")
     };
-    scene(&blocks("A5. C0.")).gives(&LINUXCNC, 2, &["two positions of the rotary axes"]);
-    scene(&blocks("A0. C0.")).gives(&LINUXCNC, 0, &[]);
+    scene(&blocks("A5. C0.")).gives_straight(2, &["two positions of the rotary axes"]);
+    scene(&blocks("A0. C0.")).gives_straight(0, &[]);
 }
 
 /// In an aligned plane, too, each axis moves by itself.
@@ -725,7 +733,7 @@ fn rapid_traverse_in_a_tilted_plane_is_any_dog_leg() {
     let scene = Scene::new(blocks).placed().obstacle([4.0, -9.0, -2.0], [9.0, -4.0, 5.0]);
     let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
     scene.gives(&FANUC, 1, &["the clamp", "at some rates of its axes"]);
-    scene.gives(&LINUXCNC, 0, &[]);
+    scene.gives_straight(0, &[]);
 }
 
 /// The tool of a program that names none is that of its first length offset.
@@ -1008,6 +1016,12 @@ fn words_at_which_a_control_stops_are_refused() {
     for (block, word) in [
         ("G103 P1", "G103 is no word of LinuxCNC"),
         ("G43.4 H1", "G43.4 is no word of LinuxCNC"),
+        ("G69", "G69 is no word of LinuxCNC"),
+        ("G94\nG1 X5.", "G1 needs a feed rate"),
+        ("G82 X4. Z1. R2. P1\nG81 X5. Z1.", "G81 needs the retract plane R"),
+        ("G81 X4. Z1. R2.\nX5. P1", "P is used by no G or M word"),
+        ("M29 S900\nG18\nG84 X4. Y1. Z1. R2.", "M29 is no word of LinuxCNC"),
+        ("G18\nG84 X4. Y1. Z1. R2.", "G84 while G18 or G19 is in force"),
         ("M29 S100", "M29 is no word of LinuxCNC"),
         ("M62", "M62 needs P"),
         ("G4 X1.", "G4 needs P with a time"),
@@ -1028,6 +1042,12 @@ fn words_at_which_a_control_stops_are_refused() {
         "G61\nG64 P0.01\nM7\nM8\nM9\nM62 P1\nG4 P0.5\nG82 X4. Z1. R2. P1\nX5.\nG80\nG0 Z20.";
     Scene::new(&format!("{begin}{passed}")).gives(&LINUXCNC, 0, &[]);
     Scene::new(&format!("{begin}G61.1")).gives(&FANUC, 2, &["G61.1 is a word of LinuxCNC alone"]);
+    let turned = Scene::new("T1 M6\nS900 M3\nG43 H1 Z60.\nG0 A-30. C0.\nM428\nG49\nX5.");
+    let turned = turned.placed().with("machine = \"A-C trunnion\"");
+    turned.gives(&LINUXCNC, 2, &["G49 while M428 is in force with turned axes"]);
+    let both = Scene::new(&format!("{begin}G81 G80 X4. Z1. R2."));
+    both.gives(&FANUC, 2, &["G81 and G80"]);
+    both.gives(&LINUXCNC, 0, &[]);
     for (block, word) in [("(a comment)", "`(` is no word"), ("G64", "G64 is another word")] {
         let text = format!(
             "%A G71 *\nN10 G90 S9000 M3 F100.\nN20 G0 X-6. Y0. Z20.\n{block}\nN90 %A G71 *\n"

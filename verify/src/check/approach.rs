@@ -48,7 +48,7 @@ const TOLERANCE_FRACTION: f64 = 1.0 / 64.0;
 const MAX_HALVINGS: u32 = 40;
 
 /// The search for the closest approach, over motions that are added in order.
-pub(super) struct ApproachSearch<'a> {
+pub(crate) struct ApproachSearch<'a> {
     verifier: &'a Verifier<'a>,
     certifier: Certifier<'a>,
     /// Upper bound on the distance of the tool's points from its tip, in the part's unit: their travel per radian.
@@ -71,7 +71,7 @@ pub(super) struct ApproachSearch<'a> {
 }
 
 impl<'a> ApproachSearch<'a> {
-    pub(super) fn new(verifier: &'a Verifier<'a>) -> Result<ApproachSearch<'a>, VerifyError> {
+    pub(crate) fn new(verifier: &'a Verifier<'a>) -> Result<ApproachSearch<'a>, VerifyError> {
         let info = verifier.tool.info();
         let cutting = info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
         let widest = |segment: &ProfileSegment| {
@@ -98,7 +98,7 @@ impl<'a> ApproachSearch<'a> {
     }
 
     /// Adds motions with their findings.
-    pub(super) fn add(&mut self, moves: &[Move], findings: &[Finding]) {
+    pub(crate) fn add(&mut self, moves: &[Move], findings: &[Finding]) {
         for step in moves {
             self.travel[usize::from(step.rapid)] += path_length(&step.path);
             self.feeds += usize::from(!step.rapid);
@@ -173,7 +173,7 @@ impl<'a> ApproachSearch<'a> {
     }
 
     /// Returns the closest approach of the motions that were added.
-    pub(super) fn finish(self) -> Approach {
+    pub(crate) fn finish(self) -> Approach {
         let part = self.verifier.bvh.bounds();
         let [all, feed] = self.tips;
         let feed = feed.filter(|_| self.feeds >= MIN_FEEDS);

@@ -263,6 +263,16 @@ impl MachineProgram {
         &self.assumed
     }
 
+    /// Returns the program's name in messages.
+    pub fn name(&self) -> &str {
+        &self.file
+    }
+
+    /// Returns the origin of the part in machine coordinates, if the setup states it.
+    pub fn part_origin(&self) -> Option<[f64; 6]> {
+        self.setup.work_offsets[0]
+    }
+
     /// Returns the summary of the program on its machine.
     pub fn summary(&self) -> &MachineSummary {
         &self.summary
@@ -287,28 +297,45 @@ impl MachineProgram {
         link: Option<usize>,
         unit: Unit,
     ) -> Result<impl Iterator<Item = Move> + '_, JointError> {
-        if let Some(link) = link {
-            self.machine.chain(&Setup::default())?.relative_to(link)?;
+        let restarts = tool != ToolSelection::All;
+        let blocks = self.blocks(&[link], unit, restarts)?;
+        let moves = blocks.filter(move |(number, _)| tool.contains(*number));
+        Ok(moves.flat_map(|(_, frames)| frames.into_iter().flatten()))
+    }
+
+    /// Returns the moves of each block with the number of the tool in the spindle, in the frames of links as for
+    /// [`MachineProgram::moves`]. `restarts` is set if a tool begins with a rest at its first position after each change.
+    pub(crate) fn blocks<'a>(
+        &'a self,
+        links: &[Option<usize>],
+        unit: Unit,
+        restarts: bool,
+    ) -> Result<impl Iterator<Item = (Option<u32>, Vec<Vec<Move>>)> + use<'a>, JointError> {
+        for link in links.iter().flatten() {
+            self.machine.chain(&Setup::default())?.relative_to(*link)?;
         }
         let [x, y, z, ..] = self.setup.work_offsets[0].unwrap_or_default();
-        let frame = MoveFrame { link, origin: Vector3::new(x, y, z), unit };
+        let origin = Vector3::new(x, y, z);
+        let frames: Vec<_> =
+            links.iter().map(|link| MoveFrame { link: *link, origin, unit }).collect();
         let steps = Interpreter::new(&self.text, &self.setup).into_iter().flatten();
         let mut resolver =
             Resolver::new(&self.machine, &self.setup, self.off_is_tip, self.unnamed_tool);
-        let mut from = None;
+        // The line at which the tool stands, and the tool.
+        let mut from: Option<(usize, Option<u32>)> = None;
         // The first run has read and resolved every step.
         let steps = steps.map(|step| step.expect("a step that was read before"));
-        Ok(steps.flat_map(move |step| {
+        Ok(steps.map(move |step| {
             let resolved = resolver.resolve(&step).expect("a step that was resolved before");
-            if !tool.contains(step.state.tool) {
-                from = None;
-                return Vec::new();
+            let tool = step.state.tool;
+            from = from.filter(|(_, before)| !restarts || *before == tool);
+            let start = from.map(|(line, _)| line);
+            let moves: Vec<Vec<Move>> =
+                frames.iter().map(|frame| moves_of(&step, &resolved, *frame, start)).collect();
+            if moves.iter().any(|moves| !moves.is_empty()) {
+                from = Some((step.line, tool));
             }
-            let moves = moves_of(&step, resolved, frame, from);
-            if !moves.is_empty() {
-                from = Some(step.line);
-            }
-            moves
+            (tool, moves)
         }))
     }
 
@@ -478,7 +505,7 @@ struct MoveFrame {
 }
 
 /// Returns the moves of a step.
-fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
+fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
     let path = |motion: JointMotion, error: f64| match frame.link {
         Some(link) => {
             let related = motion.relative_to(link).expect("a link of the machine");
@@ -501,27 +528,28 @@ fn moves_of(step: &Step, resolved: Resolved, frame: MoveFrame, from: Option<usiz
     match resolved {
         Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
         Resolved::AnyRapid(any) => {
-            let AnyRapid { straight, edges } = *any;
+            let AnyRapid { straight, edges } = &**any;
+            let straight = *straight;
             let Some(edges) = edges else {
-                return moves_of(step, Resolved::Motions(vec![(straight, 0.0)]), frame, from);
+                return moves_of(step, &Resolved::Motions(vec![(straight, 0.0)]), frame, from);
             };
             let start = from.is_none().then(|| rest(straight, 0.0)).flatten();
             let start = start.map(|path| as_move(None, path));
             let corner = path(straight, 0.0).pose(0.0);
-            let way = |edge: JointMotion| path(edge, 0.0).pose(1.0).tip() - corner.tip();
-            let ways = edges.into_iter().map(way).collect();
+            let way = |edge: &JointMotion| path(*edge, 0.0).pose(1.0).tip() - corner.tip();
+            let ways = edges.iter().map(way).collect();
             let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
             start.into_iter().chain([as_move(Some(from.unwrap_or(step.line)), all)]).collect()
         }
         Resolved::Arrival(motion, _) => {
-            rest(*motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
+            rest(**motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
         }
         Resolved::Motions(motions) => {
             let start = motions.first().filter(|_| from.is_none());
             let start = start.and_then(|(motion, _)| rest(*motion, 0.0));
             let start = start.map(|path| as_move(None, path));
-            let motions = motions.into_iter().map(|(motion, error)| {
-                let path = MovePath::Joints(Box::new(path(motion, error)));
+            let motions = motions.iter().map(|(motion, error)| {
+                let path = MovePath::Joints(Box::new(path(*motion, *error)));
                 as_move(Some(from.unwrap_or(step.line)), path)
             });
             start.into_iter().chain(motions).collect()

@@ -42,7 +42,7 @@ pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;
 
 use crate::program::ClData;
-use approach::ApproachSearch;
+pub(crate) use approach::ApproachSearch;
 use checker::Checker;
 use std::fmt;
 use touchoff::SurfaceId;
@@ -219,48 +219,11 @@ impl<'a> Verifier<'a> {
         moves: impl IntoIterator<Item = Move>,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<VerifyReport, VerifyError> {
-        let max_depths = self.max_depths()?;
-        let mut approach = ApproachSearch::new(self)?;
-        let mut moves = moves.into_iter();
-        let (mut findings, mut count, mut modes) = (Vec::new(), 0, [false, false]);
-        loop {
-            let batch: Vec<Move> = moves.by_ref().take(MOVES_PER_BATCH).collect();
-            if batch.is_empty() {
-                break;
-            }
-            let found = map_tasks(&batch, |first, moves| {
-                let mut checker = Checker::new(self, &max_depths)?;
-                let numbered = (count + first..).zip(moves);
-                let findings =
-                    numbered.flat_map(|(index, step)| checker.check(index, step)).collect();
-                progress(moves.len());
-                Ok::<Vec<Finding>, VerifyError>(findings)
-            });
-            let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
-            let found: Vec<Finding> = found.into_iter().flatten().collect();
-            approach.add(&batch, &found);
-            batch.iter().for_each(|step| modes[usize::from(step.rapid)] = true);
-            findings.extend(found);
-            count += batch.len();
+        let mut check = MoveCheck::new(self)?;
+        for step in moves {
+            check.add(step, progress)?;
         }
-        Ok(VerifyReport {
-            moves: count,
-            motions: count.saturating_sub(1),
-            approach: approach.finish(),
-            findings,
-            inside_known: self.bvh.has_inside(),
-            unrestricted: count > 0 && !self.restricts(modes, &max_depths),
-        })
-    }
-
-    /// Returns the closest approach of motions, without a check of their depths.
-    ///
-    /// # Errors
-    /// If the tool cannot be certified.
-    pub fn approach(&self, moves: impl IntoIterator<Item = Move>) -> Result<Approach, VerifyError> {
-        let mut approach = ApproachSearch::new(self)?;
-        moves.into_iter().for_each(|step| approach.add(&[step], &[]));
-        Ok(approach.finish())
+        check.finish(progress)
     }
 
     /// Returns the greatest depth that each surface can have.
@@ -299,6 +262,95 @@ impl<'a> Verifier<'a> {
             if rapid { allowed.min(self.tolerance) } else { allowed }
         };
         self.allowed.iter().map(limit).collect()
+    }
+}
+
+/// A check of motions that are added one by one, in the order of the program.
+pub(crate) struct MoveCheck<'a> {
+    verifier: &'a Verifier<'a>,
+    max_depths: Vec<f64>,
+    approach: ApproachSearch<'a>,
+    findings: Vec<Finding>,
+    /// The motions that wait for the next batch.
+    batch: Vec<Move>,
+    /// Number of motions before them.
+    count: usize,
+    /// Set if the program has motions in feed, and in rapid traverse.
+    modes: [bool; 2],
+}
+
+impl<'a> MoveCheck<'a> {
+    /// Begins a check.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub(crate) fn new(verifier: &'a Verifier<'a>) -> Result<MoveCheck<'a>, VerifyError> {
+        Ok(MoveCheck {
+            verifier,
+            max_depths: verifier.max_depths()?,
+            approach: ApproachSearch::new(verifier)?,
+            findings: Vec::new(),
+            batch: Vec::new(),
+            count: 0,
+            modes: [false; 2],
+        })
+    }
+
+    /// Adds a motion, and checks those that wait if they fill a batch.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub(crate) fn add(
+        &mut self,
+        step: Move,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), VerifyError> {
+        self.batch.push(step);
+        match self.batch.len() < MOVES_PER_BATCH {
+            true => Ok(()),
+            false => self.check_batch(progress),
+        }
+    }
+
+    fn check_batch(&mut self, progress: &(dyn Fn(usize) + Sync)) -> Result<(), VerifyError> {
+        let (verifier, max_depths, count) = (self.verifier, &self.max_depths, self.count);
+        let found = map_tasks(&self.batch, |first, moves| {
+            let mut checker = Checker::new(verifier, max_depths)?;
+            let numbered = (count + first..).zip(moves);
+            let findings = numbered.flat_map(|(index, step)| checker.check(index, step)).collect();
+            progress(moves.len());
+            Ok::<Vec<Finding>, VerifyError>(findings)
+        });
+        let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
+        let found: Vec<Finding> = found.into_iter().flatten().collect();
+        self.approach.add(&self.batch, &found);
+        self.batch.iter().for_each(|step| self.modes[usize::from(step.rapid)] = true);
+        self.findings.extend(found);
+        self.count += self.batch.len();
+        self.batch.clear();
+        Ok(())
+    }
+
+    /// Checks the motions that wait, and returns the result.
+    ///
+    /// # Errors
+    /// If the tool cannot be certified.
+    pub(crate) fn finish(
+        mut self,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<VerifyReport, VerifyError> {
+        if !self.batch.is_empty() {
+            self.check_batch(progress)?;
+        }
+        let MoveCheck { verifier, max_depths, count, modes, .. } = self;
+        Ok(VerifyReport {
+            moves: count,
+            motions: count.saturating_sub(1),
+            approach: self.approach.finish(),
+            findings: self.findings,
+            inside_known: verifier.bvh.has_inside(),
+            unrestricted: count > 0 && !verifier.restricts(modes, &max_depths),
+        })
     }
 }
 

@@ -42,7 +42,7 @@ impl Control {
         }
         if let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
             let is_staged = self.staged.is_some() && self.staged != self.state.tool;
-            if edge != 1
+            if (edge != 1 || self.length_cancelled)
                 && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always
             {
@@ -252,6 +252,11 @@ impl Control {
 
     /// Executes G43, G49 and the words for tool centre point control of their group.
     fn length(&mut self, block: &mut Block, code: Code) -> Result<(), GcodeFault> {
+        let at_zero = self.position[3..].iter().all(|angle| *angle == Some(0.0));
+        if self.transformed && self.state.tcp == Tcp::Rotary && !at_zero {
+            let condition = "M428 is in force with turned axes, which LinuxCNC moves by it";
+            return Err(combination(code, condition, "write it before M428, or at 0"));
+        }
         (self.returned, self.length_implicit) = (None, false);
         // G43 and G49 do not end a transformation.
         let kept = if self.transformed { self.state.tcp } else { Tcp::Off };

@@ -11,6 +11,8 @@
 
 use super::block::Block;
 use super::code::Group;
+use super::linuxcnc;
+use super::modal::FeedMode;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{ControlState, Position, Tcp};
@@ -21,6 +23,7 @@ use touchoff::Unit;
 /// Words that stay in force from one cycle to the next, lengths in millimetres as given.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cycle {
+    number: u32,
     retract: f64,
     depth: f64,
     peck: Option<f64>,
@@ -54,7 +57,20 @@ impl Control {
     ) -> Result<(), GcodeFault> {
         let word = format!("G{number}");
         self.check_cycle(block, &word)?;
-        if self.modal.plane != Plane::Xy && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        if is_linuxcnc {
+            linuxcnc::check_cycle(block, number)?;
+            if self.modal.feed_mode == FeedMode::InverseTime {
+                return Err(GcodeFault::Combination {
+                    word,
+                    condition: "G93 is in force, which LinuxCNC does not allow",
+                    remedy: "write G94 before",
+                });
+            }
+        }
+        // LinuxCNC taps along another axis there (`convert_cycle_g74_g84` of its interpreter).
+        let is_across = self.modal.plane != Plane::Xy;
+        if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
             return Err(GcodeFault::Combination {
                 word,
                 condition: "G18 or G19 is in force, where a cycle is along Z or along the normal of the plane",
@@ -149,7 +165,10 @@ impl Control {
     fn cycle_words(&self, block: &mut Block, number: u32, word: &str) -> Result<Cycle, GcodeFault> {
         let known = self.cycle.as_ref();
         let incremental = self.modal.incremental;
+        // LinuxCNC asks for R and the depth again after another cycle.
+        let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
         let usable = known.filter(|cycle| cycle.incremental == incremental);
+        let usable = usable.filter(|cycle| !is_linuxcnc || cycle.number == number);
         let normal = self.modal.plane.normal();
         let length = |value: f64| self.modal.millimetres(value);
         let missing = |needed| GcodeFault::Missing { word: word.to_owned(), needed };
@@ -168,7 +187,7 @@ impl Control {
         }
         let initial = known.map_or(self.position[normal], |cycle| cycle.initial);
         let (unit, state) = (self.modal.unit, Arc::clone(&self.state));
-        Ok(Cycle { retract, depth, peck, incremental, initial, unit, state })
+        Ok(Cycle { number, retract, depth, peck, incremental, initial, unit, state })
     }
 
     fn levels(&mut self, cycle: &Cycle) -> Result<Levels, GcodeFault> {

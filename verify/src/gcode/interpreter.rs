@@ -382,7 +382,9 @@ impl Control {
                 940 => FeedMode::PerMinute,
                 _ => FeedMode::PerRevolution,
             };
-            if mode != self.modal.feed_mode {
+            // LinuxCNC asks for F again after each word.
+            if mode != self.modal.feed_mode || self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
+            {
                 self.modal.feed = None;
             }
             self.modal.feed_mode = mode;

@@ -1,6 +1,6 @@
 //! What LinuxCNC does not read. Where a control stops with an error, the modes in force stay for its next program.
 //!
-//! Each was run with its interpreter (`rs274`). Words of its configurations for five axes (M428, G68.2, G53.1, G69) are read.
+//! Each was run with its interpreter (`rs274`). M428 and M429 of its configurations for five axes are read.
 
 use super::GcodeFault;
 use super::block::Block;
@@ -53,18 +53,8 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
             return Err(GcodeFault::Missing { word: code.to_string(), needed });
         }
     }
-    let cycle = block.code_of(Group::Motion).map_or(0, |code| code.tenths);
-    let unused = match cycle {
-        730 | 810 | 830 | 850 => "DKP",
-        740 | 820 | 840 | 860 | 890 => "DK",
-        _ => "D",
-    };
-    if let Some(word) = unused.chars().find(|letter| block.has(*letter)) {
-        return Err(GcodeFault::Unused { word });
-    }
-    if cycle >= 730 && block.value('L') == Some(0.0) {
-        let expected = "a number of repeats from 1";
-        return Err(GcodeFault::NotAllowed { word: 'L', value: 0.0, expected });
+    if block.has('D') {
+        return Err(GcodeFault::Unused { word: 'D' });
     }
     let is_return = |code: &Code| matches!(code.tenths, 280 | 300);
     let motion = block.code_of(Group::Motion);
@@ -80,6 +70,25 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
     Ok(())
 }
 
+/// Refuses the words of a canned cycle that it does not take.
+pub(super) fn check_cycle(block: &Block, number: u32) -> Result<(), GcodeFault> {
+    let unused = match number {
+        73 | 83 => "KP",
+        81 | 85 => "KPQ",
+        _ => "KQ",
+    };
+    if let Some(word) = unused.chars().find(|letter| block.has(*letter)) {
+        return Err(GcodeFault::Unused { word });
+    }
+    match block.value('L') {
+        Some(value) if value < 1.0 => {
+            let expected = "a number of repeats from 1";
+            Err(GcodeFault::NotAllowed { word: 'L', value, expected })
+        }
+        _ => Ok(()),
+    }
+}
+
 fn same_group(first: Code, second: Code) -> GcodeFault {
     GcodeFault::SameGroup { first: first.to_string(), second: second.to_string() }
 }
@@ -89,21 +98,8 @@ fn is_unknown(code: &Code) -> bool {
     match code.letter {
         'G' => matches!(
             code.tenths,
-            50 | 51
-                | 80
-                | 90
-                | 150
-                | 230
-                | 434
-                | 435
-                | 500
-                | 501
-                | 541
-                | 670
-                | 680
-                | 1030
-                | 1870
-                | 2340
+            50 | 51 | 80 | 90 | 150 | 230 | 434 | 435 | 500 | 501 | 531 | 541 | 670 | 680
+                ..=690 | 1030 | 1870 | 2340
         ),
         _ => matches!(
             code.tenths,

@@ -396,6 +396,9 @@ impl Control {
             return refused("a plane is rotated", "end it with G69 before");
         }
         match self.modal.motion {
+            None if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) => {
+                return Err(GcodeFault::NoMotionMode);
+            }
             None | Some(Motion::Rapid) => {}
             // Positioned in rapid traverse on Fanuc, at feed rate elsewhere.
             Some(Motion::Feed) => return refused("G1 is in force", "write G0 in the block"),

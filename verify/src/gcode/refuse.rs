@@ -33,7 +33,7 @@ impl Control {
         if dialect == Some(Choice::Rs274Ngc) {
             linuxcnc::check_words(block)?;
         }
-        if dialect == Some(Choice::Iso)
+        if matches!(dialect, Some(Choice::Iso | Choice::Sinumerik))
             && let Some(code) = block.codes().find(is_of_linuxcnc)
         {
             let meaning = "a word of LinuxCNC alone";
@@ -122,6 +122,14 @@ impl Control {
                 condition: "it selects another work offset on Fanuc and Siemens",
                 remedy: "write it in a block of its own",
             });
+        }
+        // The last word of the group counts on Fanuc, and the cycle on LinuxCNC (run: `rs274`).
+        let cycle = block.code_of(Group::Motion).filter(|code| code.tenths >= 730);
+        if let Some((cycle, end)) = cycle.zip(block.code_of(Group::CycleOff))
+            && dialect != Some(Choice::Rs274Ngc)
+        {
+            let (first, second) = (cycle.to_string(), end.to_string());
+            return Err(GcodeFault::SameGroup { first, second });
         }
         check_axis_words(block)
     }
@@ -228,7 +236,7 @@ fn is_other_word(code: Code) -> bool {
     }
 }
 
-/// Returns whether Fanuc and Haas stop at a word of LinuxCNC.
+/// Returns whether Fanuc, Haas and Sinumerik stop at a word of LinuxCNC.
 fn is_of_linuxcnc(code: &Code) -> bool {
     matches!((code.letter, code.tenths), ('G', 591..=593 | 611 | 901 | 911 | 922 | 923))
 }

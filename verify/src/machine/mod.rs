@@ -80,7 +80,7 @@ pub(crate) use rotation::sin_cos_degrees;
 pub use singular::{SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
 
 use nalgebra::{Point3, Vector3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Values of the axes X, Y, Z in millimetres and A, B, C in degrees. An axis that the machine lacks is at 0.
@@ -102,7 +102,7 @@ const LIBRARY: [(&str, &str); 5] = [
 ];
 
 /// The letter of an axis (ISO 841).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[allow(missing_docs)]
 pub enum Letter {
     X,

@@ -181,6 +181,11 @@ impl ClData {
         Ok(tapes.into_iter().map(program).collect())
     }
 
+    /// Returns the program's name in messages.
+    pub fn name(&self) -> &str {
+        &self.file
+    }
+
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
     /// part's unit.
     ///

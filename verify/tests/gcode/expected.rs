@@ -198,34 +198,21 @@ fn with_probes(program: &str) -> String {
         .collect()
 }
 
-/// LinuxCNC prints the feeds of G84 under G19 in the order Z X Y. (Its traverses are in order, and so are the feeds of
-/// G81.)
-fn reorder_feeds(expected: &mut [Canonical]) {
-    for motion in expected.iter_mut().filter(|motion| !motion.rapid) {
-        let [z, x, y, ..] = motion.end;
-        motion.end[..3].copy_from_slice(&[x, y, z]);
-    }
-}
-
 #[test]
 fn motions_are_those_of_linuxcnc() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("interp");
     let mut total = 0;
-    // The results of g81 and g84 are those of the last of their programs.
+    // The results of g81 are those of the last of its programs.
     for (program, expected) in [
         ("g10/test.ngc", "g10/expected"),
         ("g81/g19-g99-g81.ngc", "g81/expected"),
-        ("g84/g19-g99-g84.ngc", "g84/expected"),
         ("rotation/g53.ngc", "rotation/expected"),
         ("unit-conversion/test.ngc", "unit-conversion/expected"),
         ("m98m99/test.ngc", "m98m99/expected"),
         ("g52/g92_offsets.ngc", "g52/expected"),
     ] {
-        let mut expected = canonical(&text(&folder.join(expected)));
-        if program.contains("g84") {
-            reorder_feeds(&mut expected);
-        }
+        let expected = canonical(&text(&folder.join(expected)));
         let count = compare(program, &with_probes(&text(&folder.join(program))), &expected);
         println!("{program}: {count} motions");
         total += count;
@@ -241,7 +228,7 @@ fn motions_are_those_of_linuxcnc() {
     }
     assert_eq!(good, 6);
     println!("{total} motions in all");
-    assert!(total > 100);
+    assert!(total > 70);
 }
 
 /// The programs whose result LinuxCNC has, but that use what is not read: line and message of the refusal. The
@@ -337,6 +324,11 @@ fn cycles_in_three_planes_and_with_both_retracts() {
             let program =
                 text(&folder.join(format!("interp/{cycle}/{name}.ngc"))).replace("g81", cycle);
             let (steps, error) = steps(&program);
+            // LinuxCNC taps along another axis there.
+            if cycle == "g84" && plane != "g17" {
+                assert!(error.is_some_and(|error| error.to_string().contains("G18 or G19")));
+                continue;
+            }
             assert_eq!(error, None, "{name}");
             let expected = holes(cycle == "g84", retract == "g99");
             assert_eq!(steps.len(), expected.len(), "{name}");

@@ -21,8 +21,7 @@ fn at_zero() -> ControlSetup {
 /// Executes a program as LinuxCNC does, and one with words of other controls as they do.
 fn steps_of(program: &str, setup: &ControlSetup) -> Vec<Step> {
     let program = format!("{program}\nM30\n");
-    let is_iso =
-        ["G43.4", "G43.5", "G234", "G68 ", "M29"].iter().any(|word| program.contains(word));
+    let is_iso = ["G43.4", "G43.5", "G234", "G68", "M29"].iter().any(|word| program.contains(word));
     let mut setup = setup.clone();
     if is_iso {
         setup.rules = setup.rules.with(Rule::Dialect, Choice::Iso);
@@ -350,8 +349,8 @@ fn tool_centre_point_control() {
         assert_eq!([steps[0].state.tcp, steps[1].state.tcp], [tcp, Tcp::Off], "{on}");
     }
     // M428 keeps its kinematics under G43 and G49.
-    let steps = steps_of("T3 M6\nM428\nG43 H3\nG0 X1\nG49 X2", &setup);
-    assert_eq!([steps[0].state.tcp, steps[1].state.tcp], [Tcp::Rotary; 2]);
+    let steps = steps_of("T3 M6\nG0 A0 B0 C0\nM428\nG43 H3\nG0 X1\nG49\nX2", &setup);
+    assert_eq!([steps[1].state.tcp, steps[2].state.tcp], [Tcp::Rotary; 2]);
 
     let steps = steps_of("G43.5 H3\nG1 F1 X1 Y1 Z1\nX2 I3 K4\nX3\nI1\nG49\nX4", &setup);
     let vectors: Vec<_> = steps.iter().map(|step| step.tool_vector).collect();

@@ -3,11 +3,10 @@
 use super::super::Content;
 use super::super::along::POINTS;
 use super::plain;
-use crate::lengths::format_length;
 use crate::program::ignored_words;
-use crate::verify::CheckedProgram;
 use maud::{Markup, html};
 use touchoff::Unit;
+use touchoff_verify::Program;
 use touchoff_verify::machine::Machine;
 
 pub(super) fn section(content: &Content<'_>) -> Markup {
@@ -35,8 +34,8 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
 }
 
 fn lines(content: &Content<'_>) -> Vec<String> {
-    let (inputs, verification) = (content.inputs, content.verification);
-    let (job, unit) = (&inputs.job, inputs.job.unit);
+    let inputs = content.inputs;
+    let (job, unit) = (&inputs.file, inputs.file.unit);
     let resolution = job.resolution.unwrap_or(1e-3 * Unit::Millimetre.factor_to(unit));
     let mut lines = vec![
         format!(
@@ -45,21 +44,21 @@ fn lines(content: &Content<'_>) -> Vec<String> {
         format!(
             "No surface may be deeper in the part than {} (the tolerance), in rapid traverse whatever its allowance. An excess \
              of up to {} (the resolution) may be left unreported.",
-            format_length(job.tolerance, unit),
-            format_length(resolution, unit)
+            unit.format(job.tolerance),
+            unit.format(resolution)
         ),
     ];
     let allowed = job.allow.iter().map(|(surface, depth)| match depth {
         depth if *depth == f64::INFINITY => format!("{surface} may be any depth"),
-        depth if *depth < 0.0 => format!("{surface} keeps {}", format_length(-depth, unit)),
-        depth => format!("{surface} may be {} deep", format_length(*depth, unit)),
+        depth if *depth < 0.0 => format!("{surface} keeps {}", unit.format(-depth)),
+        depth => format!("{surface} may be {} deep", unit.format(*depth)),
     });
     let allowed: Vec<String> = allowed.collect();
     if !allowed.is_empty() {
         lines.push(format!("Allowances: {}.", allowed.join("; ")));
     }
     match &inputs.program {
-        CheckedProgram::Locations(programs) => {
+        Program::Locations(programs) => {
             lines.push(
                 "Between two positions the tip moves on a straight line and the axis turns evenly about the common normal of \
                  both axes."
@@ -69,7 +68,7 @@ fn lines(content: &Content<'_>) -> Vec<String> {
                 lines.push(format!("Words that move nothing were ignored: {words}."));
             }
         }
-        CheckedProgram::Machine(readings) => {
+        Program::Machine(readings) => {
             let control = match &job.control {
                 Some(control) => format!("Control: {}.", control.display()),
                 None => "No control is named: what every control does that is known is checked."
@@ -91,7 +90,7 @@ fn lines(content: &Content<'_>) -> Vec<String> {
     if job.anyway {
         lines.push("What is left open was accepted (`anyway`).".to_owned());
     }
-    if verification.is_surface_only() {
+    if content.checked.is_surface_only() {
         lines.push("The inside of a mesh is undefined; only its surface was checked.".to_owned());
     }
     lines.push(

@@ -2,8 +2,8 @@
 
 use super::super::Content;
 use super::{picture, plain};
-use crate::verify::Severity;
 use maud::{Markup, html};
+use touchoff_verify::job::Severity;
 
 pub(super) fn section(content: &Content<'_>) -> Markup {
     let lines = |[first, last]: [usize; 2]| {
@@ -12,21 +12,21 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
     html! {
         section {
             h2 { "Findings" }
-            @if content.entries.is_empty() {
+            @if content.checked.findings().is_empty() {
                 p { "None." }
             } @else {
                 table.findings {
                     thead { tr { th { "#" } th { "severity" } th { "kind" } th { "line" } th { "lines" } th { "finding" } th {} } }
                     tbody {
-                        @for (index, entry) in content.entries.iter().enumerate() {
-                            @let (class, severity) = severity(entry.severity);
+                        @for (index, finding) in content.checked.findings().iter().enumerate() {
+                            @let (class, severity) = severity(finding.severity);
                             tr id={ "finding-" (index + 1) } {
                                 td.number { (index + 1) }
                                 td { span.badge.(class) { (severity) } }
-                                td.name { (entry.rule) }
-                                td.number { (entry.line) }
-                                td.number { (lines(entry.lines)) }
-                                td.text { (plain(&entry.text)) }
+                                td.name { (finding.rule) }
+                                td.number { (finding.line) }
+                                td.number { (lines(finding.lines)) }
+                                td.text { (plain(&finding.text)) }
                                 td {
                                     @if content.has_place[index] {
                                         button.show type="button" data-finding=(index) { "show" }
@@ -44,7 +44,7 @@ pub(super) fn section(content: &Content<'_>) -> Markup {
                     @for (index, close_up) in &content.close_ups {
                         figure {
                             a href={ "#finding-" (index + 1) } { (picture(close_up)) }
-                            figcaption { (plain(&content.entries[*index].text)) }
+                            figcaption { (plain(&content.checked.findings()[*index].text)) }
                         }
                     }
                 }

@@ -31,9 +31,10 @@ fn policy() -> String {
 /// # Errors
 /// If a chart or a drawing cannot be made.
 pub(super) fn html(content: &Content<'_>) -> Result<String, Failure> {
-    let job = &content.inputs.job;
+    let job = &content.inputs.file;
     let title = plain(&format!("{} on {}", file_name(&job.program), file_name(&job.part)));
-    let findings: Vec<_> = content.entries.iter().map(|entry| &entry.row).collect();
+    let findings = content.checked.findings().iter();
+    let findings: Vec<_> = findings.map(|finding| content.checked.row(finding)).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -11,13 +11,13 @@ use maud::{Markup, html};
 /// # Errors
 /// If a chart cannot be drawn.
 pub(super) fn section(content: &Content<'_>) -> Result<Markup, Failure> {
-    let job = &content.inputs.job;
+    let job = content.checked.job;
     let mut parts = Vec::new();
     for along in &content.along {
-        let tool = &content.inputs.tools[along.tool];
-        let name = plain(&tool.tool().info().name);
-        let number = tool.number.map_or(String::new(), |number| format!("T{number} "));
-        let charts = charts::along(along, (job.unit, job.tolerance))?;
+        let tool = &job.tools[along.tool];
+        let name = plain(&tool.tool.info().name);
+        let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
+        let charts = charts::along(along, (job.unit(), job.tolerance))?;
         parts.push(html! {
             h3 { (number) (name) }
             @if charts.is_empty() {

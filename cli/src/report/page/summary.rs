@@ -2,12 +2,12 @@
 
 use super::super::Content;
 use super::plain;
-use crate::lengths::format_length;
 use crate::program::extent;
-use crate::verify::{self, CheckedPair, Severity};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
+use touchoff_verify::Verdict;
+use touchoff_verify::job::{PairReport, Severity};
 
 pub(super) fn section(content: &Content<'_>, title: &str) -> Markup {
     html! {
@@ -28,14 +28,14 @@ pub(super) fn section(content: &Content<'_>, title: &str) -> Markup {
 
 /// Returns the verdict, as the exit status of `verify` states it.
 fn verdict(content: &Content<'_>) -> Markup {
-    let refusals = content.verification.refusals();
+    let refusals = content.checked.refusals();
     let count = |severity: Severity| {
-        content.entries.iter().filter(|entry| entry.severity == severity).count()
+        content.checked.findings().iter().filter(|finding| finding.severity == severity).count()
     };
     let [violations, undecided, remarks] =
         [Severity::Violation, Severity::Undecided, Severity::Remark].map(count);
     let plural = |count: usize| if count == 1 { "" } else { "s" };
-    let (class, text) = if content.verification.status(content.entries) == verify::NOT_CHECKED {
+    let (class, text) = if content.checked.verdict() == Verdict::None {
         ("open", "Not verified".to_owned())
     } else if violations > 0 {
         ("bad", format!("{violations} violation{}", plural(violations)))
@@ -56,31 +56,30 @@ fn verdict(content: &Content<'_>) -> Markup {
 
 /// Returns the rows of the summary: a key and its values.
 fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
-    let (inputs, verification) = (content.inputs, content.verification);
-    let (job, unit) = (&inputs.job, inputs.job.unit);
+    let (inputs, checked) = (content.inputs, content.checked);
+    let (job, unit) = (&inputs.file, inputs.file.unit);
     let part = &inputs.bodies[0];
     let sides = {
         let [low, high] = part.mesh.bounds();
         let [x, y, z]: [f64; 3] = (high - low).into();
         format!(
             "{} x {} x {}, {} triangles",
-            format_length(x, unit),
-            format_length(y, unit),
-            format_length(z, unit),
+            unit.format(x),
+            unit.format(y),
+            unit.format(z),
             part.mesh.triangles().len()
         )
     };
     let mut rows = vec![("Part", vec![plain(&job.part.display().to_string()), sides])];
-    let pairs = verification
-        .pairs
-        .iter()
-        .filter(|pair| pair.is_part && pair.reading == 0 && pair.report.moves > 0);
+    let is_shown =
+        |pair: &&PairReport| pair.body == 0 && pair.reading == 0 && pair.report.moves > 0;
+    let pairs = checked.pairs.iter().filter(is_shown);
     let mut program = vec![plain(&job.program.display().to_string())];
-    program.extend(pairs.flat_map(|pair| travel(pair, unit)));
+    program.extend(pairs.flat_map(|pair| travel(pair, checked.tool(pair).number(), unit)));
     rows.push(("Program", program));
-    let tools = inputs.tools.iter().map(|tool| {
-        let info = tool.tool().info();
-        let number = tool.number.map_or(String::new(), |number| format!("T{number} "));
+    let tools = checked.job.tools.iter().map(|tool| {
+        let info = tool.tool.info();
+        let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
         plain(&format!("{number}{} {}", info.name, info.title))
     });
     rows.push(("Tools", tools.collect()));
@@ -89,9 +88,9 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
     if !fixtures.is_empty() {
         rows.push(("Fixtures", fixtures));
     }
-    let checked = verification.summaries().into_iter().map(|summary| plain(&summary));
-    rows.push(("Checked", checked.collect()));
-    if let (Some(cut), Some(comparison)) = (verification.cut(), &content.comparison) {
+    let summaries = checked.summaries().into_iter().map(|summary| plain(&summary));
+    rows.push(("Checked", summaries.collect()));
+    if let (Some(cut), Some(comparison)) = (checked.cut(), &content.comparison) {
         let stock = &cut.stock;
         rows.push((
             "Stock",
@@ -103,14 +102,14 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
             ],
         ));
     }
-    let gaps = verification.gaps.iter().map(|gap| plain(&verify::not_checked(gap)));
+    let gaps = checked.gaps.iter().map(|gap| plain(&format!("not checked: {gap}")));
     let gaps: Vec<String> = gaps.collect();
     if !gaps.is_empty() {
         rows.push(("Not checked", gaps));
     }
     let mut rules: BTreeMap<&str, usize> = BTreeMap::new();
-    for entry in content.entries {
-        *rules.entry(entry.rule).or_default() += 1;
+    for finding in checked.findings() {
+        *rules.entry(finding.rule).or_default() += 1;
     }
     if !rules.is_empty() {
         let counts = rules.iter().map(|(rule, count)| format!("{count} {rule}"));
@@ -120,19 +119,16 @@ fn rows(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
 }
 
 /// Describes where a program goes.
-fn travel(pair: &CheckedPair<'_>, unit: Unit) -> [String; 3] {
+fn travel(pair: &PairReport, number: Option<u32>, unit: Unit) -> [String; 3] {
     let report = &pair.report;
     let approach = &report.approach;
     let nearest = match (approach.distance, approach.line) {
         (0.0, line) => format!("the tool touches the part, first at line {line}"),
         (distance, line) => {
-            format!(
-                "the tool comes within {} of the part, line {line}",
-                format_length(distance, unit)
-            )
+            format!("the tool comes within {} of the part, line {line}", unit.format(distance))
         }
     };
-    let tool = pair.scope.number.map_or(String::new(), |number| format!("T{number}: "));
+    let tool = number.map_or(String::new(), |number| format!("T{number}: "));
     let [feed, rapid] = approach.travel;
     [
         format!(
@@ -140,11 +136,7 @@ fn travel(pair: &CheckedPair<'_>, unit: Unit) -> [String; 3] {
             report.moves,
             extent(approach.program, unit)
         ),
-        format!(
-            "{tool}{} in feed and {} in rapid traverse",
-            format_length(feed, unit),
-            format_length(rapid, unit)
-        ),
+        format!("{tool}{} in feed and {} in rapid traverse", unit.format(feed), unit.format(rapid)),
         format!("{tool}{nearest}"),
     ]
 }

@@ -9,12 +9,13 @@ use tool_dsl::draw::{Content as Drawn, TextRendering, svg};
 
 pub(super) fn section(content: &Content<'_>) -> Result<Markup, Failure> {
     let mut tools = Vec::new();
-    for (tool, shape) in content.inputs.tools.iter().zip(&content.shapes) {
-        let info = tool.tool().info();
-        let compiled = tool.compile()?;
+    let tools_of_job = content.inputs.tools.iter().zip(&content.checked.job.tools);
+    for ((source, tool), shape) in tools_of_job.zip(&content.shapes) {
+        let info = tool.tool.info();
+        let compiled = source.compile()?;
         let drawing = compiled.tool().map(|tool| svg(tool, Drawn::Outline, TextRendering::Strokes));
         let proof = proof(compiled)?;
-        let number = tool.number.map_or(String::new(), |number| format!("T{number} "));
+        let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
         let name = plain(&info.name);
         tools.push(html! {
             h3 { (number) (name) @if !info.title.is_empty() { ": " (plain(&info.title)) } }

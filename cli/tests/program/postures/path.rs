@@ -22,9 +22,14 @@ fn verified(tube: &Tube, program: &str, more: &[&str]) {
     let all = ["verify", "--part", &tube.part, "--unit", "mm", "--tool", "D2Ball"];
     let more =
         [&["--program", program, "--tolerance", "0.05", "--allow", "shank=0.00625"], more].concat();
-    // G-code leaves the path of rapid traverse to the control.
-    let control: &[&str] = if program.ends_with(".nc") { &["--control", "linuxcnc"] } else { &[] };
-    let checked = touchoff(&[&all[..], &more, control].concat());
+    // G-code leaves the path of rapid traverse, and the frame of the part on a turned table, to the control.
+    let mut control = Vec::new();
+    if program.ends_with(".nc") {
+        let rules = stdout(&touchoff(&["controls", "linuxcnc"])).replace("\"rs274ngc\"", "\"iso\"");
+        control.extend(["--control".to_owned(), tube.bench.write("control.toml", &rules)]);
+    }
+    let control: Vec<&str> = control.iter().map(|word| &**word).collect();
+    let checked = touchoff(&[&all[..], &more, &control].concat());
     assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
 }
 

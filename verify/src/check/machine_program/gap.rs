@@ -2,6 +2,7 @@
 
 use super::{MachineProgram, MachineSummary, UnknownCause, UnknownMotions};
 use crate::gcode::{ControlRules, NoteKind, Rule, Spindle};
+use std::fmt;
 
 /// Something that was not checked, or that was taken for granted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +25,16 @@ impl Gap {
     /// Creates a gap that allows no verdict.
     pub fn open(line: usize, reason: String) -> Gap {
         Gap { line, is_open: true, reason }
+    }
+}
+
+/// The reason with its line.
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => f.write_str(&self.reason),
+            line => write!(f, "line {line}: {}", self.reason),
+        }
     }
 }
 

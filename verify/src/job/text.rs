@@ -1,22 +1,27 @@
 //! Findings and their summary as text.
 
-use super::{CheckedPair, Remedy, Scope};
-use crate::lengths::{format_length, format_number, format_point};
+use super::report::{JobReport, PairReport, Remedy};
+use crate::{Finding, FindingGroup, FindingKind, Tilt};
 use std::fmt::Write as _;
 use touchoff::{Interval, SurfaceId, Unit};
-use touchoff_verify::{Finding, FindingGroup, FindingKind, Tilt};
 
 /// Describes the findings of consecutive motions.
 ///
 /// The remedy is that of the worst motion.
-pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) -> String {
-    let &Scope { info, unit, body, .. } = scope;
+pub(super) fn describe(
+    report: &JobReport<'_>,
+    pair: &PairReport,
+    group: &FindingGroup,
+    remedy: Remedy,
+) -> String {
+    let (info, unit) = (report.info(pair), report.job.unit());
+    let body = &report.body(pair).name;
     let finding = &group.worst;
     let name = |surface: SurfaceId| &*info.surface(surface).name;
     let at = place(group);
     let text = match &finding.kind {
         FindingKind::Deep { surface, through: true, witness, .. } => {
-            let point = format_point(&witness.point, unit);
+            let point = unit.format_point(&witness.point);
             format!("{} passes right through {body} at {point}, {at}", name(*surface))
         }
         FindingKind::Deep {
@@ -28,7 +33,7 @@ pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) 
                 String::new()
             };
             let (name, depth) = (name(*surface), format_interval(*low, *high, unit));
-            let point = format_point(&witness.point, unit);
+            let point = unit.format_point(&witness.point);
             format!("{name} is {depth} {unit} deep in {body} at {point}, {at}{bound}")
         }
         FindingKind::Near {
@@ -37,7 +42,7 @@ pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) 
             "{} is {} {unit} from {body} at {}, less than its margin of {margin} {unit}, {at}",
             name(*surface),
             format_interval(*low, *high, unit),
-            format_point(&witness.point, unit),
+            unit.format_point(&witness.point),
         ),
         FindingKind::Inside { surface: None } => {
             format!("the tool is wholly inside {body}, {at}")
@@ -56,7 +61,7 @@ pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) 
         // A gouge of a flank is not mended by a lift.
         Some(_) if cutting => text,
         Some(lift) => {
-            format!("{text}; with {} more reach it is clear", format_length(lift, unit))
+            format!("{text}; with {} more reach it is clear", unit.format(lift))
         }
         None => text,
     };
@@ -70,7 +75,7 @@ pub(super) fn describe(group: &FindingGroup, remedy: Remedy, scope: &Scope<'_>) 
             angle.to_degrees()
         );
     }
-    match scope.number {
+    match report.tool(pair).number() {
         Some(number) => format!("T{number} {text}"),
         None => text,
     }
@@ -105,7 +110,7 @@ fn format_interval(low: f64, high: f64, unit: Unit) -> String {
 /// Formats a length with the usual decimals. A length below 0.01 mm of which these show fewer than two nonzero
 /// digits is written with an exponent.
 fn format_small(value: f64, unit: Unit) -> String {
-    let text = format_number(value, unit);
+    let text = unit.format_number(value);
     let digits = text.chars().filter(|c| ('1'..='9').contains(c)).count();
     if value == 0.0 || digits > 1 || value.abs() >= 0.01 / unit.millimetres() {
         text
@@ -115,21 +120,23 @@ fn format_small(value: f64, unit: Unit) -> String {
 }
 
 /// Summarises the findings of a tool at a body: per surface, the number of motions and the deepest.
-pub(super) fn summary(pair: &CheckedPair<'_>) -> String {
-    let CheckedPair { scope, report, groups, .. } = pair;
+pub(super) fn summary(report: &JobReport<'_>, pair: &PairReport) -> String {
+    let (info, unit, body) = (report.info(pair), report.job.unit(), report.body(pair));
+    let number = report.tool(pair).number();
+    let PairReport { report, groups, .. } = pair;
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let motions = report.motions;
-    let tool = match scope.number {
-        Some(number) => format!("T{number} at {}: ", scope.body),
-        None if scope.body == super::PART => String::new(),
-        None => format!("{}: ", scope.body),
+    let tool = match number {
+        Some(number) => format!("T{number} at {}: ", body.name),
+        None if body.is_part() => String::new(),
+        None => format!("{}: ", body.name),
     };
     let count = groups.len();
     if count == 0 {
         return format!("{tool}no findings in {motions} motion{}", plural(motions));
     }
     let mut each = Vec::new();
-    for (index, surface) in scope.info.surfaces.iter().enumerate() {
+    for (index, surface) in info.surfaces.iter().enumerate() {
         let of = || {
             let is_own = |finding: &&Finding| finding.kind.surface() == Some(SurfaceId(index));
             report.findings.iter().filter(is_own)
@@ -144,7 +151,7 @@ pub(super) fn summary(pair: &CheckedPair<'_>) -> String {
             None => String::new(),
             Some((f64::INFINITY, line)) => format!(" (right through, line {line})"),
             Some((depth, line)) => {
-                format!(" (deepest {}, line {line})", format_length(depth, scope.unit))
+                format!(" (deepest {}, line {line})", unit.format(depth))
             }
         };
         let on = of().count();

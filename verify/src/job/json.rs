@@ -1,14 +1,15 @@
 //! Findings as JSON objects.
 
-use super::{Remedy, Scope, rule};
+use super::finding::rule;
+use super::report::{JobReport, PairReport, Remedy};
+use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
 use touchoff::certify::Witness;
 use touchoff::tool::Symmetry;
-use touchoff_verify::{FindingGroup, FindingKind};
 
 /// The findings of consecutive motions.
 #[derive(Serialize)]
-pub(crate) struct Row<'a> {
+pub(super) struct SurfaceRow<'a> {
     file: &'a str,
     /// The line of the worst motion, and of the first and the last one.
     line: usize,
@@ -81,12 +82,14 @@ impl BodyPoint {
     }
 }
 
-impl<'a> Row<'a> {
+impl<'a> SurfaceRow<'a> {
     pub(super) fn of(
-        (group, remedy): (&FindingGroup, Remedy),
-        scope: &Scope<'a>,
-        file: &'a str,
-    ) -> Row<'a> {
+        report: &'a JobReport<'_>,
+        pair: &PairReport,
+        group: &FindingGroup,
+        remedy: Remedy,
+    ) -> SurfaceRow<'a> {
+        let info = report.info(pair);
         let finding = &group.worst;
         let (measurement, point) = match finding.kind {
             FindingKind::Deep { allowed, depth, max_depth, through, witness, .. } => {
@@ -110,13 +113,13 @@ impl<'a> Row<'a> {
             | FindingKind::Undecided { .. }
             | FindingKind::Ambiguous(_) => (None, None),
         };
-        let surface = finding.kind.surface().map(|surface| &scope.info.surfaces[surface.0]);
-        let quaternion = match scope.info.symmetry {
+        let surface = finding.kind.surface().map(|surface| &info.surfaces[surface.0]);
+        let quaternion = match info.symmetry {
             Symmetry::Revolved => None,
             Symmetry::Solid { .. } => Some(finding.pose.to_isometry().rotation.coords.into()),
         };
-        Row {
-            file,
+        SurfaceRow {
+            file: report.job.program.name(),
             line: finding.line,
             first_line: group.first.line,
             last_line: group.last.line,
@@ -126,13 +129,13 @@ impl<'a> Row<'a> {
             rapid: finding.rapid,
             any_rates: finding.any_rates,
             fraction: finding.time,
-            unit: scope.unit.symbol(),
+            unit: report.job.unit().symbol(),
             tip: finding.pose.tip().into(),
             axis: finding.pose.axis().into(),
             quaternion,
-            body: scope.body,
-            tool: &scope.info.name,
-            tool_number: scope.number,
+            body: &report.body(pair).name,
+            tool: &info.name,
+            tool_number: report.tool(pair).number(),
             kind: rule(&finding.kind),
             surface: surface.map(|surface| &*surface.name),
             cutting: surface.map(|surface| surface.cutting),

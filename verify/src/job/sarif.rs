@@ -2,12 +2,12 @@
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
-use super::entry::{Entry, Severity};
+use super::report::JobReport;
+use super::{JobFinding, Severity, Verdict};
 use serde::Serialize;
-use std::path::Path;
 
 #[derive(Serialize)]
-struct Log {
+pub(super) struct Log {
     #[serde(rename = "$schema")]
     schema: &'static str,
     version: &'static str,
@@ -104,49 +104,44 @@ const RULES: [(&str, &str); 10] = [
     ("ambiguous", "The rotation of a motion is ambiguous, so that only its end was checked."),
 ];
 
-/// Returns the findings of a program as a SARIF log. `is_verified` is set if there is a verdict.
-pub(super) fn log(
-    entries: &[Entry<'_>],
-    program: &Path,
-    is_verified: bool,
-) -> Result<Vec<u8>, serde_json::Error> {
-    let uri = uri(program);
-    let result = |entry: &Entry<'_>| Finding {
-        rule_id: entry.rule,
-        level: if entry.severity == Severity::Violation { "error" } else { "warning" },
-        message: Text { text: entry.text.clone() },
+/// Returns the findings of a job as a SARIF log.
+pub(super) fn log(report: &JobReport<'_>) -> Log {
+    let uri = uri(report.job.program.name());
+    let result = |finding: &JobFinding| Finding {
+        rule_id: finding.rule,
+        level: if finding.severity == Severity::Violation { "error" } else { "warning" },
+        message: Text { text: finding.text.clone() },
         locations: [Location {
             physical_location: PhysicalLocation {
                 artifact_location: Artifact { uri: uri.clone() },
                 // Subprograms may stand before the blocks that call them.
                 region: Region {
-                    start_line: entry.lines[0].min(entry.lines[1]),
-                    end_line: entry.lines[0].max(entry.lines[1]),
+                    start_line: finding.lines[0].min(finding.lines[1]),
+                    end_line: finding.lines[0].max(finding.lines[1]),
                 },
             },
         }],
     };
-    let results = entries.iter().map(result).collect();
+    let results = report.findings().iter().map(result).collect();
     let rules =
         RULES.map(|(id, text)| Rule { id, short_description: Text { text: text.to_owned() } });
     let driver =
         Driver { name: "touchoff", version: env!("CARGO_PKG_VERSION"), rules: rules.into() };
-    let log = Log {
+    Log {
         schema: "https://json.schemastore.org/sarif-2.1.0.json",
         version: "2.1.0",
         runs: [Run {
             tool: Tool { driver },
-            invocations: [Invocation { execution_successful: is_verified }],
+            invocations: [Invocation { execution_successful: report.verdict() != Verdict::None }],
             results,
         }],
-    };
-    serde_json::to_vec_pretty(&log)
+    }
 }
 
 /// Returns a relative URI reference for a path, with all but unreserved characters and `/` percent-encoded (RFC 3986).
-fn uri(path: &Path) -> String {
+fn uri(path: &str) -> String {
     let mut uri = String::new();
-    for byte in path.to_string_lossy().replace('\\', "/").bytes() {
+    for byte in path.replace('\\', "/").bytes() {
         match byte {
             b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
                 uri.push(char::from(byte));

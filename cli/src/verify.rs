@@ -1,0 +1,341 @@
+//! `touchoff verify`: reads the files of a job, and prints one line per finding, as compilers do, and a summary.
+
+use crate::arguments::{CheckArguments, ParamArguments, ToolArguments, Verify};
+use crate::failure::Failure;
+use crate::loaded_tool::{LoadedTool, compile_named};
+use crate::output::{Output, extension, write_file};
+use crate::part;
+use crate::program::{print_approach, print_ignored};
+use crate::progress::Progress;
+use anstyle::{AnsiColor, Style};
+use nalgebra::Point3;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use tool_dsl::Compiled;
+use touchoff::Mesh;
+use touchoff::certify::TriangleBvh;
+use touchoff_verify::job::{
+    Body, CutStock, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry, StockShape,
+    UsedTool,
+};
+use touchoff_verify::machine::Machine;
+use touchoff_verify::{Job, JobFile, JobReport, JobTool, Program, Verdict};
+
+/// The exit status if there is no verdict, even with findings; the same as for wrong options.
+pub(crate) const NOT_CHECKED: u8 = 2;
+
+/// A part or a fixture, read from its file.
+pub(crate) struct LoadedBody {
+    pub(crate) name: String,
+    pub(crate) mesh: Mesh,
+    pub(crate) bvh: TriangleBvh,
+    link: Option<usize>,
+    margin: Option<f64>,
+}
+
+impl LoadedBody {
+    /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
+    pub(crate) fn has_own_frame(&self) -> bool {
+        self.link.is_some()
+    }
+}
+
+/// A tool that the program uses, loaded.
+pub(crate) struct ProgramTool {
+    pub(crate) used: UsedTool,
+    loaded: LoadedTool,
+}
+
+impl ProgramTool {
+    /// Compiles the tool again, for its drawing and its proof.
+    ///
+    /// # Errors
+    /// If its file cannot be read any more.
+    pub(crate) fn compile(&self) -> Result<Compiled, Failure> {
+        compile_named(&self.used.named.name, &arguments(&self.used.named))
+    }
+}
+
+/// A job and the files that it names, read.
+pub(crate) struct Inputs {
+    pub(crate) file: JobFile,
+    pub(crate) program: Program,
+    pub(crate) tools: Vec<ProgramTool>,
+    /// The part, then the fixtures.
+    pub(crate) bodies: Vec<LoadedBody>,
+    stock: Option<JobStock>,
+}
+
+impl Inputs {
+    /// Reads program, tools, part, fixtures and stock of a job.
+    ///
+    /// # Errors
+    /// If one of them cannot be read, or they do not fit.
+    pub(crate) fn read(file: JobFile) -> Result<Inputs, Failure> {
+        let program = file.program()?;
+        let mut tools = Vec::new();
+        for used in file.used_tools(&program)? {
+            let loaded = LoadedTool::load(&used.named.name, &arguments(&used.named))?;
+            tools.push(ProgramTool { used, loaded });
+        }
+        for ProgramTool { used, loaded } in &tools {
+            let info = loaded.tool().info();
+            if let Some(line) = program.check_tool(used.motions, info, file.unit)? {
+                message!(
+                    "{}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
+                    program.name(),
+                    info.name
+                );
+            }
+        }
+        let bodies = bodies(&file, &program)?;
+        let stock = match &file.stock {
+            Some(entry) => Some(stock(entry, &file)?),
+            None => None,
+        };
+        Ok(Inputs { file, program, tools, bodies, stock })
+    }
+
+    /// Returns the job.
+    pub(crate) fn job(&self) -> Job<'_> {
+        let mut job = Job::new(&self.program, &self.bodies[0].bvh);
+        for body in &self.bodies[1..] {
+            let mut fixture = Body::fixture(&body.name, &body.bvh);
+            (fixture.link, fixture.margin) = (body.link, body.margin);
+            job.bodies.push(fixture);
+        }
+        for ProgramTool { used, loaded } in &self.tools {
+            let mut tool = JobTool::of_all(loaded.tool());
+            (tool.motions, tool.hand) = (used.motions, used.hand);
+            tool.allow.clone_from(&used.allow);
+            job.tools.push(tool);
+        }
+        job.stock.clone_from(&self.stock);
+        (job.tolerance, job.resolution) = (self.file.tolerance, self.file.resolution);
+        job.allow.clone_from(&self.file.allow);
+        (job.surface_only, job.anyway) = (self.file.surface_only, self.file.anyway);
+        job
+    }
+}
+
+/// Returns the arguments with which a named tool is loaded.
+fn arguments(named: &NamedTool) -> ToolArguments {
+    let params = ParamArguments::new(named.params.clone(), named.root.clone());
+    ToolArguments { library: named.library.clone(), params }
+}
+
+/// Returns the job of a job file, or of a part and the options.
+///
+/// # Errors
+/// If the job file cannot be read.
+pub(crate) fn job_file(
+    file: Option<PathBuf>,
+    part: Option<PathBuf>,
+    options: CheckArguments,
+) -> Result<JobFile, Failure> {
+    if let Some(file) = file {
+        if extension(&file)
+            .is_some_and(|ending| matches!(&*ending, "stl" | "ply" | "obj" | "touchoff"))
+        {
+            return Err(Failure::MeshForJob { file: file.display().to_string() });
+        }
+        let mut job = JobFile::read(&file)?;
+        job.control = options.control.or(job.control);
+        job.resolution = options.resolution.or(job.resolution);
+        job.surface_only |= options.surface_only;
+        job.anyway |= options.anyway;
+        return Ok(job);
+    }
+    let missing =
+        Failure::Usage("name a job file, or `--part`, `--unit`, `--tool` and `--program`");
+    let (Some(part), Some(unit), Some(program)) = (part, options.unit, options.program) else {
+        return Err(missing);
+    };
+    let ToolArguments { library, params } = options.params;
+    let tools = match (options.tool, library) {
+        (Some(name), library) => {
+            let (params, root) = params.into_parts();
+            JobTools::One(NamedTool { name, library, params, root })
+        }
+        (None, Some(library)) if params.is_empty() => {
+            JobTools::Numbered { library: Some(library), entries: BTreeMap::new() }
+        }
+        (None, Some(_)) => {
+            return Err(Failure::UnusedParams("name the tool whose params they are by `--tool`"));
+        }
+        (None, None) => return Err(missing),
+    };
+    Ok(JobFile {
+        part,
+        unit,
+        program,
+        machine: options.machine,
+        control: options.control,
+        work_offsets: [None; 9],
+        block_delete: None,
+        tools,
+        tolerance: options.tolerance,
+        resolution: options.resolution,
+        allow: options.allow,
+        fixtures: Vec::new(),
+        stock: None,
+        surface_only: options.surface_only,
+        anyway: options.anyway,
+    })
+}
+
+/// Reads the part and the fixtures.
+fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
+    let read = |name: &str, path: &Path, link: Option<usize>, margin: Option<f64>| {
+        let mesh = part::mesh(path, file.unit, "verify")?;
+        let bvh = TriangleBvh::new(&mesh);
+        Ok::<_, Failure>(LoadedBody { name: name.to_owned(), mesh, bvh, link, margin })
+    };
+    let mut bodies = vec![read(touchoff_verify::job::PART, &file.part, None, None)?];
+    for fixture in &file.fixtures {
+        if !(0.0..f64::INFINITY).contains(&fixture.margin) {
+            return Err(Failure::Usage("the margin of a fixture is a length of 0 or more"));
+        }
+        let link = match &fixture.moves_with {
+            None => None,
+            Some(axis) => program.link(axis)?,
+        };
+        bodies.push(read(&fixture.name, &fixture.mesh, link, Some(fixture.margin))?);
+    }
+    Ok(bodies)
+}
+
+/// Reads the stock.
+fn stock(entry: &StockEntry, file: &JobFile) -> Result<JobStock, Failure> {
+    let shape = match (&entry.mesh, entry.corners) {
+        (Some(mesh), None) => StockShape::Mesh(part::mesh(mesh, file.unit, "stock")?),
+        (None, Some(corners)) => StockShape::Box(corners.map(Point3::from)),
+        _ => return Err(Failure::Usage("a stock has a `mesh` or a `box`, and not both")),
+    };
+    Ok(JobStock { shape, spacing: entry.spacing, tolerance: entry.tolerance })
+}
+
+/// Checks a job. `json` suppresses the progress display.
+///
+/// # Errors
+/// As for [`Job::check`].
+pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, Failure> {
+    let progress = Progress::steps(job.program.motions() * job.bodies.len(), "motions", json);
+    Ok(job.check(&|count| progress.advance(count))?)
+}
+
+/// Checks a program, and returns the exit status.
+pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
+    let inputs = Inputs::read(job_file(arguments.job, arguments.part, arguments.check)?)?;
+    let job = inputs.job();
+    let report = check(&job, json)?;
+    let mut out = Output::rows();
+    for finding in report.findings() {
+        if json {
+            serde_json::to_writer(&mut out, &report.row(finding))?;
+            writeln!(out)?;
+        } else {
+            let place = format!("{}:{}:", inputs.program.name(), finding.line);
+            out.styled(style(finding.severity), &place)?;
+            writeln!(out, " {}", finding.text)?;
+        }
+    }
+    if json {
+        for row in report.gap_rows() {
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+        }
+    }
+    out.flush()?;
+    print(&inputs, &report)?;
+    if let Some(file) = arguments.sarif {
+        write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;
+    }
+    Ok(exit(report.verdict()))
+}
+
+/// Returns the exit status of a verdict.
+pub(crate) fn exit(verdict: Verdict) -> ExitCode {
+    ExitCode::from(match verdict {
+        Verdict::Clean => 0,
+        Verdict::Findings => 1,
+        Verdict::None => NOT_CHECKED,
+    })
+}
+
+/// Returns the style of a finding's file and line on a terminal.
+fn style(severity: Severity) -> Style {
+    let color = match severity {
+        Severity::Violation => AnsiColor::Red,
+        Severity::Undecided => AnsiColor::Yellow,
+        Severity::Remark => AnsiColor::Cyan,
+    };
+    color.on_default().bold()
+}
+
+/// Prints the reasons for which there is no verdict, then the summary, and writes what the job asks for of the stock.
+///
+/// # Errors
+/// If a file cannot be written.
+pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failure> {
+    for reason in report.refusals() {
+        message!("not verified: {reason}");
+    }
+    let unit = inputs.file.unit;
+    for pair in report.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0) {
+        print_approach(&pair.report, unit);
+    }
+    match &inputs.program {
+        Program::Locations(programs) => print_ignored(programs),
+        Program::Machine(readings) => {
+            let stated = inputs.program.machine().map_or("", Machine::name);
+            match readings.len() {
+                1 => message!("machine: {stated}"),
+                count => message!("machine: {stated}, in {count} readings of the program"),
+            }
+        }
+    }
+    for gap in report.gaps.iter().filter(|gap| !gap.is_open || inputs.file.anyway) {
+        message!("not checked: {gap}");
+    }
+    for summary in report.summaries() {
+        message!("{summary}");
+    }
+    if let (Some(cut), Some(entry)) = (report.cut(), &inputs.file.stock) {
+        print_stock(cut, entry, &inputs.bodies[0].bvh)?;
+    }
+    if report.is_surface_only() {
+        message!("{NO_INSIDE}; only its surface was checked");
+    }
+    Ok(())
+}
+
+/// Prints what remains of the stock, and writes it as an STL file and its deviations from the part as CSV or PLY if asked to.
+fn print_stock(cut: &CutStock, entry: &StockEntry, part: &TriangleBvh) -> Result<(), Failure> {
+    let stock = &cut.stock;
+    let comparison = stock.compare(part)?;
+    message!(
+        "stock: {} of {} points remain; {}; {}; {}",
+        stock.len(),
+        stock.initial_len(),
+        cut.resolution(),
+        cut.farthest("most over the part", comparison.greatest_excess()),
+        cut.farthest("most cut from the part", comparison.deepest_gouge()),
+    );
+    if let Some(output) = &entry.output {
+        let mut bytes = Vec::new();
+        stock.remaining_mesh()?.write_stl(&mut bytes)?;
+        write_file(output, bytes)?;
+    }
+    if let Some(map) = &entry.map {
+        let mut bytes = Vec::new();
+        match extension(map).as_deref() == Some("ply") {
+            true => comparison.write_ply(&mut bytes)?,
+            false => comparison.write_csv(&mut bytes)?,
+        }
+        write_file(map, bytes)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,440 @@
+//! Job files: TOML, with paths relative to the folder of the file.
+
+use super::{Hand, JobError, Program};
+use crate::ToolSelection;
+use crate::gcode::{Choice, ControlRules, ControlSetup, Rule};
+use crate::machine::Machine;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use touchoff::Unit;
+
+/// A job as a file states it, or the options of a command: names and paths of what a [`Job`](super::Job) is made of. Lengths are in the
+/// part's unit.
+#[derive(Clone, Debug)]
+pub struct JobFile {
+    /// The finished part, a mesh.
+    pub part: PathBuf,
+    /// Its unit.
+    pub unit: Unit,
+    /// The program.
+    pub program: PathBuf,
+    /// Name of a machine that ships, or the file of another.
+    pub machine: Option<OsString>,
+    /// Name of a control that is known, or the file of another.
+    pub control: Option<OsString>,
+    /// Origins of G54 to G59.3 in machine coordinates, in mm and degrees.
+    pub work_offsets: [Option<[f64; 6]>; 9],
+    /// `true` if optional blocks are left out; `None` for both ways.
+    pub block_delete: Option<bool>,
+    /// The tools.
+    pub tools: JobTools,
+    /// Depth in the part that any surface may have.
+    pub tolerance: f64,
+    /// Excess of depth up to which a finding may or may not be reported.
+    pub resolution: Option<f64>,
+    /// Depths that surfaces may have instead, by their names.
+    pub allow: Vec<(String, f64)>,
+    /// The fixtures.
+    pub fixtures: Vec<FixtureEntry>,
+    /// The stock.
+    pub stock: Option<StockEntry>,
+    /// Checks the surface alone of a body whose mesh has no inside.
+    pub surface_only: bool,
+    /// Accepts what is left open.
+    pub anyway: bool,
+}
+
+/// The tools of a program, by their names.
+#[derive(Clone, Debug)]
+pub enum JobTools {
+    /// One tool, whatever number the program gives it.
+    One(NamedTool),
+    /// Tools by their numbers, from a library and from files.
+    Numbered {
+        /// A library that the program selects from by number.
+        library: Option<PathBuf>,
+        /// Tools that are stated one by one.
+        entries: BTreeMap<u32, ToolEntry>,
+    },
+}
+
+/// A tool by its name, for a loader of tools.
+#[derive(Clone, Debug, Default)]
+pub struct NamedTool {
+    /// A built-in tool, a `.tool` file, or a tool of the library.
+    pub name: OsString,
+    /// The library.
+    pub library: Option<PathBuf>,
+    /// Values of the params of the file: `name=value`.
+    pub params: Vec<String>,
+    /// The folder below which the file may mount others, if not its own.
+    pub root: Option<PathBuf>,
+}
+
+/// A tool that a program uses.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct UsedTool {
+    /// The motions that it makes.
+    pub motions: ToolSelection,
+    /// Its name.
+    pub named: NamedTool,
+    /// The hand of its cutting edges.
+    pub hand: Hand,
+    /// Depths that its surfaces may have in the part, beside those of the job.
+    pub allow: Vec<(String, f64)>,
+}
+
+/// A tool of a job file.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToolEntry {
+    /// A `.tool` file or a built-in tool, instead of the library's tool with this number.
+    pub tool: Option<String>,
+    /// Values for the params of the file.
+    #[serde(default)]
+    pub set: BTreeMap<String, ParamValue>,
+    /// Distance from the tip to the gauge point of the spindle, in mm.
+    pub length: Option<f64>,
+    /// The hand of its cutting edges, `right` if absent: that of the spindle's turn.
+    #[serde(default)]
+    pub hand: Hand,
+    /// Allowances of its surfaces, beside those of the job.
+    #[serde(default)]
+    pub allow: BTreeMap<String, f64>,
+}
+
+/// The value of a param: a number in the tool's unit, or an expression of the language.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum ParamValue {
+    /// A number, in the tool's unit.
+    Number(f64),
+    /// An expression of the language.
+    Text(String),
+}
+
+/// A mesh that no surface of a tool may touch.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FixtureEntry {
+    /// Its name in findings.
+    pub name: String,
+    /// Its mesh, in the unit of the part.
+    pub mesh: PathBuf,
+    /// The axis of the table with which it moves: a letter, or `base` for none; the workpiece's if absent.
+    pub moves_with: Option<String>,
+    /// Distance that every surface has to keep.
+    #[serde(default)]
+    pub margin: f64,
+}
+
+/// The stock: a mesh, or a box by its lowest and highest corner.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StockEntry {
+    /// A mesh, in the unit of the part.
+    pub mesh: Option<PathBuf>,
+    /// The lowest and the highest corner of a box.
+    #[serde(rename = "box")]
+    pub corners: Option<[[f64; 3]; 2]>,
+    /// Distance between neighbouring points of its lattice.
+    pub spacing: f64,
+    /// Depth that non-cutting surfaces may have in it.
+    pub tolerance: Option<f64>,
+    /// Output file for what remains, an STL mesh.
+    pub output: Option<PathBuf>,
+    /// Output file for its deviations from the part: CSV, or PLY.
+    pub map: Option<PathBuf>,
+}
+
+/// The work offsets that a job can state.
+const WORK_OFFSETS: [&str; 9] =
+    ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"];
+
+/// A job file as it is written. Paths are relative to its folder.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JobText {
+    part: PathBuf,
+    unit: String,
+    program: PathBuf,
+    machine: Option<String>,
+    control: Option<String>,
+    #[serde(default)]
+    work_offsets: BTreeMap<String, Vec<f64>>,
+    block_delete: Option<bool>,
+    /// Library of the tools, which the program selects by number.
+    tools: Option<PathBuf>,
+    #[serde(default)]
+    tool: BTreeMap<String, ToolEntry>,
+    #[serde(default)]
+    tolerance: f64,
+    resolution: Option<f64>,
+    #[serde(default)]
+    allow: BTreeMap<String, f64>,
+    #[serde(default)]
+    fixture: Vec<FixtureEntry>,
+    stock: Option<StockEntry>,
+    #[serde(default)]
+    surface_only: bool,
+    #[serde(default)]
+    anyway: bool,
+}
+
+impl JobFile {
+    /// Returns the files that it reads, each with its role. Those that a tool's file mounts are not among them.
+    pub fn files(&self) -> Vec<(String, &Path)> {
+        let mut files =
+            vec![("part".to_owned(), &*self.part), ("program".to_owned(), &*self.program)];
+        let has_ending = |file: &&Path, ending| file.extension().is_some_and(|end| end == ending);
+        for (role, name) in [("machine", &self.machine), ("control", &self.control)] {
+            let file = name.as_deref().map(Path::new).filter(|file| has_ending(file, "toml"));
+            files.extend(file.map(|file| (role.to_owned(), file)));
+        }
+        match &self.tools {
+            JobTools::One(tool) => {
+                let library = tool.library.as_deref();
+                files.extend(library.map(|file| ("tool library".to_owned(), file)));
+                let file = Some(Path::new(&tool.name)).filter(|file| has_ending(file, "tool"));
+                files.extend(file.map(|file| ("tool".to_owned(), file)));
+            }
+            JobTools::Numbered { library, entries } => {
+                files.extend(library.as_deref().map(|file| ("tool library".to_owned(), file)));
+                for (number, entry) in entries {
+                    let file = entry.tool.as_deref().map(Path::new);
+                    let file = file.filter(|file| has_ending(file, "tool"));
+                    files.extend(file.map(|file| (format!("tool T{number}"), file)));
+                }
+            }
+        }
+        let fixtures = self.fixtures.iter();
+        files.extend(fixtures.map(|fixture| (fixture.name.clone(), &*fixture.mesh)));
+        let stock = self.stock.as_ref().and_then(|stock| stock.mesh.as_deref());
+        files.extend(stock.map(|file| ("stock".to_owned(), file)));
+        files
+    }
+
+    /// Reads a job file.
+    ///
+    /// # Errors
+    /// If it cannot be read, or as for [`JobFile::parse`].
+    pub fn read(file: &Path) -> Result<JobFile, JobError> {
+        match std::fs::read_to_string(file) {
+            Ok(text) => JobFile::parse(&text, file),
+            Err(error) => Err(JobError::File {
+                file: file.display().to_string(),
+                message: format!("cannot be read ({error}): check the path"),
+            }),
+        }
+    }
+
+    /// Reads the text of a job file. Paths in it are relative to the folder of `file`.
+    ///
+    /// # Errors
+    /// If it is no job: the message names the line.
+    pub fn parse(text: &str, file: &Path) -> Result<JobFile, JobError> {
+        let fault = |message: String| JobError::File { file: file.display().to_string(), message };
+        let job: JobText = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            let line = line.map_or(String::new(), |line| format!("line {line}: "));
+            fault(format!("{line}{}", error.message()))
+        })?;
+        let unit = job.unit.parse::<Unit>().map_err(|error| fault(error.to_string()))?;
+        let lengths = [Some(job.tolerance), job.resolution];
+        if lengths.into_iter().flatten().any(|length| !(0.0..f64::INFINITY).contains(&length)) {
+            return Err(fault("`tolerance` and `resolution` are lengths of 0 or more".to_owned()));
+        }
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let beside = |path: PathBuf| folder.join(path);
+        let mut entries = BTreeMap::new();
+        for (number, mut entry) in job.tool {
+            let number = number
+                .trim_start_matches(['T', 't'])
+                .parse::<u32>()
+                .map_err(|_| fault(format!("`{number}` is no tool number: write `[tool.3]`")))?;
+            if let Some(tool) = entry.tool.as_mut().filter(|tool| tool.ends_with(".tool")) {
+                *tool = folder.join(&*tool).display().to_string();
+            }
+            if entries.insert(number, entry).is_some() {
+                return Err(fault(format!("tool {number} is given twice: keep one of both")));
+            }
+        }
+        let named = |name: String| -> OsString {
+            if name.ends_with(".toml") { folder.join(name).into() } else { name.into() }
+        };
+        Ok(JobFile {
+            part: beside(job.part),
+            unit,
+            program: beside(job.program),
+            machine: job.machine.map(named),
+            control: job.control.map(named),
+            work_offsets: work_offsets(&job.work_offsets)?,
+            block_delete: job.block_delete,
+            tools: JobTools::Numbered { library: job.tools.map(beside), entries },
+            tolerance: job.tolerance,
+            resolution: job.resolution,
+            allow: job.allow.into_iter().collect(),
+            fixtures: job
+                .fixture
+                .into_iter()
+                .map(|fixture| FixtureEntry { mesh: folder.join(&fixture.mesh), ..fixture })
+                .collect(),
+            stock: job.stock.map(|stock| StockEntry {
+                mesh: stock.mesh.map(beside),
+                output: stock.output.map(beside),
+                map: stock.map.map(beside),
+                ..stock
+            }),
+            surface_only: job.surface_only,
+            anyway: job.anyway,
+        })
+    }
+
+    /// Reads the program, and interprets G-code.
+    ///
+    /// # Errors
+    /// If the program, the machine or the control is refused, or if a single program of positions has one position.
+    pub fn program(&self) -> Result<Program, JobError> {
+        let mut rules = match &self.control {
+            Some(control) => read_control(Path::new(control))?,
+            None => ControlRules::default(),
+        };
+        if let Some(left_out) = self.block_delete {
+            let choice = if left_out { Choice::LeftOut } else { Choice::Executed };
+            rules = rules.with(Rule::OptionalBlocks, choice);
+        }
+        let setup = ControlSetup {
+            work_offsets: self.work_offsets,
+            lengths: self.tools.lengths(),
+            rules,
+            ..ControlSetup::default()
+        };
+        let machine = self.machine.as_deref().map(Path::new);
+        let program = Program::read(&self.program, machine, &setup)?;
+        if let Program::Locations(programs) = &program
+            && let [program] = &programs[..]
+        {
+            program.check_motions()?;
+        }
+        Ok(program)
+    }
+
+    /// Returns the tools that the program uses, in the order of their first motions.
+    ///
+    /// # Errors
+    /// If no tool is given for a number, or one for several.
+    pub fn used_tools(&self, program: &Program) -> Result<Vec<UsedTool>, JobError> {
+        let used: Vec<Option<u32>> = program.tools().iter().map(|tool| tool.number).collect();
+        let (library, entries) = match &self.tools {
+            JobTools::One(named) => {
+                let mut numbers = used.iter().flatten();
+                if let (Some(first), Some(second)) = (numbers.next(), numbers.next()) {
+                    return Err(JobError::SeveralTools { first: *first, second: *second });
+                }
+                let (motions, named) = (ToolSelection::All, named.clone());
+                return Ok(vec![UsedTool { motions, named, hand: Hand::Right, allow: Vec::new() }]);
+            }
+            JobTools::Numbered { library, entries } => (library, entries),
+        };
+        let tool = |number: Option<u32>| {
+            // A program without numbers needs no choice if there is one tool.
+            let known = match (number, entries.iter().next()) {
+                (Some(number), _) => number,
+                (None, Some((only, _))) if entries.len() == 1 => *only,
+                (None, _) => return Err(JobError::NoTool { number: None }),
+            };
+            let entry = entries.get(&known).cloned().unwrap_or_default();
+            let (name, library) = match (&entry.tool, library) {
+                (Some(name), _) => (OsString::from(name), None),
+                (None, Some(library)) => (format!("T{known}").into(), Some(library.clone())),
+                (None, None) => return Err(JobError::NoTool { number }),
+            };
+            let named = NamedTool { name, library, params: entry.params(), root: None };
+            let allow = entry.allow.into_iter().collect();
+            Ok(UsedTool { motions: ToolSelection::Number(number), named, hand: entry.hand, allow })
+        };
+        used.into_iter().map(tool).collect()
+    }
+}
+
+impl JobTools {
+    /// Returns the lengths that are stated, by number, in mm.
+    fn lengths(&self) -> BTreeMap<u32, f64> {
+        match self {
+            JobTools::One(_) => BTreeMap::new(),
+            JobTools::Numbered { entries, .. } => entries
+                .iter()
+                .filter_map(|(number, entry)| Some((*number, entry.length?)))
+                .collect(),
+        }
+    }
+}
+
+/// Returns the origins of G54 to G59.3 by their names.
+///
+/// # Errors
+/// If a name is not one of these, or has fewer than three numbers or more than six.
+fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<[Option<[f64; 6]>; 9], JobError> {
+    let mut offsets = [None; 9];
+    for (name, values) in named {
+        let position = WORK_OFFSETS.iter().position(|known| known.eq_ignore_ascii_case(name));
+        let (Some(position), 3..=6) = (position, values.len()) else {
+            return Err(JobError::WorkOffset { name: name.clone() });
+        };
+        let mut origin = [0.0; 6];
+        origin[..values.len()].copy_from_slice(values);
+        offsets[position] = Some(origin);
+    }
+    Ok(offsets)
+}
+
+impl ToolEntry {
+    /// Returns the values of the params as `name=value`.
+    fn params(&self) -> Vec<String> {
+        let text = |value: &ParamValue| match value {
+            ParamValue::Number(number) => number.to_string(),
+            ParamValue::Text(text) => text.clone(),
+        };
+        self.set.iter().map(|(name, value)| format!("{name}={}", text(value))).collect()
+    }
+}
+
+/// Reads a control by its name, or from a file in TOML.
+///
+/// # Errors
+/// If there is no such control, or its file is refused.
+pub fn read_control(name: &Path) -> Result<ControlRules, JobError> {
+    Ok(match toml_text(name)? {
+        Some((text, file)) => ControlRules::parse(&text, &file)?,
+        None => ControlRules::named(&name.to_string_lossy())?,
+    })
+}
+
+/// Reads a machine by its name, or from a file in TOML.
+///
+/// # Errors
+/// If there is no such machine, or its file is refused.
+pub fn read_machine(name: &Path) -> Result<Machine, JobError> {
+    Ok(match toml_text(name)? {
+        Some((text, file)) => Machine::parse(&text, &file)?,
+        None => Machine::named(&name.to_string_lossy())?,
+    })
+}
+
+/// Returns the text of a TOML file that is named, and its name for messages; `None` for another name.
+///
+/// # Errors
+/// If the file cannot be read.
+fn toml_text(name: &Path) -> Result<Option<(String, String)>, JobError> {
+    if name.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(None);
+    }
+    let file = name.display().to_string();
+    match std::fs::read_to_string(name) {
+        Ok(text) => Ok(Some((text, file))),
+        Err(source) => Err(JobError::Unreadable { file, source }),
+    }
+}

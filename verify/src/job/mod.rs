@@ -1,0 +1,350 @@
+//! The verified job: a program with its tools, against the part, fixtures and stock.
+//!
+//! ```text
+//! JobFile (TOML) ──program──▶ Program ─┐
+//! tools, meshes ───────────────────────┴─▶ Job ──check──▶ JobReport ──▶ findings, verdict, SARIF
+//! ```
+//!
+//! Each reading of the program is executed once more than its summary needs: the blocks of one pass go to every tool at every
+//! body, and to the stock.
+
+mod file;
+mod finding;
+mod json;
+mod machine;
+mod pass;
+mod program;
+mod report;
+mod sarif;
+mod stock;
+mod text;
+
+pub use file::{
+    FixtureEntry, JobFile, JobTools, NamedTool, ParamValue, StockEntry, ToolEntry, UsedTool,
+    read_control, read_machine,
+};
+pub use finding::{FindingDetail, JobFinding, Severity};
+pub use machine::{MachineFinding, MachineFindingKind, SpindleFault};
+pub use program::{DEFAULT_MACHINE, Program};
+pub use report::{JobReport, NO_INSIDE, PairReport, Remedy, Verdict};
+pub use stock::{CutStock, StockFinding};
+
+use crate::gcode::ControlError;
+use crate::machine::{JointError, MachineError};
+use crate::program::ProgramError;
+use crate::stock::{Stock, StockError};
+use crate::{MachineProgramError, ToolSelection, Verifier, VerifyError};
+use nalgebra::Point3;
+use serde::Deserialize;
+use touchoff::certify::TriangleBvh;
+use touchoff::{Mesh, Tool, Unit};
+
+/// The name of the part in findings.
+pub const PART: &str = "the part";
+
+/// A program with its tools, against the part, fixtures and stock.
+///
+/// Lengths are in the part's unit, frames are right-handed, and positions are in the frame of the part: that of G54 for G-code.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use touchoff::{Unit, certify::TriangleBvh, mesh::shapes};
+/// use touchoff_verify::gcode::{ControlRules, ControlSetup};
+/// use touchoff_verify::job::{Job, JobTool, Program, Verdict};
+/// use touchoff_verify::machine::Machine;
+///
+/// touchoff::tool! {
+///     tool Mill "10 mm end mill" {
+///         units mm;
+///         profile {
+///             start (0, 0); line to (5, 0) as tip cutting; line to (5, 20) as flute cutting;
+///             line to (5, 50) as shank; line to (0, 50) as top;
+///         }
+///         niceness cutting: 1;
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let (low, high) = (Point3::new(0., 0., -10.), Point3::new(40., 40., 0.));
+/// let part = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+/// let text = "G21 G90 G54 G0 X-20. Y20. Z5.\nT1 M6\nS900 M3\nG43 H1 Z5.\nG1 X20. Z-0.5 F100.\nG0 Z5.\nM30\n";
+/// let setup = ControlSetup { rules: ControlRules::named("linuxcnc")?, ..ControlSetup::default() };
+/// let program = Program::gcode("plate.nc", text.to_owned(), Machine::named("3-axis")?, &setup)?;
+/// let mut job = Job::new(&program, &part);
+/// job.tools.push(JobTool::numbered(1, &Mill));
+/// job.tolerance = 0.01;
+/// let report = job.check(&|_| ())?;
+/// assert_eq!(report.verdict(), Verdict::Findings);
+/// assert!(report.findings()[0].text.contains("tip is 0.5000 mm deep in the part"));
+/// # Ok(()) }
+/// ```
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Job<'a> {
+    /// The program.
+    pub program: &'a Program,
+    /// The part, then the fixtures.
+    pub bodies: Vec<Body<'a>>,
+    /// The tools of the program.
+    pub tools: Vec<JobTool<'a>>,
+    /// The stock.
+    pub stock: Option<JobStock>,
+    /// Depth in the part that any surface may have, unless it is allowed another.
+    pub tolerance: f64,
+    /// Excess of depth up to which a finding may or may not be reported; `None` for 0.001 mm.
+    pub resolution: Option<f64>,
+    /// Depths that surfaces of the tools may have in the part, by their names ([`Verifier::with_allowance`]).
+    pub allow: Vec<(String, f64)>,
+    /// Checks the surface alone of a body whose mesh has no inside.
+    pub surface_only: bool,
+    /// Accepts what the program leaves open, and a program that seems to be meant for another part.
+    pub anyway: bool,
+}
+
+/// A body that the tool must not violate: the part, or a fixture.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Body<'a> {
+    /// Its name in findings.
+    pub name: String,
+    /// Its triangles.
+    pub bvh: &'a TriangleBvh,
+    /// The link of the table that it moves with; `None` for the workpiece ([`Program::link`]).
+    pub link: Option<usize>,
+    /// Distance that every surface has to keep, for a fixture.
+    pub margin: Option<f64>,
+}
+
+/// A tool of a job.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct JobTool<'a> {
+    /// The motions that it makes.
+    pub motions: ToolSelection,
+    /// The tool.
+    pub tool: &'a dyn Tool,
+    /// The hand of its cutting edges.
+    pub hand: Hand,
+    /// Depths that its surfaces may have in the part, beside those of the job.
+    pub allow: Vec<(String, f64)>,
+}
+
+/// The hand of cutting edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hand {
+    /// It cuts while the spindle turns clockwise (M3).
+    #[default]
+    Right,
+    /// It cuts while the spindle turns counter-clockwise (M4).
+    Left,
+}
+
+/// The stock of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobStock {
+    /// Its shape before the program.
+    pub shape: StockShape,
+    /// Distance between neighbouring points of its lattice.
+    pub spacing: f64,
+    /// Depth in it that surfaces may have which must not touch; `None` for the length of a step of the lattice.
+    pub tolerance: Option<f64>,
+}
+
+/// The shape of a stock.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StockShape {
+    /// The inside of a mesh.
+    Mesh(Mesh),
+    /// A box, by its lowest and its highest corner.
+    Box([Point3<f64>; 2]),
+}
+
+/// A reason for which a job cannot be read or checked.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JobError {
+    /// The job's file is refused.
+    #[error("{file}: {message}")]
+    File {
+        /// The file.
+        file: String,
+        /// The reason, and the remedy.
+        message: String,
+    },
+    /// A file cannot be read.
+    #[error("{file}: cannot be read ({source}): check the path and its permissions")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The reason.
+        source: std::io::Error,
+    },
+    /// What a job states does not go together.
+    #[error("{0}")]
+    Mismatch(&'static str),
+    /// No tool is given for a number of the program.
+    #[error("{}", no_tool(*number))]
+    NoTool {
+        /// The number; `None` for motions before the first tool change.
+        number: Option<u32>,
+    },
+    /// A program changes tools, and one was given.
+    #[error("the program uses T{first} and T{second}: give its tools by number in a job file")]
+    SeveralTools {
+        /// The first tool.
+        first: u32,
+        /// Another tool.
+        second: u32,
+    },
+    /// A work offset has another name, or another number of coordinates.
+    #[error(
+        "work offset `{name}`: write `G54 = [x, y, z]` or `[x, y, z, a, b, c]`, with G54 to G59.3"
+    )]
+    WorkOffset {
+        /// The given name.
+        name: String,
+    },
+    /// The program is refused.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+    /// The program cannot be executed on its machine.
+    #[error(transparent)]
+    MachineProgram(#[from] MachineProgramError),
+    /// The machine has no such link.
+    #[error(transparent)]
+    Joint(#[from] JointError),
+    /// The machine is refused.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// The control is refused.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A tool cannot be certified, or has no surface of a name.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// The stock cannot be made or cut.
+    #[error(transparent)]
+    Stock(#[from] StockError),
+}
+
+fn no_tool(number: Option<u32>) -> String {
+    match number {
+        Some(number) => format!(
+            "no tool is given for T{number}: state `tools = \"LIBRARY\"` or `[tool.{number}]` with `tool = \"FILE.tool\"` in \
+             the job"
+        ),
+        None => "the program moves before its first tool change, or names no tool: give one tool in the job, or use \
+                 `--tool`"
+            .to_owned(),
+    }
+}
+
+impl<'a> Job<'a> {
+    /// Creates a job without tools, fixtures and stock, in which nothing may be deeper in the part than 0.
+    pub fn new(program: &'a Program, part: &'a TriangleBvh) -> Job<'a> {
+        let part = Body { name: PART.to_owned(), bvh: part, link: None, margin: None };
+        Job {
+            program,
+            bodies: vec![part],
+            tools: Vec::new(),
+            stock: None,
+            tolerance: 0.0,
+            resolution: None,
+            allow: Vec::new(),
+            surface_only: false,
+            anyway: false,
+        }
+    }
+
+    /// Returns the unit of lengths: that of the part.
+    pub fn unit(&self) -> Unit {
+        self.bodies[0].bvh.unit()
+    }
+
+    /// Returns the verifier of a tool at a body.
+    fn verifier(&self, tool: &JobTool<'a>, body: &Body<'a>) -> Result<Verifier<'a>, JobError> {
+        let info = tool.tool.info();
+        let mut verifier = Verifier::new(body.bvh, tool.tool)?;
+        match body.margin {
+            Some(margin) if margin > 0.0 => {
+                for surface in info.surfaces.iter() {
+                    verifier = verifier.with_allowance(&surface.name, -margin)?;
+                }
+            }
+            Some(_) => (),
+            None => {
+                verifier = verifier.with_tolerance(self.tolerance)?;
+                for (surface, allowed) in &self.allow {
+                    // An allowance of a job holds for the tools that have the surface, and one has to have it.
+                    let has =
+                        |tool: &JobTool<'_>| tool.tool.info().surface_named(surface).is_some();
+                    if has(tool) || !self.tools.iter().any(has) {
+                        verifier = verifier.with_allowance(surface, *allowed)?;
+                    }
+                }
+                for (surface, allowed) in &tool.allow {
+                    verifier = verifier.with_allowance(surface, *allowed)?;
+                }
+            }
+        }
+        if let Some(resolution) = self.resolution {
+            verifier = verifier.with_resolution(resolution)?;
+        }
+        Ok(verifier)
+    }
+}
+
+impl<'a> Body<'a> {
+    /// Creates a fixture that moves with the workpiece and may be touched, and not be entered.
+    pub fn fixture(name: &str, bvh: &'a TriangleBvh) -> Body<'a> {
+        Body { name: name.to_owned(), bvh, link: None, margin: Some(0.0) }
+    }
+
+    /// Returns whether it is the part, and no fixture.
+    pub fn is_part(&self) -> bool {
+        self.margin.is_none()
+    }
+}
+
+impl<'a> JobTool<'a> {
+    /// Creates the tool that makes all motions, whatever number the program gives it.
+    pub fn of_all(tool: &'a dyn Tool) -> JobTool<'a> {
+        JobTool { motions: ToolSelection::All, tool, hand: Hand::Right, allow: Vec::new() }
+    }
+
+    /// Creates the tool with a number in the program.
+    pub fn numbered(number: u32, tool: &'a dyn Tool) -> JobTool<'a> {
+        let motions = ToolSelection::Number(Some(number));
+        JobTool { motions, ..JobTool::of_all(tool) }
+    }
+
+    /// Returns its number in the program, if tools are selected by number.
+    pub fn number(&self) -> Option<u32> {
+        match self.motions {
+            ToolSelection::All => None,
+            ToolSelection::Number(number) => number,
+        }
+    }
+}
+
+impl std::fmt::Debug for JobTool<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("JobTool")
+            .field("motions", &self.motions)
+            .field("tool", &self.tool.info().name)
+            .field("hand", &self.hand)
+            .field("allow", &self.allow)
+            .finish()
+    }
+}
+
+impl JobStock {
+    /// Makes the stock.
+    fn build(&self, unit: Unit) -> Result<Stock, StockError> {
+        match &self.shape {
+            StockShape::Mesh(mesh) => Stock::from_mesh(mesh, self.spacing),
+            StockShape::Box(corners) => Stock::from_box(*corners, self.spacing, unit),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! One pass over a reading of the program: each motion goes to its tool at every body, and to the stock.
+
+use super::program::BlockMoves;
+use super::report::{PairReport, Remedy};
+use super::stock::{CutStock, StockCut};
+use super::{Job, JobError, JobTool};
+use crate::check::{ApproachSearch, MoveCheck};
+use crate::gcode::WorkOffset;
+use crate::{FindingGroup, Move, Verifier};
+use touchoff::tool::Symmetry;
+
+/// The results of one reading.
+pub(super) struct ReadingResult {
+    /// Each tool at each body.
+    pub(super) pairs: Vec<PairReport>,
+    /// The stock after it, if the job has one.
+    pub(super) cut: Option<CutStock>,
+    /// The work offsets under which no tool comes near the part, with their lines, if the reading has several.
+    pub(super) far_offsets: Vec<(WorkOffset, usize)>,
+}
+
+/// The closest approach to the part under one work offset, of one tool.
+struct OffsetApproach<'a> {
+    offset: WorkOffset,
+    search: ApproachSearch<'a>,
+    has_moves: bool,
+}
+
+impl<'a> Job<'a> {
+    /// Checks one reading of the program.
+    ///
+    /// # Errors
+    /// If a tool cannot be certified, a body's link is not the machine's, or the stock cannot be made or cut.
+    pub(super) fn check_reading(
+        &self,
+        reading: usize,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<ReadingResult, JobError> {
+        let mut links: Vec<Option<usize>> = Vec::new();
+        for body in &self.bodies {
+            if !links.contains(&body.link) {
+                links.push(body.link);
+            }
+        }
+        let mut verifiers: Vec<Verifier<'a>> = Vec::new();
+        for tool in &self.tools {
+            for body in &self.bodies {
+                verifiers.push(self.verifier(tool, body)?);
+            }
+        }
+        let checks = verifiers.iter().map(MoveCheck::new);
+        let mut checks: Vec<MoveCheck<'_>> = checks.collect::<Result<_, _>>()?;
+        let offsets = match self.program.readings().get(reading) {
+            Some(program) if program.summary().work_offsets.len() > 1 => {
+                program.summary().work_offsets.clone()
+            }
+            _ => Vec::new(),
+        };
+        // By offset, and of each tool at the part, the first body.
+        let mut approaches: Vec<OffsetApproach<'_>> = Vec::new();
+        for (offset, _) in &offsets {
+            for verifier in verifiers.iter().step_by(self.bodies.len()) {
+                let search = ApproachSearch::new(verifier)?;
+                approaches.push(OffsetApproach { offset: *offset, search, has_moves: false });
+            }
+        }
+        let mut cut = match &self.stock {
+            Some(stock) => Some(StockCut::new(stock, self)?),
+            None => None,
+        };
+
+        let symmetry = |number: Option<u32>| -> Option<Symmetry> {
+            Some(self.tool_of(number)?.tool.info().symmetry)
+        };
+        let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
+        let blocks = self.program.blocks(reading, &links, self.unit(), restarts, symmetry)?;
+        for BlockMoves { tool: number, frames } in blocks {
+            let Some(index) = self.tools.iter().position(|tool| tool.motions.contains(number))
+            else {
+                continue;
+            };
+            for (body, check) in self.bodies.iter().zip(&mut checks[index * self.bodies.len()..]) {
+                let frame = links.iter().position(|link| *link == body.link);
+                for step in &frames[frame.unwrap_or(0)] {
+                    check.add(step.clone(), progress)?;
+                }
+            }
+            let of_tool = approaches.iter_mut().skip(index).step_by(self.tools.len());
+            for approach in of_tool {
+                let is_its = |step: &&Move| step.work_offset == Some(approach.offset);
+                for step in frames[0].iter().filter(is_its) {
+                    approach.search.add(std::slice::from_ref(step), &[]);
+                    approach.has_moves = true;
+                }
+            }
+            if let Some(cut) = &mut cut {
+                for step in &frames[0] {
+                    cut.advance(&self.tools[index], step)?;
+                }
+            }
+        }
+
+        let mut pairs = Vec::new();
+        for (index, (verifier, check)) in verifiers.iter().zip(checks).enumerate() {
+            let report = check.finish(progress)?;
+            let groups = FindingGroup::join(&report.findings);
+            let remedy = |group: &FindingGroup| Remedy {
+                lift: verifier.lift(&group.worst),
+                tilt: verifier.tilt(&group.worst).filter(|_| self.program.turns_axis()),
+            };
+            let remedies = groups.iter().map(remedy).collect();
+            let (tool, body) = (index / self.bodies.len(), index % self.bodies.len());
+            pairs.push(PairReport { tool, body, reading, report, groups, remedies });
+        }
+        let near = approaches.into_iter().filter(|approach| approach.has_moves);
+        let near = near.map(|approach| (approach.offset, approach.search.finish()));
+        let near: Vec<WorkOffset> =
+            near.filter(|(_, approach)| !approach.is_far()).map(|(offset, _)| offset).collect();
+        let far_offsets =
+            offsets.into_iter().filter(|(offset, _)| !near.contains(offset)).collect();
+        Ok(ReadingResult { pairs, cut: cut.map(StockCut::finish), far_offsets })
+    }
+
+    /// Returns the tool that makes the motions of a number.
+    pub(super) fn tool_of(&self, number: Option<u32>) -> Option<&JobTool<'a>> {
+        self.tools.iter().find(|tool| tool.motions.contains(number))
+    }
+}

@@ -1,0 +1,272 @@
+//! A program of any kind: CL data, or G-code on a machine.
+
+use super::{JobError, read_machine};
+use crate::gcode::{ControlRules, ControlSetup};
+use crate::machine::{Machine, Side};
+use crate::program::ProgramFile;
+use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
+use std::iter;
+use std::path::Path;
+use touchoff::Unit;
+use touchoff::tool::{Symmetry, ToolInfo};
+
+/// The machine of G-code for which none is named.
+pub const DEFAULT_MACHINE: &str = "3-axis";
+
+/// A program that was read, and of G-code each reading.
+#[derive(Debug)]
+pub enum Program {
+    /// Positions of the tip with the axis: CL data per tool change, at least one.
+    Locations(Vec<ClData>),
+    /// G-code on a machine, as each control reads it: at least one reading.
+    Machine(Vec<MachineProgram>),
+}
+
+/// The moves of one block or of the way to one cutter location.
+pub(super) struct BlockMoves {
+    /// Number of the tool in the spindle.
+    pub(super) tool: Option<u32>,
+    /// The moves, one after the other, in the frame of each link that was asked for.
+    pub(super) frames: Vec<Vec<Move>>,
+}
+
+impl Program {
+    /// Reads a program from its file. G-code without a machine runs on three axes.
+    ///
+    /// # Errors
+    /// If the program or the machine cannot be read, a motion is not possible on the machine, or a machine or rules of a control
+    /// are given for positions.
+    pub fn read(
+        file: &Path,
+        machine: Option<&Path>,
+        setup: &ControlSetup,
+    ) -> Result<Program, JobError> {
+        let is_plain = machine.is_none() && setup.rules == ControlRules::default();
+        match (ProgramFile::read(file)?, is_plain) {
+            (ProgramFile::Gcode(text), _) => {
+                let machine = read_machine(machine.unwrap_or(Path::new(DEFAULT_MACHINE)))?;
+                Program::gcode(&file.display().to_string(), text, machine, setup)
+            }
+            (ProgramFile::Locations(programs), true) => Ok(Program::Locations(programs)),
+            (ProgramFile::Locations(_), false) => Err(JobError::Mismatch(
+                "a machine or a control is for G-code: this program states positions of the tip",
+            )),
+        }
+    }
+
+    /// Interprets G-code on a machine. `name` is the program's name in messages.
+    ///
+    /// # Errors
+    /// As for [`MachineProgram::readings`].
+    pub fn gcode(
+        name: &str,
+        text: String,
+        machine: Machine,
+        setup: &ControlSetup,
+    ) -> Result<Program, JobError> {
+        Ok(Program::Machine(MachineProgram::readings(name, text, machine, setup)?))
+    }
+
+    /// Returns the program's name in messages.
+    pub fn name(&self) -> &str {
+        match self {
+            Program::Locations(programs) => programs[0].name(),
+            Program::Machine(readings) => readings[0].name(),
+        }
+    }
+
+    /// Returns the readings of G-code; none for positions, which have one meaning.
+    pub fn readings(&self) -> &[MachineProgram] {
+        match self {
+            Program::Locations(_) => &[],
+            Program::Machine(readings) => readings,
+        }
+    }
+
+    /// Returns the machine of G-code.
+    pub fn machine(&self) -> Option<&Machine> {
+        Some(self.readings().first()?.machine())
+    }
+
+    /// Returns the number of readings: 1 for positions.
+    pub fn reading_count(&self) -> usize {
+        self.readings().len().max(1)
+    }
+
+    /// Names the readings for which something holds; `None` if it holds for all.
+    pub fn under(&self, holds: &[usize]) -> Option<String> {
+        let readings = self.readings();
+        let holds: Vec<_> =
+            holds.iter().filter_map(|index| Some(readings.get(*index)?.assumed())).collect();
+        MachineProgram::under(readings, &holds)
+    }
+
+    /// Returns what the program leaves open, whatever it is checked against.
+    pub fn gaps(&self) -> Vec<Gap> {
+        match self {
+            Program::Locations(programs) => tool_changes(programs).into_iter().collect(),
+            Program::Machine(readings) => MachineProgram::gaps(readings),
+        }
+    }
+
+    /// Returns whether the program can turn the tool axis.
+    pub fn turns_axis(&self) -> bool {
+        match self.machine() {
+            Some(machine) => machine.axes().iter().any(|axis| axis.letter.is_rotary()),
+            None => true,
+        }
+    }
+
+    /// Returns the tools that the program uses, each with the number of its motions in the first reading that has any. A tool of which
+    /// no motion can be checked has none.
+    pub fn tools(&self) -> Vec<ToolUse> {
+        let mut tools: Vec<ToolUse> = Vec::new();
+        let summaries = || self.readings().iter().map(MachineProgram::summary);
+        for used in summaries().flat_map(|summary| &summary.tools) {
+            if tools.iter().all(|tool| tool.number != used.number) {
+                tools.push(*used);
+            }
+        }
+        for (number, line) in summaries().flat_map(|summary| &summary.unchecked_tools) {
+            // An empty spindle has no tool that could be missing.
+            if *number != 0 && tools.iter().all(|tool| tool.number != Some(*number)) {
+                tools.push(ToolUse { number: Some(*number), line: *line, motions: 0 });
+            }
+        }
+        for program in self.locations(ToolSelection::All) {
+            let (number, motions) = (program.tool, program.locations.len());
+            match tools.iter_mut().find(|tool| tool.number == number) {
+                Some(tool) => tool.motions += motions,
+                None => tools.push(ToolUse { number, line: program.locations[0].line, motions }),
+            }
+        }
+        tools
+    }
+
+    /// Returns the number of motions, those of all readings together.
+    pub fn motions(&self) -> usize {
+        let summaries = self.readings().iter().map(MachineProgram::summary);
+        let tools = summaries.flat_map(|summary| &summary.tools);
+        let locations = self.locations(ToolSelection::All).map(|program| program.locations.len());
+        tools.map(|tool| tool.motions).chain(locations).sum()
+    }
+
+    /// Checks that the program is meant for a tool and the part's unit. Returns the line of a `CUTTER` that does not describe a tool
+    /// of this kind, and is therefore not compared with it.
+    ///
+    /// # Errors
+    /// If its unit, poses or cutter do not fit.
+    pub fn check_tool(
+        &self,
+        motions: ToolSelection,
+        info: &ToolInfo,
+        unit: Unit,
+    ) -> Result<Option<usize>, ProgramError> {
+        let mut not_compared = None;
+        for program in self.locations(motions) {
+            program.check_unit(unit)?;
+            program.check_poses(info)?;
+            not_compared = not_compared.or(program.check_cutter(info, unit)?);
+        }
+        Ok(not_compared)
+    }
+
+    /// Returns the CL data of a tool; none of G-code.
+    fn locations(&self, motions: ToolSelection) -> impl Iterator<Item = &ClData> {
+        let programs = match self {
+            Program::Locations(programs) => &programs[..],
+            Program::Machine(_) => &[],
+        };
+        programs.iter().filter(move |program| motions.contains(program.tool))
+    }
+
+    /// Returns the moves of a tool in a reading, in the frame of a link of the table (`None` for the part) and in a unit.
+    ///
+    /// # Errors
+    /// If the machine has no such link.
+    ///
+    /// # Panics
+    /// If there is no such reading.
+    pub fn moves<'a>(
+        &'a self,
+        reading: usize,
+        motions: ToolSelection,
+        symmetry: Symmetry,
+        link: Option<usize>,
+        unit: Unit,
+    ) -> Result<Box<dyn Iterator<Item = Move> + 'a>, JobError> {
+        Ok(match self {
+            Program::Locations(_) => {
+                let programs = self.locations(motions);
+                Box::new(programs.flat_map(move |program| Move::all(program, symmetry)))
+            }
+            Program::Machine(readings) => Box::new(readings[reading].moves(motions, link, unit)?),
+        })
+    }
+
+    /// Returns the moves of a reading in the order of the program, in the frame of each link. `symmetry` is that of the tool with a
+    /// number in positions, of which a tool that is not known makes none. `restarts` is set if each tool begins with a rest at its
+    /// first position.
+    pub(super) fn blocks<'a>(
+        &'a self,
+        reading: usize,
+        links: &[Option<usize>],
+        unit: Unit,
+        restarts: bool,
+        symmetry: impl Fn(Option<u32>) -> Option<Symmetry> + 'a,
+    ) -> Result<Box<dyn Iterator<Item = BlockMoves> + 'a>, JobError> {
+        Ok(match self {
+            // Positions are in the frame of the part, with which all bodies of their job move.
+            Program::Locations(programs) => Box::new(programs.iter().flat_map(move |program| {
+                let tool = program.tool;
+                let moves =
+                    symmetry(tool).into_iter().flat_map(|symmetry| Move::all(program, symmetry));
+                moves.map(move |step| BlockMoves { tool, frames: vec![vec![step]] })
+            })),
+            Program::Machine(readings) => {
+                let blocks = readings[reading].blocks(links, unit, restarts)?;
+                Box::new(blocks.map(|(tool, frames)| BlockMoves { tool, frames }))
+            }
+        })
+    }
+
+    /// Returns the link of the table that moves with an axis, or `base`; `None` for the one that carries the part.
+    ///
+    /// # Errors
+    /// If the program is not for a machine, its table has no such axis, or the part is turned in its frame.
+    pub fn link(&self, axis: &str) -> Result<Option<usize>, JobError> {
+        let Some(program) = self.readings().first() else {
+            return Err(JobError::Mismatch("`moves_with` is for programs on a machine"));
+        };
+        let axes = program.machine().axes().iter().filter(|axis| axis.side == Side::Table);
+        let links: Vec<String> =
+            iter::once("base".to_owned()).chain(axes.map(|axis| axis.letter.to_string())).collect();
+        match links.iter().position(|link| link == axis) {
+            // The last link carries the part.
+            Some(link) if link + 1 == links.len() => Ok(None),
+            Some(link) => match program.part_origin() {
+                Some(origin) if origin[3..] == [0.0; 3] => Ok(Some(link)),
+                _ => Err(JobError::Mismatch(
+                    "`moves_with` another axis than the part's needs the origin of G54 in `work_offsets`, without rotary \
+                     offsets",
+                )),
+            },
+            None => Err(JobError::Mismatch(
+                "`moves_with` names an axis of the machine's table, or `base`",
+            )),
+        }
+    }
+}
+
+/// Returns the motions to the first position after a tool change, which the program does not state.
+fn tool_changes(programs: &[ClData]) -> Option<Gap> {
+    let [_, changed @ ..] = programs else { return None };
+    let line = changed.first()?.locations[0].line;
+    let count = changed.len();
+    let plural = if count == 1 { "" } else { "s" };
+    let reason = format!(
+        "{count} motion{plural} to the first position after a tool change not checked, first to line {line}: only the machine \
+         knows where they start"
+    );
+    Some(Gap::said(line, reason))
+}

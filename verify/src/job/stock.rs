@@ -1,0 +1,204 @@
+//! The program against the material that is still there.
+
+use super::{Job, JobError, JobStock, JobTool};
+use crate::Move;
+use crate::stock::{DeviationPoint, MotionMode, Stock, StockContact};
+use nalgebra::Point3;
+use serde::Serialize;
+use touchoff::Unit;
+
+/// Material that a surface touches on consecutive motions. Lengths are in the part's unit.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct StockFinding {
+    /// The line of the deepest contact.
+    pub line: usize,
+    /// The line of the first motion.
+    pub first_line: usize,
+    /// The line of the last motion.
+    pub last_line: usize,
+    /// Number of blocks.
+    pub motions: usize,
+    /// Set in rapid traverse.
+    pub rapid: bool,
+    /// Name of the tool.
+    pub tool: String,
+    /// Its number in the program.
+    pub tool_number: Option<u32>,
+    /// The surface.
+    pub surface: String,
+    /// Set if the surface cuts.
+    pub cutting: bool,
+    /// Depth of a point of material in the tool.
+    pub depth: f64,
+    /// The point.
+    pub point: Point3<f64>,
+}
+
+/// The result of cutting the stock.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CutStock {
+    /// The findings, the deepest first.
+    pub findings: Vec<StockFinding>,
+    /// What remains.
+    pub stock: Stock,
+    /// Depth that surfaces may have that must not touch.
+    pub tolerance: f64,
+}
+
+/// A finding as a JSON object.
+#[derive(Serialize)]
+pub(super) struct StockRow<'a> {
+    file: &'a str,
+    line: usize,
+    first_line: usize,
+    last_line: usize,
+    motions: usize,
+    rapid: bool,
+    unit: &'static str,
+    body: &'static str,
+    tool: &'a str,
+    tool_number: Option<u32>,
+    kind: &'static str,
+    surface: &'a str,
+    cutting: bool,
+    stock_depth: f64,
+    point: [f64; 3],
+}
+
+/// A stock that a program cuts, motion by motion.
+pub(super) struct StockCut {
+    cut: CutStock,
+    unit: Unit,
+    /// The index of the finding that each surface goes on with.
+    open: Vec<(usize, usize)>,
+}
+
+impl StockCut {
+    /// Makes the stock of a job.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub(super) fn new(entry: &JobStock, job: &Job<'_>) -> Result<StockCut, JobError> {
+        let stock = entry.build(job.unit())?;
+        let tolerance = entry.tolerance.unwrap_or(stock.step());
+        let cut = CutStock { findings: Vec::new(), stock, tolerance };
+        Ok(StockCut { cut, unit: job.unit(), open: Vec::new() })
+    }
+
+    /// Runs a motion through the stock.
+    ///
+    /// # Errors
+    /// If it cannot be cut.
+    pub(super) fn advance(&mut self, tool: &JobTool<'_>, step: &Move) -> Result<(), JobError> {
+        let CutStock { findings, stock, tolerance } = &mut self.cut;
+        let info = tool.tool.info();
+        let max_speed = step.path.max_speed(info, self.unit);
+        let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };
+        let contacts =
+            stock.advance(tool.tool, &|time| step.path.pose(time), max_speed, mode, *tolerance)?;
+        let goes_on = |surface: usize| contacts.iter().any(|contact| contact.surface.0 == surface);
+        self.open.retain(|(surface, _)| goes_on(*surface));
+        for StockContact { surface, depth, point, continued, .. } in contacts {
+            let known = self.open.iter().find(|(known, _)| *known == surface.0);
+            if let Some((_, index)) = known.filter(|_| continued) {
+                let finding = &mut findings[*index];
+                finding.motions += usize::from(finding.last_line != step.line);
+                finding.last_line = step.line;
+                if depth > finding.depth {
+                    (finding.line, finding.depth, finding.point) = (step.line, depth, point);
+                }
+                continue;
+            }
+            self.open.retain(|(known, _)| *known != surface.0);
+            self.open.push((surface.0, findings.len()));
+            findings.push(StockFinding {
+                line: step.line,
+                first_line: step.line,
+                last_line: step.line,
+                motions: 1,
+                rapid: step.rapid,
+                tool: info.name.to_string(),
+                tool_number: tool.number(),
+                surface: info.surface(surface).name.to_string(),
+                cutting: info.surface(surface).cutting,
+                depth,
+                point,
+            });
+        }
+        Ok(())
+    }
+
+    /// Returns the stock after the program.
+    pub(super) fn finish(mut self) -> CutStock {
+        self.cut.findings.sort_by(|one, other| other.depth.total_cmp(&one.depth));
+        self.cut
+    }
+}
+
+impl StockFinding {
+    /// Describes the finding.
+    pub(super) fn describe(&self, unit: Unit) -> String {
+        let StockFinding { surface, depth, point, motions, first_line, last_line, .. } = self;
+        let rapid = if self.rapid { " in rapid traverse" } else { "" };
+        let tool = self.tool_number.map_or(String::new(), |number| format!("T{number} "));
+        let lines = match motions {
+            1 => String::new(),
+            _ => format!(", on {motions} motions, lines {first_line} to {last_line}"),
+        };
+        format!(
+            "{tool}{surface} touches the stock{rapid}, {} deep at {}{lines}",
+            unit.format(*depth),
+            unit.format_point(point)
+        )
+    }
+
+    pub(super) fn row<'a>(&'a self, file: &'a str, unit: Unit) -> StockRow<'a> {
+        StockRow {
+            file,
+            line: self.line,
+            first_line: self.first_line,
+            last_line: self.last_line,
+            motions: self.motions,
+            rapid: self.rapid,
+            unit: unit.symbol(),
+            body: "the stock",
+            tool: &self.tool,
+            tool_number: self.tool_number,
+            kind: "stock",
+            surface: &self.surface,
+            cutting: self.cutting,
+            stock_depth: self.depth,
+            point: self.point.into(),
+        }
+    }
+}
+
+impl CutStock {
+    /// States what is found for certain.
+    pub fn resolution(&self) -> String {
+        format!(
+            "a layer is found for certain from a thickness of {}",
+            self.stock.unit().format(self.stock.found_layer(self.tolerance))
+        )
+    }
+
+    /// Describes a deviation from the part at its farthest point, as far as points of the stock show it.
+    pub fn farthest(&self, what: &str, point: Option<DeviationPoint>) -> String {
+        let unit = self.stock.unit();
+        match point {
+            None => {
+                format!(
+                    "{what}: none at points that are {} apart",
+                    unit.format(self.stock.spacing())
+                )
+            }
+            Some(point) => format!(
+                "{what}: {} at {}",
+                unit.format(point.distance.abs()),
+                unit.format_point(&point.point)
+            ),
+        }
+    }
+}
