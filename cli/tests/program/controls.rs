@@ -1042,7 +1042,7 @@ fn words_at_which_a_control_stops_are_refused() {
         "G61\nG64 P0.01\nM7\nM8\nM9\nM62 P1\nG4 P0.5\nG82 X4. Z1. R2. P1\nX5.\nG80\nG0 Z20.";
     Scene::new(&format!("{begin}{passed}")).gives(&LINUXCNC, 0, &[]);
     Scene::new(&format!("{begin}G61.1")).gives(&FANUC, 2, &["G61.1 is a word of LinuxCNC alone"]);
-    let turned = Scene::new("T1 M6\nS900 M3\nG43 H1 Z60.\nG0 A-30. C0.\nM428\nG49\nX5.");
+    let turned = Scene::new("T1 M6\nS900 M3\nG0 G43 H1 Z60.\nA-30. C0.\nM428\nG49\nX5.");
     let turned = turned.placed().with("machine = \"A-C trunnion\"");
     turned.gives(&LINUXCNC, 2, &["G49 while M428 is in force with turned axes"]);
     let both = Scene::new(&format!("{begin}G81 G80 X4. Z1. R2."));
