@@ -1,36 +1,14 @@
 //! Verification of programs of machine tools against the finished part.
 //!
 //! ```text
-//! program (tables, APT) ───────────────────────────▶ moves ──▶ check ──▶ findings
-//! gcode (text, by the rules of a control) ──machine──▶ moves ──▶ stock ──▶ contacts with material that is left
+//! program (CL data) ─────────────────────────────────▶ moves ─┬─▶ check ──▶ findings ─┐
+//! gcode (text, by the rules of a control) ──machine──▶ moves ─┴─▶ stock ──▶ contacts ─┴─job─▶ verdict
 //! ```
 //!
-//! A [`Verifier`] checks the moves of one tool against one body, from a [`ClData`] of cutter locations or a
-//! [`MachineProgram`]. Lengths are in the part's unit, frames are right-handed, and a tool's axis points from the tip to the
-//! spindle.
-//!
-//! ```
-//! # use nalgebra::{Point3, Vector3};
-//! use touchoff::{Unit, certify::TriangleBvh, mesh::shapes};
-//! use touchoff_verify::{ClData, Verifier};
-//!
-//! touchoff::tool! {
-//!     tool Ball "6 mm ball" {
-//!         units mm;
-//!         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
-//!         niceness cutting: 1 - depth/3;
-//!     }
-//! }
-//!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
-//! let bvh = TriangleBvh::new(&block);
-//! // One location per line: tip x, y, z and axis i, j, k. The name is for messages.
-//! let program = ClData::parse("0,0,5,0,0,1\n0,0,-0.5,0,0,1\n", "plunge.csv")?;
-//! let report = Verifier::new(&bvh, &Ball)?.with_tolerance(0.01)?.check(&program)?;
-//! assert!(!report.is_clear());
-//! # Ok(()) }
-//! ```
+//! A [`Job`] checks a [`Program`] of any kind with its tools against the part, fixtures and stock, and gives a verdict. It is made of a
+//! [`Verifier`] per tool and body, which also checks moves by itself: those of [`ClData`], or of a [`MachineProgram`]. Lengths are in
+//! the part's unit, frames are right-handed, and a tool's axis points from the tip to the spindle. [`Job`] and [`Verifier`] have
+//! examples.
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 

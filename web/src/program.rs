@@ -6,7 +6,6 @@ use touchoff::Unit;
 use touchoff::tool::ToolInfo;
 use touchoff_verify::gcode::ControlSetup;
 use touchoff_verify::machine::Machine;
-use touchoff_verify::program::ProgramFile;
 use touchoff_verify::{Move, Program, ToolSelection};
 
 /// Greatest number of motions that the page holds in memory.
@@ -37,17 +36,12 @@ struct ToolFacts {
 /// # Errors
 /// Fails if a line is refused, if the machine is unknown, or for too many motions.
 pub(crate) fn read(bytes: &[u8], name: &str, machine: &str) -> Result<Program, EngineError> {
-    let program = match ProgramFile::parse(bytes, name)? {
-        ProgramFile::Locations(programs) => Program::Locations(programs),
-        ProgramFile::Gcode(text) => {
-            // A name has one line.
-            let machine = match machine.contains('\n') {
-                true => Machine::parse(machine, "the machine's file")?,
-                false => Machine::named(machine)?,
-            };
-            Program::gcode(name, text, machine, &ControlSetup::default())?
-        }
+    // A name has one line.
+    let machine = match machine.contains('\n') {
+        true => Machine::parse(machine, "the machine's file")?,
+        false => Machine::named(machine)?,
     };
+    let program = Program::parse(bytes, name, machine, &ControlSetup::default())?;
     let motions = program.tools().iter().map(|tool| tool.motions).sum();
     if motions > MAX_MOTIONS {
         return Err(EngineError::LongProgram { name: name.to_owned(), motions });

@@ -8,7 +8,6 @@ mod drawings;
 mod expressions;
 mod generated;
 mod language;
-mod layers;
 mod mounts;
 mod profiles;
 mod refused;

@@ -69,7 +69,7 @@ pub const PART: &str = "the part";
 /// let part = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
 /// let text = "G21 G90 G54 G0 X-20. Y20. Z5.\nT1 M6\nS900 M3\nG43 H1 Z5.\nG1 X20. Z-0.5 F100.\nG0 Z5.\nM30\n";
 /// let setup = ControlSetup { rules: ControlRules::named("linuxcnc")?, ..ControlSetup::default() };
-/// let program = Program::gcode("plate.nc", text.to_owned(), Machine::named("3-axis")?, &setup)?;
+/// let program = Program::parse(text, "plate.nc", Machine::named("3-axis")?, &setup)?;
 /// let mut job = Job::new(&program, &part);
 /// job.tools.push(JobTool::numbered(1, &Mill));
 /// job.tolerance = 0.01;

@@ -54,11 +54,28 @@ impl Program {
         }
     }
 
+    /// Reads a program from the content of a file: CL data, or G-code, for which the machine and the setup count. `name` is the
+    /// program's name in messages.
+    ///
+    /// # Errors
+    /// If a line is refused, or a motion is not possible on the machine.
+    pub fn parse(
+        content: impl AsRef<[u8]>,
+        name: &str,
+        machine: Machine,
+        setup: &ControlSetup,
+    ) -> Result<Program, JobError> {
+        match ProgramFile::parse(content, name)? {
+            ProgramFile::Locations(programs) => Ok(Program::Locations(programs)),
+            ProgramFile::Gcode(text) => Program::gcode(name, text, machine, setup),
+        }
+    }
+
     /// Interprets G-code on a machine. `name` is the program's name in messages.
     ///
     /// # Errors
     /// As for [`MachineProgram::readings`].
-    pub fn gcode(
+    fn gcode(
         name: &str,
         text: String,
         machine: Machine,
