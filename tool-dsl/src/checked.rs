@@ -7,6 +7,8 @@ use crate::lint;
 use crate::model::Model;
 use crate::plan::{self, PlannedTool};
 use crate::prove::Bounds;
+#[cfg(debug_assertions)]
+use crate::validate;
 use std::ops::Deref;
 
 /// A tool in which no error was found, with everything that is emitted about it. Only
@@ -67,8 +69,12 @@ pub(crate) fn check(
     // The plan would only repeat these errors.
     without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
+    #[cfg(debug_assertions)]
+    let file = model.clone();
     let planned =
         plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
+    #[cfg(debug_assertions)]
+    validate::planned(&file, &planned).expect("`plan` keeps its guarantees");
     let (bounds, found) = Bounds::of(&planned);
     diagnostics.extend(found);
     without_error(diagnostics)?;

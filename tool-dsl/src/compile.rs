@@ -8,6 +8,8 @@ use crate::diagnostic::{
 use crate::resolve;
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
+#[cfg(debug_assertions)]
+use crate::validate;
 use std::collections::BTreeSet;
 
 /// The result of compiling a text: a tool, or the errors that prevent it.
@@ -126,6 +128,8 @@ fn compiled(
         .extend(found.into_iter().filter(|diagnostic| !unread || !follows(diagnostic, &broken)));
     let model = model?;
     without_error(diagnostics)?;
+    #[cfg(debug_assertions)]
+    validate::model(&model).expect("`resolve` keeps its guarantees");
     checked::check(model, diagnostics)
 }
 

@@ -1,9 +1,9 @@
 //! The compiler of `.tool` files, an ordinary library.
 //!
 //! ```text
-//! text ──syntax──▶ tree ──resolve──▶ model ──bound, lint──▶ checked tool ──plan──▶ splits
-//!                                                                 │
-//!                             Rust tokens, SVG ◀──emit, draw──────┼──────interpret──▶ values
+//! text ──syntax──▶ AST ──resolve──▶ model ──bound, lint, plan──▶ planned tool ──prove──▶ checked tool
+//!                                                                                            │
+//!                             Rust tokens, SVG ◀──emit, draw─────────────────────────────────┼─interpret──▶ values
 //! ```
 //!
 //! A [`CheckedTool`] contains no errors: [`emit::emit`] and [`interpret::Interpreter`] cannot fail.
@@ -34,6 +34,8 @@ mod regionalise;
 pub mod resolve;
 pub mod source;
 pub mod syntax;
+#[cfg(debug_assertions)]
+mod validate;
 
 pub use checked::CheckedTool;
 pub use compile::{Accepted, Compiled, compile, compile_with_arguments};

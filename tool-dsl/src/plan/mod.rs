@@ -23,7 +23,7 @@ use crate::number::Number;
 use signs::by_signs;
 
 /// The largest number of tests in one tree.
-const MAX_TESTS: usize = 20_000;
+pub(crate) const MAX_TESTS: usize = 20_000;
 
 /// A binary decision tree over the signs of curves.
 #[derive(Clone, Debug, PartialEq)]
