@@ -1,0 +1,339 @@
+//! The guarantees that passes rely on, checked between the passes in debug builds and tests.
+//!
+//! The table *Guarantees of each pass* of [`model`](crate::model) states them. A guarantee that is a proof (the owner of each point,
+//! the distance) is checked by the tests of its pass and by `prove`; here are those that a look at the data decides.
+
+use crate::domain::Domain;
+use crate::expr::{Coord, Id, Node};
+use crate::formula::Formula;
+use crate::model::{Model, Section};
+use crate::plan::{MAX_TESTS, PlannedTool, Tree};
+
+/// A guarantee that does not hold: a fault of the compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Broken {
+    /// An expression is an operand of itself, directly or through others.
+    Operand { node: usize },
+    /// An expression is not in the graph.
+    Expression { what: &'static str },
+    /// A tool reads a coordinate that its half plane lacks, or a length that is no output's.
+    Coordinate { what: &'static str, coord: Coord },
+    /// There are no regions.
+    NoRegion,
+    /// A region or a segment has the index of no surface.
+    Surface { index: usize },
+    /// A formula or a tree has the index of no curve.
+    Curve { index: usize },
+    /// A tree or a division has the index of no region, or of no part.
+    Region { index: usize },
+    /// An outline is open, leaves the axis, or runs clockwise.
+    Outline,
+    /// A constant that code needs is no finite double.
+    Constant,
+    /// `plan` has changed a curve of the file.
+    FileCurve { index: usize },
+    /// A tree has more tests than allowed.
+    Tests,
+    /// `inside` does not agree with `owner`.
+    Inside,
+}
+
+/// Checks what `resolve` guarantees of a model.
+pub(crate) fn model(model: &Model) -> Result<(), Broken> {
+    for (index, node) in model.graph.nodes().iter().enumerate() {
+        if node.operands().any(|operand| operand.index() >= index) {
+            return Err(Broken::Operand { node: index });
+        }
+    }
+    let surface = |index: usize| match index < model.surfaces.len() {
+        true => Ok(()),
+        false => Err(Broken::Surface { index }),
+    };
+    for curve in &model.curves {
+        function(model, "a curve", [curve.value])?;
+    }
+    for index in &model.first_curves {
+        self::curve(model, *index)?;
+    }
+    if model.regions.is_empty() {
+        return Err(Broken::NoRegion);
+    }
+    for region in &model.regions {
+        surface(region.surface)?;
+        formula(model, &region.inside)?;
+        let values = [region.depth, region.magnitude, region.niceness];
+        function(model, "a depth, magnitude or niceness", values)?;
+        function(model, "a direction", region.direction.into_iter().chain(region.raw_direction.0))?;
+        expressions(model, "an output", region.outputs.roots())?;
+    }
+    let Some(section) = &model.section else { return Ok(()) };
+    section.outline.iter().try_for_each(|segment| surface(segment.surface))?;
+    outline(section)?;
+    for part in &section.outside {
+        formula(model, &part.condition)?;
+        function(model, "a clearance", [part.clearance])?;
+    }
+    let Some(over) = &section.over else { return Ok(()) };
+    over.conditions.iter().try_for_each(|condition| formula(model, condition))?;
+    function(model, "a distance", over.distances.iter().copied())?;
+    for (_, condition) in &over.regions {
+        if *condition >= over.conditions.len() {
+            return Err(Broken::Region { index: *condition });
+        }
+    }
+    Ok(())
+}
+
+/// Checks what `plan` guarantees besides. `file` is the model before it.
+pub(crate) fn planned(file: &Model, tool: &PlannedTool) -> Result<(), Broken> {
+    let PlannedTool { model: planned, plan, .. } = tool;
+    model(planned)?;
+    for (index, curve) in file.curves.iter().enumerate() {
+        if planned.curves.get(index).is_none_or(|known| known.value != curve.value) {
+            return Err(Broken::FileCurve { index });
+        }
+    }
+    let region = |owner: &Option<usize>| match owner {
+        Some(index) if *index >= planned.regions.len() => Err(Broken::Region { index: *index }),
+        _ => Ok(()),
+    };
+    tree(planned, &plan.owner, &region)?;
+    tree(planned, &plan.inside, &|_| Ok(()))?;
+    tree(planned, &plan.clearance, &|value| function(planned, "a clearance", [*value]))?;
+    let inside = plan.owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
+    if inside.as_ref() != Some(&plan.inside) {
+        return Err(Broken::Inside);
+    }
+    let outputs = planned.regions.iter().flat_map(|region| region.outputs.roots());
+    let curves = planned.curves.iter().map(|curve| curve.value);
+    let is_finite =
+        |id: &Id| planned.graph.constant(*id).is_none_or(|value| value.to_f64().is_finite());
+    match planned.graph.dependencies(outputs.chain(curves)).iter().all(is_finite) {
+        true => Ok(()),
+        false => Err(Broken::Constant),
+    }
+}
+
+/// Checks a tree: its curves, its leaves, and its size.
+fn tree<L: Clone + PartialEq>(
+    model: &Model,
+    tree: &Tree<L>,
+    leaf: &impl Fn(&L) -> Result<(), Broken>,
+) -> Result<(), Broken> {
+    if tree.test_count() > MAX_TESTS {
+        return Err(Broken::Tests);
+    }
+    let mut rest = vec![tree];
+    while let Some(tree) = rest.pop() {
+        match tree {
+            Tree::Leaf(value) => leaf(value)?,
+            Tree::Split { curve, below, above, .. } => {
+                self::curve(model, *curve)?;
+                rest.extend([&**below, &**above]);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn curve(model: &Model, index: usize) -> Result<(), Broken> {
+    if index < model.curves.len() { Ok(()) } else { Err(Broken::Curve { index }) }
+}
+
+fn formula(model: &Model, formula: &Formula) -> Result<(), Broken> {
+    match formula {
+        Formula::Const(_) => Ok(()),
+        Formula::Atom { curve, .. } => self::curve(model, *curve),
+        Formula::All(parts) | Formula::Any(parts) => {
+            parts.iter().try_for_each(|part| self::formula(model, part))
+        }
+    }
+}
+
+/// Checks that expressions are in the graph.
+fn expressions(
+    model: &Model,
+    what: &'static str,
+    roots: impl IntoIterator<Item = Id>,
+) -> Result<(), Broken> {
+    match roots.into_iter().all(|id| id.index() < model.graph.nodes().len()) {
+        true => Ok(()),
+        false => Err(Broken::Expression { what }),
+    }
+}
+
+/// Checks that expressions are functions of a point of the domain.
+fn function(
+    model: &Model,
+    what: &'static str,
+    roots: impl IntoIterator<Item = Id>,
+) -> Result<(), Broken> {
+    let roots: Vec<Id> = roots.into_iter().collect();
+    expressions(model, what, roots.iter().copied())?;
+    for id in model.graph.dependencies(roots) {
+        let Node::Coord(coord) = model.graph.node(id) else { continue };
+        let is_known = match model.domain {
+            Domain::HalfPlane => matches!(coord, Coord::D | Coord::Q | Coord::Z),
+            Domain::Space => !matches!(coord, Coord::Length | Coord::PerLength),
+        };
+        if !is_known {
+            return Err(Broken::Coordinate { what, coord: *coord });
+        }
+    }
+    Ok(())
+}
+
+/// Checks that an outline runs from the axis to the axis, without a gap and counter-clockwise.
+fn outline(section: &Section) -> Result<(), Broken> {
+    let segments = &section.outline;
+    let (Some(first), Some(last)) = (segments.first(), segments.last()) else {
+        return Err(Broken::Outline);
+    };
+    let is_on_axis = |[d, _]: [f64; 2]| d == 0.0;
+    let is_closed = is_on_axis(first.ends()[0])
+        && is_on_axis(last.ends()[1])
+        && segments.windows(2).all(|pair| pair[0].ends()[1] == pair[1].ends()[0]);
+    // Twice the signed area: that of the chords, and that between each arc and its chord.
+    let area: f64 = segments
+        .iter()
+        .map(|segment| {
+            let [[d, z], [e, y]] = segment.ends();
+            let [_, turn] = segment.angles();
+            let radius = segment.round().map_or(0.0, |(_, radius, _)| radius);
+            d * y - e * z + radius * radius * (turn - turn.sin())
+        })
+        .sum();
+    if is_closed && area > 0.0 { Ok(()) } else { Err(Broken::Outline) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan;
+    use crate::{bound, resolve, source::Source, source::Sources, syntax};
+
+    const MILL: &str = "tool Mill \"a mill\" { units mm; profile { start (0, 0); line to (5, 0) as tip cutting; \
+                        arc to (8, 3) center (5, 3) as corner cutting; line to (8, 30), (0, 30) as shank; } \
+                        niceness cutting: 1 - depth/9; }";
+
+    /// The upper half of it is another region than the lower one.
+    const SPHERE: &str = "solid Sphere \"a sphere\" { units mm; \
+                          curve ball = hypot(x, y, z - 1) - 1; curve waist = z - 1; \
+                          region low where ball <= 0, waist <= 0 { depth: -ball; } \
+                          region high where ball <= 0, waist >= 0 { depth: -ball; } }";
+
+    fn resolved(text: &str) -> Model {
+        let source = Source::new("t.tool", text);
+        let mut sources = Sources::new(source, std::iter::empty());
+        let mut diagnostics = Vec::new();
+        let tree = syntax::parse(sources.main(), &mut diagnostics);
+        let tree = tree.unwrap_or_else(|_| panic!("{diagnostics:?}"));
+        resolve::resolve(&tree, &[], &mut sources, &mut diagnostics)
+            .unwrap_or_else(|_| panic!("{diagnostics:?}"))
+    }
+
+    fn planned(text: &str) -> (Model, PlannedTool) {
+        let model = resolved(text);
+        let extent = bound::extent(&model).unwrap_or_else(|found| panic!("{found:?}"));
+        let tool = plan::plan(model.clone(), extent).unwrap_or_else(|found| panic!("{found:?}"));
+        (model, tool)
+    }
+
+    #[test]
+    fn what_passes_give_holds() {
+        for text in [MILL, SPHERE] {
+            let (file, tool) = planned(text);
+            assert_eq!(model(&file), Ok(()));
+            assert_eq!(super::planned(&file, &tool), Ok(()));
+        }
+    }
+
+    /// Each guarantee of `resolve`, broken.
+    #[test]
+    fn a_broken_model_is_found() {
+        let broken = |text: &str, edit: fn(&mut Model)| {
+            let mut model = resolved(text);
+            edit(&mut model);
+            self::model(&model).err()
+        };
+        let beyond =
+            |model: &Model| Formula::Atom { curve: model.curves.len(), below: true, strict: false };
+        let found = broken(SPHERE, |model| model.regions.clear());
+        assert_eq!(found, Some(Broken::NoRegion));
+        let found = broken(SPHERE, |model| model.regions[1].surface = 7);
+        assert_eq!(found, Some(Broken::Surface { index: 7 }));
+        let found = broken(MILL, |model| model.surfaces.truncate(2));
+        assert_eq!(found, Some(Broken::Surface { index: 2 }));
+        let found = broken(SPHERE, |model| model.first_curves.push(9));
+        assert_eq!(found, Some(Broken::Curve { index: 9 }));
+        let mut model = resolved(SPHERE);
+        model.regions[0].inside = Formula::All(vec![beyond(&model)]);
+        assert_eq!(self::model(&model), Err(Broken::Curve { index: model.curves.len() }));
+        let mut model = resolved(MILL);
+        let condition = beyond(&model);
+        model.section.as_mut().expect("a section").outside[0].condition = condition;
+        assert_eq!(self::model(&model), Err(Broken::Curve { index: model.curves.len() }));
+        let found = broken(MILL, |model| model.regions[0].depth = model.graph.coord(Coord::X));
+        let what = "a depth, magnitude or niceness";
+        assert_eq!(found, Some(Broken::Coordinate { what, coord: Coord::X }));
+        let found = broken(SPHERE, |model| {
+            model.regions[0].niceness = model.graph.coord(Coord::Length);
+        });
+        assert_eq!(found, Some(Broken::Coordinate { what, coord: Coord::Length }));
+        // The last expression of a greater graph.
+        let mut other = resolved(MILL);
+        let mut model = resolved(SPHERE);
+        model.regions[0].outputs.depth = other.graph.int(123_456);
+        assert!(other.graph.nodes().len() > model.graph.nodes().len());
+        assert_eq!(self::model(&model), Err(Broken::Expression { what: "an output" }));
+        for edit in [
+            |section: &mut Section| drop(section.outline.remove(1)),
+            |section: &mut Section| drop(section.outline.pop()),
+            |section: &mut Section| section.outline.clear(),
+        ] {
+            let mut model = resolved(MILL);
+            edit(model.section.as_mut().expect("a section"));
+            assert_eq!(self::model(&model), Err(Broken::Outline));
+        }
+    }
+
+    /// Each guarantee of `plan`, broken.
+    #[test]
+    fn a_broken_plan_is_found() {
+        let broken = |edit: fn(&mut PlannedTool)| {
+            let (file, mut tool) = planned(SPHERE);
+            edit(&mut tool);
+            super::planned(&file, &tool).err()
+        };
+        let found = broken(|tool| tool.model.curves.swap(0, 1));
+        assert_eq!(found, Some(Broken::FileCurve { index: 0 }));
+        let found = broken(|tool| tool.plan.owner = Tree::Leaf(Some(5)));
+        assert_eq!(found, Some(Broken::Region { index: 5 }));
+        let found = broken(|tool| tool.plan.owner = Tree::Leaf(Some(0)));
+        assert_eq!(found, Some(Broken::Inside));
+        let found = broken(|tool| {
+            let [below, above] = [Tree::Leaf(true), Tree::Leaf(false)].map(Box::new);
+            tool.plan.inside = Tree::Split { curve: 99, strict: false, below, above };
+        });
+        assert_eq!(found, Some(Broken::Curve { index: 99 }));
+        let found = broken(|tool| {
+            tool.plan.clearance = Tree::Leaf(tool.model.graph.coord(Coord::PerLength));
+        });
+        let coord = Coord::PerLength;
+        assert_eq!(found, Some(Broken::Coordinate { what: "a clearance", coord }));
+        let found = broken(|tool| {
+            let huge = crate::number::Number::from_f64(1e300).expect("a number");
+            tool.model.regions[0].outputs.depth = tool.model.graph.number(&huge * &huge);
+        });
+        assert_eq!(found, Some(Broken::Constant));
+        let found = broken(|tool| {
+            let mut tree = Tree::Leaf(None);
+            for k in 0..=MAX_TESTS {
+                let [below, above] = [Tree::Leaf(Some(k % 2)), tree].map(Box::new);
+                tree = Tree::Split { curve: 0, strict: false, below, above };
+            }
+            tool.plan.owner = tree;
+        });
+        assert_eq!(found, Some(Broken::Tests));
+    }
+}
