@@ -7,7 +7,7 @@ use crate::output::{Output, extension, refuse_inputs, write_file};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
-use tool_dsl::draw::{Content, TextRendering, svg};
+use tool_drawing::{Content, TextRendering, svg};
 
 /// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MAX_PIXELS`.
 const PIXELS: f32 = 2.0;

@@ -3,7 +3,7 @@
 //! ```text
 //! text ──syntax──▶ AST ──resolve──▶ model ──bound, lint, plan──▶ planned tool ──prove──▶ checked tool
 //!                                                                                            │
-//!                             Rust tokens, SVG ◀──emit, draw─────────────────────────────────┼─interpret──▶ values
+//!                                         Rust tokens ◀──emit────────────────────────────────┼─interpret──▶ values
 //! ```
 //!
 //! A [`CheckedTool`] contains no errors: [`emit::emit`] and [`interpret::Interpreter`] cannot fail.
@@ -17,7 +17,6 @@ pub mod diagnostic;
 mod digest;
 mod dimension;
 pub mod domain;
-pub mod draw;
 mod elimination;
 pub mod emit;
 pub mod expr;

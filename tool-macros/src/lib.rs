@@ -12,7 +12,7 @@ use syn::parse::{Parse, ParseStream};
 use syn::{Ident, LitStr, Token};
 use tool_dsl::diagnostic::{Kind, SyntaxKind};
 use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, compile_with_arguments, emit, syntax};
+use tool_dsl::{CheckedTool, Compiled, compile, compile_with_arguments, emit, syntax};
 
 /// `include_tool!("tools/ball.tool")` expands to the type that the file's tool describes. The path is
 /// relative to the package's folder. A change of the file, or of one that it mounts, triggers a rebuild.
@@ -194,17 +194,28 @@ fn read(path: &Path, shown: &str, literal: &LitStr) -> syn::Result<Source> {
         .map_err(|error| syn::Error::new(literal.span(), format!("cannot read `{shown}`: {error}")))
 }
 
-/// Returns whether rustdoc is running. Only then are drawings made, as rustc discards them.
-fn is_rustdoc() -> bool {
-    std::env::current_exe().is_ok_and(|program| program.file_stem().is_some_and(|n| n == "rustdoc"))
+/// Emits a tool. Its drawing is made while rustdoc is running only, as rustc discards it.
+#[cfg(feature = "drawings")]
+fn emitted(tool: &CheckedTool) -> proc_macro2::TokenStream {
+    let program = std::env::current_exe();
+    if !program.is_ok_and(|program| program.file_stem().is_some_and(|name| name == "rustdoc")) {
+        return emit::emit(tool);
+    }
+    let (content, text) = (tool_drawing::Content::Regions, tool_drawing::TextRendering::Page);
+    emit::with_drawing(tool, &tool_drawing::svg(tool, content, text))
+}
+
+/// Emits a tool, without its drawing.
+#[cfg(not(feature = "drawings"))]
+fn emitted(tool: &CheckedTool) -> proc_macro2::TokenStream {
+    emit::emit(tool)
 }
 
 /// Expands a compiled tool: its code and warnings, or its errors and a placeholder type, and a dependency on each file.
 /// `call_site` is the position of messages about other files.
 fn expand(compiled: &Compiled, call_site: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.outcome, &compiled.name) {
-        (Ok(accepted), _) if is_rustdoc() => emit::with_drawing(&accepted.tool),
-        (Ok(accepted), _) => emit::emit(&accepted.tool),
+        (Ok(accepted), _) => emitted(&accepted.tool),
         (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::placeholder(name),
         _ => quote! {},
     };

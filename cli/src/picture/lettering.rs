@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use std::fmt::Write;
-use tool_dsl::draw::lettering::{scale, strokes, width};
+use tool_drawing::lettering::{scale, strokes, width};
 use touchoff::Unit;
 
 /// Height of capital letters, in pixels.

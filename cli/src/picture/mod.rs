@@ -12,7 +12,7 @@ use nalgebra::Point3;
 use render::{Facet, Image, render};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
-use tool_dsl::draw::lettering::width;
+use tool_drawing::lettering::width;
 use touchoff::Unit;
 use touchoff_postures::colormap;
 

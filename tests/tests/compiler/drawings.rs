@@ -2,7 +2,7 @@
 //! the bytes are the same every time. One is kept as a snapshot.
 
 use std::path::Path;
-use tool_dsl::draw::{Content, TextRendering, svg};
+use tool_drawing::{Content, TextRendering, svg};
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 
@@ -191,7 +191,8 @@ fn solids_are_drawn_in_three_sections() {
 #[test]
 fn the_documentation_includes_the_drawing() {
     let tool = library("unit_sphere.tool");
-    assert!(emit::with_drawing(&tool).to_string().contains("doc = \"<div><svg"));
+    let drawing = svg(&tool, Content::Regions, TextRendering::Page);
+    assert!(emit::with_drawing(&tool, &drawing).to_string().contains("doc = \"<div><svg"));
     assert!(!emit::emit(&tool).to_string().contains("svg"));
 }
 

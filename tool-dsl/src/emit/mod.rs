@@ -16,7 +16,6 @@ use crate::checked::CheckedTool;
 use crate::diagnostic::format_number;
 use crate::digest;
 use crate::domain::Domain;
-use crate::draw::{self, Content, TextRendering};
 use crate::expr::Id;
 use crate::model::RegionOutputs;
 use crate::plan::Tree;
@@ -32,10 +31,10 @@ pub fn emit(tool: &CheckedTool) -> TokenStream {
     code(tool, &quote! {})
 }
 
-/// The same with the tool's drawing on the type's page, for rustdoc.
-pub fn with_drawing(tool: &CheckedTool) -> TokenStream {
+/// The same with a drawing of the tool, an SVG of one line, on the type's page, for rustdoc.
+pub fn with_drawing(tool: &CheckedTool, drawing: &str) -> TokenStream {
     // One line inside a block element, so that nothing in it is parsed as Markdown.
-    let drawing = format!("<div>{}</div>", draw::svg(tool, Content::Regions, TextRendering::Page));
+    let drawing = format!("<div>{drawing}</div>");
     code(tool, &quote! { #[doc = ""] #[doc = #drawing] })
 }
 

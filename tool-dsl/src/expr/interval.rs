@@ -108,7 +108,8 @@ impl Interval {
         Interval::out(1.0 / self.high, 1.0 / self.low)
     }
 
-    pub(crate) fn hull(self, other: Interval) -> Interval {
+    /// Returns the smallest interval that contains both.
+    pub fn hull(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 

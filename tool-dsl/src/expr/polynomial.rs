@@ -8,7 +8,7 @@ use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
 
 /// The exponents of (d, x, y, z). Within this module d² and x² + y² are different polynomials.
-pub(crate) type Monomial = [u8; 4];
+pub type Monomial = [u8; 4];
 
 /// Returns the exponents of one coordinate alone; all 0 for the file's unit of length.
 pub(crate) fn monomial_of(coord: Coord) -> Monomial {

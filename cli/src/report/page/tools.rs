@@ -5,7 +5,7 @@ use super::{image, plain};
 use crate::check::proof;
 use crate::failure::Failure;
 use maud::{Markup, html};
-use tool_dsl::draw::{Content as Drawn, TextRendering, svg};
+use tool_drawing::{Content as Drawn, TextRendering, svg};
 
 pub(super) fn section(content: &Content<'_>) -> Result<Markup, Failure> {
     let mut tools = Vec::new();

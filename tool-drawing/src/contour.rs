@@ -3,8 +3,8 @@
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::is_outline;
-use crate::geometry::outline::{Point, cross, dot, minus, norm};
-use crate::model::{Model, Unit};
+use crate::vector::{Point, cross, dot, minus, norm};
+use tool_dsl::model::{Model, Unit};
 
 /// Lengths that differ by less than this fraction of the tool's size are considered equal.
 const LENGTH_TOLERANCE_FRACTION: f64 = 1e-7;
@@ -59,7 +59,7 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
     };
     match trimmed(&format!("{value:.decimals$}")) {
         // A length too small for that gets as many digits as it needs.
-        text if text == "0" && value.abs() > 1e-12 => crate::diagnostic::format_number(value),
+        text if text == "0" && value.abs() > 1e-12 => tool_dsl::diagnostic::format_number(value),
         text => text,
     }
 }

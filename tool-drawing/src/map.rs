@@ -2,9 +2,9 @@
 
 use super::borders::{Nearness, Side};
 use super::section::Piece;
-use crate::formula::CurveIndex;
-use crate::geometry::outline::{Point, cross, minus, norm};
+use crate::vector::{Point, cross, minus, norm};
 use std::collections::HashMap;
+use tool_dsl::formula::CurveIndex;
 
 /// A part of a border, from one welded corner to another.
 #[derive(Clone, Copy, Debug)]

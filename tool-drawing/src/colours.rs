@@ -3,7 +3,7 @@
 //! others.
 
 use super::borders::{Border, Side};
-use crate::model::Model;
+use tool_dsl::model::Model;
 
 const REGION_FILLS: [&str; 9] = [
     "#77aadd", "#eedd88", "#ffaabb", "#99ddff", "#44bb99", "#ee8866", "#bbcc33", "#dddddd",

@@ -2,7 +2,7 @@
 
 use super::lettering::{scale, strokes, width};
 use super::stroke::Stroke;
-use crate::geometry::outline::Point;
+use crate::vector::Point;
 use std::fmt::Write;
 
 /// The end of a line of text that is anchored at its position.

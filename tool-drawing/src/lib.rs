@@ -10,6 +10,13 @@
 //! the same way. Corners are computed as intersections of curves, to full precision, so the dimensions are exact. Text
 //! is drawn in strokes of a built-in alphabet (`lettering`). The same tool always gives the same bytes.
 
+#![deny(missing_docs, missing_debug_implementations, unnameable_types)]
+
+// The code block of this page is a test, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod borders;
 mod colours;
 mod contour;
@@ -28,12 +35,10 @@ mod shape;
 mod sheet;
 mod solid;
 mod stroke;
+mod vector;
 mod view;
 
-use crate::checked::CheckedTool;
-use crate::domain::Domain;
-use crate::geometry::outline::Point;
-use crate::model::Model;
+use crate::vector::Point;
 use borders::{Border, Nearness, Side};
 use curves::{Curves, Plane};
 use detail::Detail;
@@ -42,6 +47,9 @@ use section::Fineness;
 use shape::Shape;
 pub use sheet::TextRendering;
 use sheet::{Anchor, Look, Sheet};
+use tool_dsl::CheckedTool;
+use tool_dsl::domain::Domain;
+use tool_dsl::model::Model;
 use view::View;
 
 /// The largest extent of a tool on the sheet: full width and height, in sheet units.

@@ -1,8 +1,8 @@
 //! Borders of regions and of surfaces.
 
 use super::{library, tool, whole};
-use crate::draw::borders::{Border, Side};
-use crate::draw::{Picture, view};
+use crate::borders::{Border, Side};
+use crate::{Picture, view};
 
 /// The areas of the regions of the exact fig. 7.3 have closed forms.
 #[test]

@@ -1,6 +1,6 @@
 //! Strokes: the lines and arcs of a drawing.
 
-use crate::geometry::outline::{Point, cross, dot, minus, norm};
+use crate::vector::{Point, cross, dot, minus, norm};
 use std::f64::consts::PI;
 
 /// A line, or an arc of less than half a circle.

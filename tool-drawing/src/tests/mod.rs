@@ -5,10 +5,10 @@ mod labels;
 mod views;
 
 use super::{Content, Picture};
-use crate::checked::CheckedTool;
-use crate::compile;
-use crate::source::Source;
 use std::path::{Path, PathBuf};
+use tool_dsl::CheckedTool;
+use tool_dsl::compile;
+use tool_dsl::source::Source;
 
 fn checked(source: &Source) -> Box<CheckedTool> {
     compile(source).outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool

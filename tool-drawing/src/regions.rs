@@ -6,7 +6,7 @@ use super::marks::{Arrow, Directions, head};
 use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::{Content, Part, Picture, paint};
-use crate::geometry::outline::Point;
+use crate::vector::Point;
 
 /// Results of drawing the section that the notes and the legend need.
 #[derive(Default)]

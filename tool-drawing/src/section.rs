@@ -6,10 +6,10 @@
 //! both cells, since the cut of a side depends on the side alone.
 
 use super::curves::Curves;
-use crate::formula::{CurveIndex, NEGATIVE, ZERO};
-use crate::geometry::outline::{Point, cross, minus, norm};
-use crate::plan::Tree;
+use crate::vector::{Point, cross, minus, norm};
 use std::collections::HashSet;
+use tool_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
+use tool_dsl::plan::Tree;
 
 /// The plan's tree of owners.
 pub(super) type Owners = Tree<Option<usize>>;

@@ -2,9 +2,9 @@
 
 use super::shape::{Frame, Shape};
 use super::view::View;
-use crate::expr::value::{EvaluationPoint, Evaluator};
-use crate::geometry::outline::{Point, cross, minus, norm};
-use crate::model::Model;
+use crate::vector::{Point, cross, minus, norm};
+use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
+use tool_dsl::model::Model;
 
 /// An arrow on the sheet, as tail and head.
 pub(super) type Arrow = [Point; 2];

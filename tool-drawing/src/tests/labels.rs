@@ -1,9 +1,9 @@
 //! Labels lie on the sheet and do not overlap.
 
 use super::{folder, library};
-use crate::draw::lettering::width;
-use crate::draw::{Content, TextRendering, svg};
-use crate::geometry::outline::Point;
+use crate::lettering::width;
+use crate::vector::Point;
+use crate::{Content, TextRendering, svg};
 
 /// The height of capitals at scale 1.
 const CAPITAL_HEIGHT: f64 = 14.0;

@@ -1,10 +1,10 @@
 //! The choice of views: the detail of a tool, and the sections of a solid.
 
 use super::{library, tool};
-use crate::checked::CheckedTool;
-use crate::draw::detail::{Detail, scale_factor};
-use crate::draw::{Content, Part, Picture, TextRendering, contour, paint, solid, svg};
+use crate::detail::{Detail, scale_factor};
+use crate::{Content, Part, Picture, TextRendering, contour, paint, solid, svg};
 use std::f64::consts::PI;
+use tool_dsl::CheckedTool;
 
 fn profile(segments: &str) -> Box<CheckedTool> {
     tool(&format!("tool T {{ units mm; profile {{ start (0, 0); {segments} }} }}"))
