@@ -1042,6 +1042,24 @@ fn words_at_which_a_control_stops_are_refused() {
         "G61\nG64 P0.01\nM7\nM8\nM9\nM62 P1\nG4 P0.5\nG82 X4. Z1. R2. P1\nX5.\nG80\nG0 Z20.";
     Scene::new(&format!("{begin}{passed}")).gives(&LINUXCNC, 0, &[]);
     Scene::new(&format!("{begin}G61.1")).gives(&FANUC, 2, &["G61.1 is a word of LinuxCNC alone"]);
+    for (control, blocks, word) in [
+        // Without the digits below the increment the centre is 0.28 mm farther.
+        (
+            &FANUC[..],
+            "X-100.\nG2 X100. R100.0004 F500.",
+            "has more digits than the least increment",
+        ),
+        (
+            &FANUC,
+            "X-12.\nX0.\nG1 Y0.\nG2 X.0004 Y.0104 R-5.",
+            "has more digits than the least increment",
+        ),
+        (&HAAS, "M30 M9", "M30 while its block has another M word"),
+        (&SIEMENS, "G20\nG91 G1 X.0001", "no multiple of the least increment"),
+        (&FANUC, "S900 M4\nG86 X4. Z1. R2. P0\nG80", "which it does not do after it on Fanuc"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(control, 2, &[word]);
+    }
     let turned = Scene::new("T1 M6\nS900 M3\nG0 G43 H1 Z60.\nA-30. C0.\nM428\nG49\nX5.");
     let turned = turned.placed().with("machine = \"A-C trunnion\"");
     turned.gives(&LINUXCNC, 2, &["G49 while M428 is in force with turned axes"]);
@@ -1068,6 +1086,11 @@ fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {
     scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.")).gives(&FANUC, 0, &[]);
     let not_aligned = "a length offset is in force in a tilted plane that is not aligned";
     scene(&format!("{plane}\nX-6. Y0. Z30.")).gives(&FANUC, 2, &[not_aligned]);
+    let alone = scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.\nG69\nX-7."));
+    alone.gives(&FANUC, 2, &["the first after G68 or G69, and not of both axes"]);
+    scene("G234 X-6. Y0. Z30.").gives(&HAAS, 2, &["G234 needs H in its block"]);
+    let again = "G43.4 H1\nX-6. Y0. Z30.\nG43 H1";
+    scene(again).gives(&FANUC, 2, &["G43 while tool centre point control is on"]);
     let in_feed = "a motion at feed rate is in force, at which Fanuc turns the axes";
     scene(&format!("G1 Z50.\n{plane}\nG53.1")).gives(&FANUC, 2, &[in_feed]);
 }

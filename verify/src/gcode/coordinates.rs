@@ -282,6 +282,15 @@ impl Control {
         if tcp == Tcp::Vector && self.state.rotation != Rotation::Off {
             return Err(combination(code, "a plane is rotated", "end it with G69 before"));
         }
+        let is_tcp = matches!(self.state.tcp, Tcp::Rotary | Tcp::Vector);
+        if code.tenths == 430 && is_tcp && !self.transformed {
+            let condition = "tool centre point control is on, which it ends on some controls";
+            return Err(combination(code, condition, "write G49 before"));
+        }
+        if code.tenths == 2340 && !block.has('H') {
+            let needed = "H in its block, since Haas cancels the one before";
+            return Err(GcodeFault::Missing { word: code.to_string(), needed });
+        }
         let mut given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
         let is_zero = given == Some(0) && code.tenths == 430;
         if given.is_none()

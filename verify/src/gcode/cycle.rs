@@ -15,6 +15,7 @@ use super::linuxcnc;
 use super::modal::FeedMode;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
+use super::spindle::Spindle;
 use super::state::{ControlState, Position, Tcp};
 use super::{GcodeFault, MAX_CYCLE_STEPS, Plane, StepPath};
 use std::sync::Arc;
@@ -89,6 +90,17 @@ impl Control {
                 word,
                 condition: "the spindle does not turn into the thread, which some controls start themselves",
                 remedy: "write M3 before G84, M4 before G74, or M29 for rigid tapping",
+            });
+        }
+        // Fanuc ends G86 by turning the spindle clockwise (parameter 5112).
+        if number == 86
+            && self.spindle(false) == Spindle::CounterClockwise
+            && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso))
+        {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "the spindle turns counter-clockwise, which it does not do after it on Fanuc",
+                remedy: "post the hole with its motions",
             });
         }
         self.check_feed(&word)?;

@@ -321,6 +321,11 @@ impl Control {
         let (end, _, commanded) = self.take_end(block);
         let path = arc::path(&words, self.position, end)?;
         self.check_radii(&path, &end)?;
+        if let Some(radius) = words.radius
+            && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
+        {
+            self.check_radius_digits(radius.abs(), &end);
+        }
         self.push(false, end, commanded, path);
         Ok(())
     }
@@ -362,6 +367,34 @@ impl Control {
             self.notes.add(self.line, Subject::TwoRadii);
         }
         Ok(())
+    }
+
+    /// Notes an arc by its radius whose centre depends on digits below the least increment: that of a half circle, or of a short chord.
+    fn check_radius_digits(&mut self, radius: f64, end: &Position) {
+        let axes = self.modal.plane.axes();
+        let (Some([x, y]), Some([u, v])) = (in_plane(&self.position, axes), in_plane(end, axes))
+        else {
+            return;
+        };
+        let increment = self.modal.millimetres(self.modal.increment());
+        let is_whole = |value: f64| {
+            let steps = value / increment;
+            (steps - steps.round()).abs() < 1e-6
+        };
+        if [x, y, u, v, radius].into_iter().all(is_whole) {
+            return;
+        }
+        // The distance of the centre from the chord, and its change if every number changes by an increment.
+        let chord = (u - x).hypot(v - y);
+        let height = |change: f64| {
+            let (radius, half) = (radius + change, 0.5 * chord - f64::sqrt(2.0) * change);
+            (radius * radius - half * half).max(0.0).sqrt()
+        };
+        let [low, high] = [-increment, increment].map(height);
+        let turn = high * f64::sqrt(8.0) * increment / chord.max(increment);
+        if high - low + turn > RADII_TOLERANCE.max(8.0 * increment) {
+            self.notes.add(self.line, Subject::RoundedRadius);
+        }
     }
 
     /// Returns the remedy that ends tool centre point control.

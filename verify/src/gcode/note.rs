@@ -45,6 +45,8 @@ pub enum NoteKind {
     OptionalSwitches,
     /// An arc whose radii at its start and end differ by more than rounding. It is read as a spiral.
     TwoRadii,
+    /// An arc by its radius, which moves by more than rounding where its numbers are rounded to the least increment.
+    RoundedRadius,
     /// A motion that differs in the next run of the program, if the control keeps modes from the end of the run before.
     LeftModes {
         /// The words that left them, as a list.
@@ -83,6 +85,10 @@ impl fmt::Display for NoteKind {
             NoteKind::TwoRadii => f.write_str(
                 "the radii of an arc differ at its start and its end, and controls take different paths between: correct the arc",
             ),
+            NoteKind::RoundedRadius => f.write_str(
+                "an arc by its radius has more digits than the least increment, and moves where they are rounded: write them with as \
+                 many, or the arc with its centre",
+            ),
             NoteKind::LeftModes { words } => write!(
                 f,
                 "the program ends with {words}, which a control can keep, and its next run is another from here on: write \
@@ -109,6 +115,7 @@ pub(super) enum Subject {
     OtherProgram,
     OptionalSwitches,
     TwoRadii,
+    RoundedRadius,
 }
 
 /// The notes of a program.
@@ -157,6 +164,7 @@ impl Subject {
             Subject::OtherProgram => NoteKind::OtherProgram,
             Subject::OptionalSwitches => NoteKind::OptionalSwitches,
             Subject::TwoRadii => NoteKind::TwoRadii,
+            Subject::RoundedRadius => NoteKind::RoundedRadius,
         }
     }
 }

@@ -6,6 +6,7 @@ use super::GcodeFault;
 use super::block::Block;
 use super::code::{Code, Group};
 use super::linuxcnc;
+use super::modal::Motion;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{LengthOffset, Rotation, Tcp};
@@ -91,7 +92,7 @@ impl Control {
     pub(super) fn check_words(&self, block: &Block) -> Result<(), GcodeFault> {
         let dialect = self.stated(Rule::Dialect);
         let is_m = |code: &Code| code.letter == 'M';
-        let acts = |code: &Code| matches!(code.tenths, 30 | 40 | 60 | 290);
+        let acts = |code: &Code| matches!(code.tenths, 0..=60 | 290 | 300 | 980 | 990);
         if matches!(dialect, None | Some(Choice::Iso))
             && block.codes().filter(is_m).nth(1).is_some()
             && let Some(code) = block.codes().filter(is_m).find(acts)
@@ -158,10 +159,17 @@ impl Control {
                 });
             }
             let increment = if axis < 3 { self.modal.increment() } else { 1e-3 };
-            let steps = value / increment;
+            let is_rounded = |value: f64, increment: f64| {
+                let steps = value / increment;
+                (steps - steps.round()).abs() > 1e-6
+            };
+            // Sinumerik rounds inches to micrometres.
+            let by_unit = axis < 3
+                && matches!(dialect, None | Some(Choice::Sinumerik))
+                && is_rounded(self.modal.millimetres(value), 1e-3);
             if is_incremental
                 && dialect != Some(Choice::Rs274Ngc)
-                && (steps - steps.round()).abs() > 1e-6
+                && (by_unit || is_rounded(value, increment))
             {
                 return Err(GcodeFault::Combination {
                     word: format!("{letter}{value}"),
@@ -178,18 +186,19 @@ impl Control {
         let is_absolute = !self.modal.incremental;
         let moves = |value: f64| is_absolute || value != 0.0;
         let given = self.modal.plane.axes().map(|axis| block.value(AXES[axis]).is_some_and(moves));
-        if !self.rotation_changed || given == [false; 2] {
+        // An arc or a cycle without them is at the present position.
+        let is_straight = matches!(self.modal.motion, Some(Motion::Rapid | Motion::Feed));
+        if !self.rotation_changed || given == [false; 2] && is_straight {
             return Ok(());
         }
-        let is_rotated = self.state.rotation != Rotation::Off;
-        if self.modal.incremental || is_rotated && given != [true; 2] {
+        if self.modal.incremental || given != [true; 2] {
             return Err(GcodeFault::Combination {
                 word: "a position".to_owned(),
                 condition: "it is the first after G68 or G69, and not of both axes of the plane in G90",
                 remedy: "write both in G90",
             });
         }
-        self.rotation_changed = given != [true; 2];
+        self.rotation_changed = false;
         Ok(())
     }
 

@@ -301,7 +301,7 @@ fn tilted_planes_map_by_their_euler_angles() {
     // The plane of a cube's corner: 45 degrees about z, then the angle between the diagonal and z about the new x.
     let angle = (1.0f64 / 3.0f64.sqrt()).acos().to_degrees();
     let program = format!(
-        "G68.2 X10 Y20 Z30 I45 J{angle:.13} K0\nG53.1\nG0 X0 Y0 Z0\nX0 Y0 Z3\nX2 Y0 Z0\nG69\nG0 X1"
+        "G68.2 X10 Y20 Z30 I45 J{angle:.13} K0\nG53.1\nG0 X0 Y0 Z0\nX0 Y0 Z3\nX2 Y0 Z0\nG69\nG0 X1 Y0"
     );
     let steps = steps_of(&program, &at_zero());
     assert_eq!(steps[0].path, StepPath::Align);
@@ -320,7 +320,7 @@ fn tilted_planes_map_by_their_euler_angles() {
     let lengthened = steps_of(&program.replace("X2 Y0 Z0", "G43 H2 X1"), &known);
     assert_eq!(linear(lengthened[3].end), [1.0, 0.0, 3.0 - 60.0].map(Some));
     // The angles are the machine's, so X Y Z are lost with the plane.
-    assert_eq!(linear(steps[4].end), [Some(1.0), None, None]);
+    assert_eq!(linear(steps[4].end), [Some(1.0), Some(0.0), None]);
     assert_eq!(steps[4].state.rotation, Rotation::Off);
 
     let steps = steps_of("G68 X10 Y0 R90\nG0 X11 Y0 Z5\nG69\nG91 X0", &at_zero());

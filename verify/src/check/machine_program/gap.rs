@@ -155,6 +155,7 @@ impl MachineSummary {
                 NoteKind::OtherProgram
                     | NoteKind::OptionalSwitches
                     | NoteKind::TwoRadii
+                    | NoteKind::RoundedRadius
                     | NoteKind::OffsetOrShift
                     | NoteKind::LeftModes { .. }
             );

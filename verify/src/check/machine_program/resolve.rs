@@ -128,8 +128,8 @@ impl fmt::Display for UnknownCause {
                  G0 before",
             ),
             UnknownCause::GreatCircle => f.write_str(
-                "the tool axis turns on a great circle under TRAORI (ORIVECT): write ORIAXES and state `tool_orientation` of the \
-                 control",
+                "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns \
+                 each axis in proportion (ORIAXES)",
             ),
             UnknownCause::TurnedTable => f.write_str(
                 "the table is turned where tool centre point control or a tilted plane begins, and positions are those of the \
