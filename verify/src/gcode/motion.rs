@@ -324,7 +324,7 @@ impl Control {
         if let Some(radius) = words.radius
             && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
         {
-            self.check_radius_digits(radius.abs(), &end);
+            self.check_radius_digits(radius, &end);
         }
         self.push(false, end, commanded, path);
         Ok(())
@@ -369,7 +369,8 @@ impl Control {
         Ok(())
     }
 
-    /// Notes an arc by its radius whose centre depends on digits below the least increment: that of a half circle, or of a short chord.
+    /// Notes an arc by its radius whose path depends on digits below the least increment: one near a half circle, or near a full one.
+    /// A radius below 0 is that of an arc of more than a half circle.
     fn check_radius_digits(&mut self, radius: f64, end: &Position) {
         let axes = self.modal.plane.axes();
         let (Some([x, y]), Some([u, v])) = (in_plane(&self.position, axes), in_plane(end, axes))
@@ -384,15 +385,19 @@ impl Control {
         if [x, y, u, v, radius].into_iter().all(is_whole) {
             return;
         }
-        // The distance of the centre from the chord, and its change if every number changes by an increment.
+        let is_major = radius < 0.0;
+        // If every number changes by an increment, the chord changes by √8 increments, and its middle stays within one of them.
         let chord = (u - x).hypot(v - y);
-        let height = |change: f64| {
-            let (radius, half) = (radius + change, 0.5 * chord - f64::sqrt(2.0) * change);
-            (radius * radius - half * half).max(0.0).sqrt()
+        let sagitta = |change: f64| {
+            let (radius, half) = (radius.abs() + change, 0.5 * chord - f64::sqrt(2.0) * change);
+            let height = (radius * radius - half * half).max(0.0).sqrt();
+            if is_major { radius + height } else { radius - height }
         };
-        let [low, high] = [-increment, increment].map(height);
-        let turn = high * f64::sqrt(8.0) * increment / chord.max(increment);
-        if high - low + turn > RADII_TOLERANCE.max(8.0 * increment) {
+        let farthest = if is_major { 2.0 * radius.abs() } else { chord };
+        let turn = farthest / chord.max(increment) * f64::sqrt(8.0) * increment;
+        if (sagitta(increment) - sagitta(-increment)).abs() + turn
+            > RADII_TOLERANCE.max(8.0 * increment)
+        {
             self.notes.add(self.line, Subject::RoundedRadius);
         }
     }
