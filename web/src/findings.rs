@@ -4,13 +4,13 @@ use serde::Serialize;
 use touchoff::SurfaceId;
 use touchoff::tool::ToolInfo;
 use touchoff_verify::job::{FindingDetail, Severity};
-use touchoff_verify::{Finding, FindingGroup, FindingKind, JobReport, Verdict};
+use touchoff_verify::{Finding, FindingGroup, FindingKind, JobReport};
 
 /// The result of a check.
 #[derive(Debug, Serialize)]
 pub(crate) struct CheckResult {
     motions: usize,
-    /// `true` if it is proved that nothing is deeper than allowed, in every reading of the program.
+    /// `true` if it is proved that nothing is deeper than allowed on the motions that were checked, in every reading of the program.
     clear: bool,
     /// `false` if the part has no inside, so that a tool wholly inside it is not found.
     inside_known: bool,
@@ -71,7 +71,7 @@ impl CheckResult {
         let first = &report.pairs[0].report;
         CheckResult {
             motions: first.motions,
-            clear: report.verdict() == Verdict::Clean,
+            clear: report.pairs.iter().all(|pair| pair.report.is_clear()),
             inside_known: first.inside_known,
             distance: first.approach.distance,
             far: first.approach.is_far(),
