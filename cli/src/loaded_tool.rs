@@ -28,7 +28,7 @@ impl LoadedTool {
     pub(crate) fn load(name: &OsStr, arguments: &ToolArguments) -> Result<LoadedTool, Failure> {
         let params = &arguments.params;
         if let Some(library) = &arguments.library {
-            let tool = in_library(name, (library, true), |file| load_file(file, params))?;
+            let tool = in_library(name, library, true, |file| load_file(file, params))?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
@@ -59,7 +59,7 @@ pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<C
     let compile =
         |file: &Path| Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()));
     if let Some(library) = &arguments.library {
-        return in_library(name, (library, false), compile);
+        return in_library(name, library, false, compile);
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
         return compile(Path::new(name));
@@ -86,7 +86,8 @@ pub(crate) fn sources(name: &str) -> &'static [(&'static str, &'static str)] {
 /// Reads the file of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
 fn in_library<R>(
     name: &OsStr,
-    (library, notes): (&Path, bool),
+    library: &Path,
+    notes: bool,
     read: impl FnOnce(&Path) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
     if library.is_dir() {

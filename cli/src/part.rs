@@ -82,7 +82,7 @@ pub(crate) fn load(
     }
     match read_geometry(&arguments.part, arguments.unit)? {
         Geometry::Mesh(mesh) => {
-            let (cloud, certify) = sample_cloud(&mesh, arguments, info, (dense, json))?;
+            let (cloud, certify) = sample_cloud(&mesh, arguments, info, dense, json)?;
             let part = Part::new(&cloud, mesh.diagnostics());
             Ok(LoadedPart { part, mesh: Some(mesh), certify })
         }
@@ -135,7 +135,8 @@ fn sample_cloud(
     mesh: &Mesh,
     arguments: &PartFile,
     info: Option<&ToolInfo>,
-    (dense, json): (DenseSampling, bool),
+    dense: DenseSampling,
+    json: bool,
 ) -> Result<(Cloud, Option<f64>), Failure> {
     let PartFile { sampling: method, seed, unit, .. } = *arguments;
     let sample = || {

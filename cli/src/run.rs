@@ -134,7 +134,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
                 Some(_) => Some(false),
                 None => certifier.is_buried(&location.pose),
             };
-            summary.certify(location.line, (&penetration, inside), ns);
+            summary.certify(location.line, &penetration, inside, ns);
             Certified::new(&penetration, inside, tool.info())
         });
         if json {
@@ -262,12 +262,7 @@ impl Summary {
         }
     }
 
-    fn certify(
-        &mut self,
-        line: usize,
-        (penetration, inside): (&Penetration, Option<bool>),
-        ns: u64,
-    ) {
+    fn certify(&mut self, line: usize, penetration: &Penetration, inside: Option<bool>, ns: u64) {
         let proved = self.proved.get_or_insert_default();
         proved.times.push(ns);
         proved.in_contact += usize::from(penetration.witness.is_some());

@@ -33,28 +33,29 @@ const FINITE: &str = "a finite number";
 
 fn check(
     valid: bool,
-    (what, value): (&'static str, f64),
+    what: &'static str,
+    value: f64,
     range: &'static str,
 ) -> Result<(), SettingError> {
     if valid { Ok(()) } else { Err(SettingError { what, value, range }) }
 }
 
 pub(super) fn above_zero(what: &'static str, value: f64) -> Result<(), SettingError> {
-    check(value > 0.0 && value.is_finite(), (what, value), ABOVE_ZERO)
+    check(value > 0.0 && value.is_finite(), what, value, ABOVE_ZERO)
 }
 
 pub(super) fn not_negative(what: &'static str, value: f64) -> Result<(), SettingError> {
-    check(value >= 0.0 && value.is_finite(), (what, value), NOT_NEGATIVE)
+    check(value >= 0.0 && value.is_finite(), what, value, NOT_NEGATIVE)
 }
 
 /// Returns the period of a rate, s.
 pub(super) fn period(rate: f64) -> Result<f64, SettingError> {
-    check(RATES.contains(&rate), ("rate in Hz", rate), "0.001 to 1000000 cycles per second")?;
+    check(RATES.contains(&rate), "rate in Hz", rate, "0.001 to 1000000 cycles per second")?;
     Ok(1.0 / rate)
 }
 
 pub(super) fn centre(centre: &Point3<f64>) -> Result<(), SettingError> {
-    centre.iter().try_for_each(|part| check(part.is_finite(), ("compliance centre", *part), FINITE))
+    centre.iter().try_for_each(|part| check(part.is_finite(), "compliance centre", *part, FINITE))
 }
 
 impl DeviceLimits {
@@ -88,8 +89,8 @@ impl SessionSettings {
         let SpeedLimit { linear, angular } = fastest;
         let speeds =
             [("largest speed in mm/s", linear), ("largest turning speed in rad/s", angular)];
-        speeds.into_iter().try_for_each(|speed| {
-            check(speed.1 > 0.0, speed, "a number above 0, or infinity to accept any speed")
+        speeds.into_iter().try_for_each(|(what, speed)| {
+            check(speed > 0.0, what, speed, "a number above 0, or infinity to accept any speed")
         })
     }
 }
@@ -127,8 +128,8 @@ impl Tremor {
     /// rate.
     pub(super) fn check(&self, period: f64) -> Result<(), SettingError> {
         not_negative("size of the tremor in mm", self.size)?;
-        let what = ("frequency of the tremor in Hz", self.frequency);
-        let sampled = self.frequency * period <= 0.5;
-        check(self.frequency > 0.0 && sampled, what, "a number above 0, up to half the rate")
+        let is_valid = self.frequency > 0.0 && self.frequency * period <= 0.5;
+        let what = "frequency of the tremor in Hz";
+        check(is_valid, what, self.frequency, "a number above 0, up to half the rate")
     }
 }

@@ -52,7 +52,7 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
     let map = match (&arguments.postures, &loaded.mesh) {
         (None, _) => None,
         (Some(file), Some(mesh)) => {
-            Some((map_of(file, (mesh, &arguments.part.part), tool)?, TriangleBvh::new(mesh)))
+            Some((map_of(file, mesh, &arguments.part.part, tool)?, TriangleBvh::new(mesh)))
         }
         (Some(_), None) => {
             let file = arguments.part.part.display().to_string();

@@ -116,12 +116,13 @@ impl<'a> Recordings<'a> {
 /// Opens a map, or creates a new one for this part and tool, with the rules of a sweep.
 pub(super) fn map_of(
     file: &Path,
-    (mesh, part): (&Mesh, &Path),
+    mesh: &Mesh,
+    part: &Path,
     tool: &dyn Tool,
 ) -> Result<PostureMap, Failure> {
     if file.exists() {
         let map = PostureMap::resume(file)?;
-        check_part(&map, file, (mesh, part))?;
+        check_part(&map, file, mesh, part)?;
         return Ok(map);
     }
     let rules =

@@ -30,10 +30,10 @@ impl Overlay {
 
     /// Writes a line of text from a point to the right, on white so that it can be read over a picture.
     pub(super) fn text(&mut self, at: [f64; 2], size: f64, text: &str) {
-        self.coloured_text(at, size, (text, "#222"));
+        self.coloured_text(at, size, text, "#222");
     }
 
-    fn coloured_text(&mut self, [x, y]: [f64; 2], size: f64, (text, colour): (&str, &str)) {
+    fn coloured_text(&mut self, [x, y]: [f64; 2], size: f64, text: &str, colour: &str) {
         let data = strokes(text);
         for (colour, stroke) in [("#fff", 5.0), (colour, 1.4)] {
             // Writing to a String does not fail.
@@ -87,18 +87,13 @@ impl Overlay {
             let start = [beyond[0] - 0.5 * width(name, size), beyond[1] + 0.4 * size];
             // An axis along the view is a point, and its letter would hide the origin.
             if right[axis].hypot(up[axis]) > 0.3 {
-                self.coloured_text(start, size, (name, colour));
+                self.coloured_text(start, size, name, colour);
             }
         }
     }
 
     /// Draws a bar of a round length that ends at a point.
-    pub(super) fn scale_bar(
-        &mut self,
-        [x, y]: [f64; 2],
-        (per_length, room): (f64, f64),
-        unit: Unit,
-    ) {
+    pub(super) fn scale_bar(&mut self, [x, y]: [f64; 2], per_length: f64, room: f64, unit: Unit) {
         let length = round_length(room / per_length);
         let from = x - length * per_length;
         for (colour, stroke) in [("#fff", 6.0), ("#222", 2.5)] {

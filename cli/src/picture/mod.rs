@@ -46,7 +46,8 @@ pub(crate) struct Heading {
 /// If the picture cannot be made.
 pub(crate) fn sheet(
     facets: &[Facet],
-    (heading, legend): (&Heading, &Legend<'_>),
+    heading: &Heading,
+    legend: &Legend<'_>,
     unit: Unit,
     side: usize,
 ) -> Result<Vec<u8>, Failure> {
@@ -83,7 +84,9 @@ pub(crate) fn sheet(
 pub(crate) fn close_up(
     facets: impl Iterator<Item = Facet>,
     camera: &Camera,
-    (heading, scale, unit): (&Heading, &Scale, Unit),
+    heading: &Heading,
+    scale: &Scale,
+    unit: Unit,
     [columns, rows]: [usize; 2],
 ) -> Result<Vec<u8>, Failure> {
     const TITLE: usize = 52;
@@ -144,8 +147,8 @@ impl Sheet {
         let [left, top] = at.map(|at| at as f64);
         let [right, bottom] = [left + width as f64, top + height as f64];
         self.overlay.axes([left + 62.0, bottom - 62.0], camera);
-        let scale = (camera.pixels_per_length(size), 0.25 * width as f64);
-        self.overlay.scale_bar([right - 20.0, bottom - 18.0], scale, unit);
+        let [per_length, room] = [camera.pixels_per_length(size), 0.25 * width as f64];
+        self.overlay.scale_bar([right - 20.0, bottom - 18.0], per_length, room, unit);
     }
 
     fn png(mut self) -> Result<Vec<u8>, Failure> {

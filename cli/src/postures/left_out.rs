@@ -21,8 +21,10 @@ const RADIUS: f64 = 0.004;
 /// # Errors
 /// If the picture cannot be made.
 pub(super) fn picture(
-    (mesh, part): (&Mesh, &Path),
-    (tool, path): (&str, &ToolPath),
+    mesh: &Mesh,
+    part: &Path,
+    tool: &str,
+    path: &ToolPath,
 ) -> Result<Vec<u8>, Failure> {
     let plain = mesh.ids().map(|id| mesh.triangle(id));
     let plain = plain.map(|corners| Facet { corners, paint: Paint::Plain(NOTHING) });
@@ -44,7 +46,7 @@ pub(super) fn picture(
         title: format!("{}: points left out by the path", Escaped(&file_name(part))),
         subtitle: format!("{}", Escaped(tool)),
     };
-    sheet(&facets, (&heading, &Legend::Keys(&keys)), mesh.unit(), SIDE)
+    sheet(&facets, &heading, &Legend::Keys(&keys), mesh.unit(), SIDE)
 }
 
 /// Returns the triangles of an octahedron.

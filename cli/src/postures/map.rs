@@ -95,7 +95,7 @@ fn max_niceness(map: &PostureMap) -> Result<f64, Failure> {
 /// If it cannot be read, or is not the map's.
 pub(crate) fn read_part(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
     let mesh = part::mesh(part, map.identity().part.unit, "--part")?;
-    check_part(map, file, (&mesh, part))?;
+    check_part(map, file, &mesh, part)?;
     Ok(mesh)
 }
 
@@ -106,7 +106,8 @@ pub(crate) fn read_part(map: &PostureMap, file: &Path, part: &Path) -> Result<Me
 pub(crate) fn check_part(
     map: &PostureMap,
     file: &Path,
-    (mesh, part): (&Mesh, &Path),
+    mesh: &Mesh,
+    part: &Path,
 ) -> Result<(), Failure> {
     if PartFingerprint::of(mesh) == map.identity().part {
         return Ok(());

@@ -197,8 +197,8 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     };
     write_file(&arguments.output, text)?;
     if let Some(file) = &arguments.picture {
-        let part = (&mesh, &*arguments.part);
-        write_file(file, left_out::picture(part, (&tool.info().name, &path))?)?;
+        let picture = left_out::picture(&mesh, &arguments.part, &tool.info().name, &path)?;
+        write_file(file, picture)?;
     }
     let mut out = Output::lines();
     if json {

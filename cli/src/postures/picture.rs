@@ -27,7 +27,7 @@ pub(super) fn of(
     let facets: Vec<_> = facets(corners.into_iter(), &values, &scale).collect();
     let title = format!("{}: {}", Escaped(&file_name(part)), scale.quantity);
     let heading = Heading { title, subtitle: describe(map) };
-    sheet(&facets, (&heading, &Legend::Scale(&scale)), mesh.unit(), SIDE)
+    sheet(&facets, &heading, &Legend::Scale(&scale), mesh.unit(), SIDE)
 }
 
 /// Describes the tools and the rules of a map.

@@ -151,7 +151,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
         None => None,
     };
     if let Some((file, map)) = arguments.touched.as_ref().zip(map.as_ref()) {
-        return touched::record(file, (map, &mesh, &bvh), &tools, json);
+        return touched::record(file, map, &mesh, &bvh, &tools, json);
     }
     let mut count = Count::new(&mesh, &tools);
     let refinement = arguments.refine.map(|finest| match finest {

@@ -41,7 +41,9 @@ struct Summary {
 /// If the table cannot be read or does not fit the part and the tools, or if the map cannot be written.
 pub(super) fn record(
     file: &Path,
-    (map, mesh, bvh): (&PostureMap, &Mesh, &TriangleBvh),
+    map: &PostureMap,
+    mesh: &Mesh,
+    bvh: &TriangleBvh,
     tools: &[&dyn Tool],
     json: bool,
 ) -> Result<(), Failure> {

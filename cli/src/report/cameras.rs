@@ -31,7 +31,9 @@ impl Place {
     /// Returns the place of a finding; `None` if it has none, such as a limit of an axis.
     pub(super) fn of(
         finding: &JobFinding,
-        (inputs, checked, shown): (&Inputs, &JobReport<'_>, &[Shown]),
+        inputs: &Inputs,
+        checked: &JobReport<'_>,
+        shown: &[Shown],
         shapes: &[ToolShape],
     ) -> Option<Place> {
         match &finding.detail {

@@ -29,7 +29,7 @@ enum Series {
 ///
 /// # Errors
 /// If a chart cannot be drawn.
-pub(super) fn along(along: &Along, (unit, limit): (Unit, f64)) -> Result<Vec<Chart>, Failure> {
+pub(super) fn along(along: &Along, unit: Unit, limit: f64) -> Result<Vec<Chart>, Failure> {
     let at = |sample: &Sample, value: Option<f64>| (sample.location as f64, value);
     let line = |value: &dyn Fn(&Sample) -> Option<f64>| -> Vec<(f64, Option<f64>)> {
         along.samples.iter().map(|sample| at(sample, value(sample))).collect()

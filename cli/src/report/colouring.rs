@@ -27,7 +27,8 @@ pub(super) struct Layer {
 /// If the points of the body cannot be made ready for queries.
 pub(super) fn depths(
     checked: &JobReport<'_>,
-    (index, shown): (usize, &Shown),
+    index: usize,
+    shown: &Shown,
 ) -> Result<Layer, Failure> {
     let mut values = vec![None; shown.triangles.len()];
     let mut include = |triangle: usize, depth: f64| {
@@ -103,8 +104,10 @@ fn scale_of_lengths(
 /// Returns the values of a map at the centres of the pieces of a body's triangles.
 pub(super) fn of_map(
     index: usize,
-    (shown, mesh): (&Shown, &Mesh),
-    (values, scale): (MapValues, Scale),
+    shown: &Shown,
+    mesh: &Mesh,
+    values: &MapValues,
+    scale: Scale,
 ) -> Layer {
     let pieces = shown.corners().zip(&shown.sources);
     let values = pieces.map(|([a, b, c], source)| {

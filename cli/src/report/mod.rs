@@ -80,7 +80,7 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     };
     let inputs = Inputs::read(job)?;
     if let Some((map, file)) = &map {
-        check_part(map, file, (&inputs.bodies[0].mesh, &inputs.file.part))?;
+        check_part(map, file, &inputs.bodies[0].mesh, &inputs.file.part)?;
     }
     let mut times = vec![("reading the inputs", start.elapsed())];
     let check = Instant::now();
@@ -154,7 +154,7 @@ impl<'a> Content<'a> {
             .collect();
         let mut layers = Vec::new();
         for (index, body) in shown.iter().enumerate() {
-            let layer = colouring::depths(checked, (index, body))?;
+            let layer = colouring::depths(checked, index, body)?;
             if index == 0 || layer.scale.has_values {
                 layers.push(layer);
             }
@@ -166,8 +166,8 @@ impl<'a> Content<'a> {
                 .into_iter()
                 .chain(each)
             {
-                let values = quantity(map, by, tool)?;
-                let layer = colouring::of_map(0, (&shown[0], &bodies[0].mesh), values);
+                let (values, scale) = quantity(map, by, tool)?;
+                let layer = colouring::of_map(0, &shown[0], &bodies[0].mesh, &values, scale);
                 if layer.scale.has_values {
                     layers.push(layer);
                 }
@@ -187,7 +187,7 @@ impl<'a> Content<'a> {
         let places: Vec<Option<Place>> = checked
             .findings()
             .iter()
-            .map(|finding| Place::of(finding, (inputs, checked, &shown), &shapes))
+            .map(|finding| Place::of(finding, inputs, checked, &shown, &shapes))
             .collect();
         let pictures =
             Pictures { inputs, checked, shown: &shown, layers: &layers, shapes: &shapes };
@@ -199,7 +199,7 @@ impl<'a> Content<'a> {
             let Some(place) = place else { continue };
             let mut drawn = close_ups.iter().filter_map(|(drawn, _)| places[*drawn].as_ref());
             if close_ups.len() < CLOSE_UPS && !drawn.any(|drawn| drawn.shows(place)) {
-                close_ups.push((index, pictures.close_up((index, finding), place)?));
+                close_ups.push((index, pictures.close_up(index, finding, place)?));
             }
         }
         times.push(("pictures", start.elapsed()));
@@ -245,14 +245,15 @@ impl Pictures<'_> {
         let title = format!("{}: {}", Escaped(&body), layer.scale.quantity);
         let heading = Heading { title: title.clone(), subtitle: self.subtitle() };
         let legend = Legend::Scale(&layer.scale);
-        let png = sheet(&facets, (&heading, &legend), shown.unit, SIDE)?;
+        let png = sheet(&facets, &heading, &legend, shown.unit, SIDE)?;
         Ok(Picture { caption: title, png })
     }
 
     /// Draws the place of a finding with the tool.
     fn close_up(
         &self,
-        (index, finding): (usize, &JobFinding),
+        index: usize,
+        finding: &JobFinding,
         place: &Place,
     ) -> Result<Picture, Failure> {
         let body = place.body.unwrap_or(0);
@@ -275,8 +276,7 @@ impl Pictures<'_> {
             title: format!("{}. {} at {line}", index + 1, finding.rule),
             subtitle: self.title(),
         };
-        let png =
-            close_up(facets, &place.camera(), (&heading, &layer.scale, shown.unit), CLOSE_UP)?;
+        let png = close_up(facets, &place.camera(), &heading, &layer.scale, shown.unit, CLOSE_UP)?;
         Ok(Picture { caption: format!("{}. {line}: {}", index + 1, finding.text), png })
     }
 

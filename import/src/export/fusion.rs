@@ -23,7 +23,7 @@ pub(super) fn write(
         || Some(("form mill", json!({ "profile": profile(&section.closed_below_holder()) })));
     // The formats' types come first: their dimensions can be changed in the CAM system.
     for (kind, geometry) in [typed, form()].into_iter().flatten() {
-        let Ok(entry) = entry(tool, section, (kind, &geometry), number) else { continue };
+        let Ok(entry) = entry(tool, section, kind, &geometry, number) else { continue };
         if is_same("tool.json", &text(std::slice::from_ref(&entry)), &section.outline) {
             let mut gaps = Vec::new();
             if kind == "form mill" {
@@ -75,7 +75,8 @@ fn typed(cutter: &Type) -> Option<(&'static str, Value)> {
 fn entry(
     tool: &ToolInfo,
     section: &HalfSection,
-    (kind, own): (&str, &Value),
+    kind: &str,
+    own: &Value,
     number: usize,
 ) -> Result<Value, String> {
     let unit = if section.unit == Unit::Inch { "inches" } else { "millimeters" };

@@ -233,21 +233,22 @@ impl Cutter {
                 self.tooth(outline, radius, neck_diameter, crest, angle)
             }
             Shape::Thread { pitch, angle, teeth, crest } => {
-                self.teeth(outline, radius, (pitch, angle, teeth), crest)
+                self.teeth(outline, radius, pitch, angle, teeth, crest)
             }
             Shape::CornerChamfer { width, angle } => {
                 self.corner_chamfer(outline, radius, width, angle)
             }
             Shape::Face { corner, upper, half_angle, max_diameter } => {
-                self.face(outline, radius, [corner, upper], (half_angle, max_diameter))
+                self.face(outline, radius, [corner, upper], half_angle, max_diameter)
             }
             Shape::Barrel { flank, waist, lower, upper } => {
-                self.barrel(outline, radius, (flank, waist), [lower, upper])
+                self.barrel(outline, radius, flank, waist, [lower, upper])
             }
             Shape::Lens { face, corner } => self.lens(outline, radius, face, corner),
             Shape::Oval { ball, flank } => self.oval(outline, radius, ball, flank),
-            Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } => self
-                .segment_taper(outline, radius, (tip_diameter, half_angle), [lower, flank, upper]),
+            Shape::SegmentTaper { tip_diameter, lower, flank, upper, half_angle } => {
+                self.segment_taper(outline, radius, tip_diameter, half_angle, [lower, flank, upper])
+            }
             Shape::Form(ref segments) => {
                 form(outline, segments);
                 Ok(())

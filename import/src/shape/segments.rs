@@ -11,7 +11,8 @@ impl Cutter {
         outline: &mut Outline,
         radius: &Term,
         [corner, upper]: [f64; 2],
-        (half_angle, max_diameter): (f64, f64),
+        half_angle: f64,
+        max_diameter: f64,
     ) -> Result<(), ShapeError> {
         self.check_corner(corner)?;
         self.check_angle("taper angle", half_angle)?;
@@ -48,7 +49,8 @@ impl Cutter {
         &self,
         outline: &mut Outline,
         radius: &Term,
-        (flank, waist): (f64, f64),
+        flank: f64,
+        waist: f64,
         [lower, upper]: [f64; 2],
     ) -> Result<(), ShapeError> {
         positive("radius of the flank", flank)?;
@@ -214,7 +216,8 @@ impl Cutter {
         &self,
         outline: &mut Outline,
         radius: &Term,
-        (tip_diameter, half_angle): (f64, f64),
+        tip_diameter: f64,
+        half_angle: f64,
         [lower, flank, upper]: [f64; 3],
     ) -> Result<(), ShapeError> {
         self.check_tip(tip_diameter)?;

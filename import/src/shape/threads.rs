@@ -72,7 +72,9 @@ impl Cutter {
         &self,
         outline: &mut Outline,
         radius: &Term,
-        (pitch, angle, teeth): (f64, f64, u32),
+        pitch: f64,
+        angle: f64,
+        teeth: u32,
         crest: Crest,
     ) -> Result<(), ShapeError> {
         if !(0.0..180.0).contains(&angle) || angle == 0.0 {

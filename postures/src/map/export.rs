@@ -75,7 +75,7 @@ impl PostureMap {
             let row = MapRow::joined(&pieces, self.identity.keep);
             lines(&row).try_for_each(|(record, access)| {
                 let reached = access.and_then(|access| area_fraction(&pieces, access.tool));
-                self.line(out, triangle, record, (access, reached)).map_err(export)
+                self.line(out, triangle, record, access, reached).map_err(export)
             })
         })?;
         out.flush().map_err(export)
@@ -86,7 +86,8 @@ impl PostureMap {
         out: &mut impl Write,
         triangle: TriangleId,
         record: Option<&PostureRecord>,
-        (access, area_reached): (Option<&Accessibility>, Option<f64>),
+        access: Option<&Accessibility>,
+        area_reached: Option<f64>,
     ) -> io::Result<()> {
         let tool = record.map(|record| record.tool).or(access.map(|access| access.tool));
         let name = tool.map_or("", |tool| self.name(tool));

@@ -53,7 +53,8 @@ struct ReachableDirections<'a> {
 /// Returns the directions from which a sweep reached the triangle of a point; `None` if there is none.
 fn reachable_directions<'a>(
     mesh: &Mesh,
-    (directions, access): (&Directions, &'a [Vec<u64>]),
+    directions: &Directions,
+    access: &'a [Vec<u64>],
     place: &'a SlicePoint,
 ) -> Option<ReachableDirections<'a>> {
     let normal = mesh.normal(place.triangle)?;
@@ -90,14 +91,15 @@ impl PathPlanner<'_> {
     pub(super) fn runs(
         &mut self,
         mesh: &Mesh,
-        (directions, access): (&Directions, &[Vec<u64>]),
+        directions: &Directions,
+        access: &[Vec<u64>],
         line: &[SlicePoint],
     ) -> (Vec<PostureRun>, Vec<Point3<f64>>) {
         let mut unreached = Vec::new();
         let reached: Vec<Option<ReachableDirections<'_>>> = line
             .iter()
             .map(|place| {
-                let reachable = reachable_directions(mesh, (directions, access), place);
+                let reachable = reachable_directions(mesh, directions, access, place);
                 unreached.extend(reachable.is_none().then_some(place.point));
                 reachable
             })

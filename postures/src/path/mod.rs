@@ -241,7 +241,7 @@ impl PathRequest<'_> {
             };
             let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
                 planner.validator.certifier.clear_caches();
-                (*plane, planner.runs(mesh, (directions, accessibility), line))
+                (*plane, planner.runs(mesh, directions, accessibility, line))
             };
             lines.iter().map(run).collect::<Vec<_>>()
         });

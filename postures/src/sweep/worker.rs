@@ -63,7 +63,7 @@ impl<'a> Worker<'a> {
             for (surface_point, row) in points.iter().zip(&mut rows) {
                 stats.triangles += 1;
                 let access =
-                    candidate.access(self.sweep, *surface_point, (&mut row.best, &mut stats));
+                    candidate.access(self.sweep, *surface_point, &mut row.best, &mut stats);
                 row.access.push(access);
             }
         }
@@ -104,7 +104,8 @@ impl<'a> CandidateTool<'a> {
         &mut self,
         sweep: &PostureSweep<'a>,
         surface_point: Option<SurfacePoint>,
-        (best, stats): (&mut Vec<PostureRecord>, &mut SweepStats),
+        best: &mut Vec<PostureRecord>,
+        stats: &mut SweepStats,
     ) -> Accessibility {
         let mut directions = vec![0; sweep.directions.words()];
         stats.not_facing += sweep.directions.list().len() as u64;

@@ -141,11 +141,11 @@ impl<'a> ApproachSearch<'a> {
             let over_motion = match (&step.path, last) {
                 // An ambiguous motion is a finding; only its end is checked.
                 (MovePath::Ambiguous(..), _) => Some(bound),
-                (MovePath::Box(path), _) => self.around(path, (step.line, MAX_HALVINGS)),
+                (MovePath::Box(path), _) => self.around(path, step.line, MAX_HALVINGS),
                 (_, None) => Some(bound),
                 (path, Some((first, _))) => {
                     let span = Span { times: [0.0, 1.0], lower_bounds: [first, bound], max_travel };
-                    self.span(path, span, (step.line, MAX_HALVINGS))
+                    self.span(path, span, step.line, MAX_HALVINGS)
                 }
             };
             let clearance = over_motion.map(|bound| bound.min(clearance));
@@ -155,7 +155,7 @@ impl<'a> ApproachSearch<'a> {
     }
 
     /// Returns a lower bound on the distance over a box of poses, as [`ApproachSearch::span`] does.
-    fn around(&mut self, path: &RapidBox, (line, halvings): (usize, u32)) -> Option<f64> {
+    fn around(&mut self, path: &RapidBox, line: usize, halvings: u32) -> Option<f64> {
         let middle = path.pose(0.5);
         let low = self.query(&middle, line);
         let size = middle.tip().coords.norm() + path.radius() + low;
@@ -168,8 +168,8 @@ impl<'a> ApproachSearch<'a> {
         }
         let halvings = halvings.checked_sub(1)?;
         let [one, other] = path.halves();
-        let one = self.around(&one, (line, halvings))?;
-        Some(one.min(self.around(&other, (line, halvings))?))
+        let one = self.around(&one, line, halvings)?;
+        Some(one.min(self.around(&other, line, halvings)?))
     }
 
     /// Returns the closest approach of the motions that were added.
@@ -210,7 +210,7 @@ impl<'a> ApproachSearch<'a> {
 
     /// Returns a lower bound on the distance over a span of a motion, above the tool's diameter and within a fraction
     /// of the least distance; `None` if that is not proved.
-    fn span(&mut self, path: &MovePath, span: Span, (line, halvings): (usize, u32)) -> Option<f64> {
+    fn span(&mut self, path: &MovePath, span: Span, line: usize, halvings: u32) -> Option<f64> {
         let Span { times: [from, to], lower_bounds: [first, last], max_travel } = span;
         // At any time the distance is at least that at either end, less the travel from there.
         let rounding = 4.0 * f64::EPSILON * (first.abs() + last.abs() + max_travel);
@@ -238,8 +238,8 @@ impl<'a> ApproachSearch<'a> {
         };
         let after =
             Span { times: [middle, to], lower_bounds: [lower_bound, last], max_travel: travels[1] };
-        let before = self.span(path, before, (line, halvings))?;
-        Some(before.min(self.span(path, after, (line, halvings))?))
+        let before = self.span(path, before, line, halvings)?;
+        Some(before.min(self.span(path, after, line, halvings)?))
     }
 }
 

@@ -108,14 +108,15 @@ impl Reader {
         if matches!(word.as_str(), "GOTO" | "FROM") && !self.finished {
             self.change_tool()?;
         }
-        self.word(line, text, (&word, rest), is_last).map_err(|fault| (line, fault))
+        self.word(line, text, &word, rest, is_last).map_err(|fault| (line, fault))
     }
 
     fn word(
         &mut self,
         line: usize,
         text: &str,
-        (word, rest): (&str, &str),
+        word: &str,
+        rest: &str,
         is_last: bool,
     ) -> Result<(), ProgramFault> {
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");

@@ -157,7 +157,7 @@ impl Sampler<'_> {
             if point.depth > self.tolerance {
                 let surface = info.regions[point.region].surface;
                 let place = || tree.point(point.slot);
-                contacts.record(surface, (point.slot, tree.slots()), (time, point.depth), place);
+                contacts.record(surface, point.slot, tree.slots(), time, point.depth, place);
             }
         }
         if is_last && !contacts.is_empty() {

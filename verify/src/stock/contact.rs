@@ -70,8 +70,10 @@ impl OpenContacts {
     pub(super) fn record(
         &mut self,
         surface: SurfaceId,
-        (slot, slots): (usize, usize),
-        (time, depth): (f64, f64),
+        slot: usize,
+        slots: usize,
+        time: f64,
+        depth: f64,
         point: impl FnOnce() -> Point3<f64>,
     ) {
         let position = self.surfaces.iter().position(|open| open.surface == surface);

@@ -17,7 +17,7 @@ pub(super) fn section(content: &Content<'_>) -> Result<Markup, Failure> {
         let tool = &job.tools[along.tool];
         let name = plain(&tool.tool.info().name);
         let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
-        let charts = charts::along(along, (job.unit(), job.tolerance))?;
+        let charts = charts::along(along, job.unit(), job.tolerance)?;
         parts.push(html! {
             h3 { (number) (name) }
             @if charts.is_empty() {

@@ -81,7 +81,8 @@ fn check(
     stock: &mut Stock,
     (tool, depth): ToolDepth<'_>,
     path: &Path,
-    (mode, tolerance): (MotionMode, f64),
+    mode: MotionMode,
+    tolerance: f64,
     tally: &mut Tally,
 ) {
     let before = nodes(stock);
@@ -193,7 +194,7 @@ fn random_motions_agree_with_brute_force() {
             let path = Path { tips: [from, 2.0 * aside - from], axes: [axis, turned] };
             let mode = if k % 4 == 3 { MotionMode::Rapid } else { MotionMode::Feed };
             let tolerance = [0.0, 0.05, 0.5][k % 3];
-            check(&mut stock, (tool, depth), &path, (mode, tolerance), &mut tally);
+            check(&mut stock, (tool, depth), &path, mode, tolerance, &mut tally);
         }
     }
     let Tally { motions, removed, contacts, undecided } = tally;
