@@ -339,7 +339,7 @@ impl Sources {
         (shown, path): (String, PathBuf),
     ) -> io::Result<&Source> {
         if let Some(files) = self.main().files.clone() {
-            return self.read_from(&files, by, (shown, &path));
+            return self.read_from(&files, by, shown, &path);
         }
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let path_on_disk = real(&path);
@@ -358,7 +358,8 @@ impl Sources {
         &mut self,
         files: &BTreeMap<PathBuf, String>,
         by: Span,
-        (shown, path): (String, &Path),
+        shown: String,
+        path: &Path,
     ) -> io::Result<&Source> {
         let path = without_steps_up(path).unwrap_or_default();
         let known = self.0.iter().position(|source| source.path() == Some(&*path));

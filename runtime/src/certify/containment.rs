@@ -113,7 +113,8 @@ impl QuerySetting<'_> {
     /// surface's limit by more than `tolerance`, in the tool's unit.
     pub(crate) fn containment(
         &self,
-        (info, core_points): (&ToolInfo, &mut CorePoints),
+        info: &ToolInfo,
+        core_points: &mut CorePoints,
         pose: &Pose,
         tolerance: f64,
     ) -> Containment {
@@ -136,7 +137,8 @@ impl QuerySetting<'_> {
     /// Returns whether the restricted interior is one connected piece.
     pub(crate) fn is_one_piece(
         &self,
-        (info, core_points): (&ToolInfo, &mut CorePoints),
+        info: &ToolInfo,
+        core_points: &mut CorePoints,
         tolerance: f64,
     ) -> bool {
         core_points

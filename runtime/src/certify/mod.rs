@@ -262,8 +262,8 @@ impl<'a> Certifier<'a> {
     /// Locates the restricted interior of the tool relative to the part: the points deeper than is
     /// [allowed](Certifier::with_allowance). The answer holds only if [`Certifier::touches`] finds no triangle in contact.
     pub fn containment(&mut self, pose: &Pose) -> Containment {
-        let core_points = (self.info, &mut self.core_points);
-        self.setting.containment(core_points, pose, 4.0 * self.setting.error)
+        let error = 4.0 * self.setting.error;
+        self.setting.containment(self.info, &mut self.core_points, pose, error)
     }
 
     /// Returns whether the whole tool is inside the material and touches no triangle, whatever the allowances.
@@ -274,7 +274,7 @@ impl<'a> Certifier<'a> {
             ContactVerdict::Yes(_) => Some(false),
             ContactVerdict::Undecided(_) => None,
             ContactVerdict::No => {
-                match setting.containment((info, whole_core_points), pose, 4.0 * setting.error) {
+                match setting.containment(info, whole_core_points, pose, 4.0 * setting.error) {
                     Containment::Inside(_) => Some(true),
                     Containment::Outside => Some(false),
                     Containment::Unknown | Containment::Undecided => None,
@@ -319,7 +319,7 @@ impl<'a> Certifier<'a> {
     /// Returns whether the restricted interior is one connected piece: the points deeper than their limit by more
     /// than twice the rounding error, as in [`Certifier::is_too_deep`].
     pub fn is_one_piece(&mut self) -> bool {
-        self.setting.is_one_piece((self.info, &mut self.core_points), self.setting.error)
+        self.setting.is_one_piece(self.info, &mut self.core_points, self.setting.error)
     }
 
     /// Resets the starting triangle, as if no query had been made. Answers within the tolerance may depend on it, so equal

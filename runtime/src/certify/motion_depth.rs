@@ -127,7 +127,7 @@ impl Certifier<'_> {
                 MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
-            None => match setting.containment((info, core_points), &motion.pose(0.0), tolerance) {
+            None => match setting.containment(info, core_points, &motion.pose(0.0), tolerance) {
                 Containment::Inside(surface) => MotionVerdict::Inside(surface),
                 Containment::Outside => MotionVerdict::Clear,
                 Containment::Unknown => MotionVerdict::SurfaceOnly,
@@ -335,7 +335,7 @@ impl MotionSearch<'_, '_> {
     /// Returns the result if no triangle is too deep.
     fn within(&mut self) -> MotionDepth {
         let MotionSearch { setting, info, motion, tolerance, .. } = *self;
-        match setting.containment((info, self.core_points), &motion.pose(0.0), tolerance) {
+        match setting.containment(info, self.core_points, &motion.pose(0.0), tolerance) {
             Containment::Inside(_) => MotionDepth::Inside,
             Containment::Outside | Containment::Unknown => MotionDepth::Within,
             Containment::Undecided => MotionDepth::Undecided(0.0),

@@ -122,8 +122,7 @@ impl Faces {
                 if generation == self.generation {
                     max_depth = max_depth.max(depth);
                 } else {
-                    self.batch
-                        .rectangle(&of.bvh.coplanar_faces.faces[*face as usize], (pose, *face));
+                    self.batch.rectangle(&of.bvh.coplanar_faces.faces[*face as usize], pose, *face);
                 }
             }
             if self.batch.len() == 0 {
@@ -298,7 +297,7 @@ impl SearchState {
         self.batch.turn(&self.view);
         for lane in 0..self.batch.len() {
             if self.search.spend(0.0) {
-                self.search_triangle(of, query, (lane, Side::Outside));
+                self.search_triangle(of, query, lane, Side::Outside);
             }
         }
     }
@@ -331,7 +330,7 @@ impl SearchState {
         for lane in 0..self.batch.len() {
             let bound = self.batch.bounds[lane];
             if bound > self.search.threshold() && self.search.spend(bound) {
-                self.search_triangle(of, query, (lane, Side::Inside));
+                self.search_triangle(of, query, lane, Side::Inside);
             }
         }
     }
@@ -341,7 +340,8 @@ impl SearchState {
         &mut self,
         of: &QuerySetting<'_>,
         query: &DepthQuery,
-        (lane, side): (usize, Side),
+        lane: usize,
+        side: Side,
     ) {
         let (corners, index) = (self.batch.corners(lane), self.batch.index(lane));
         let section = match &of.tool_model {

@@ -245,7 +245,7 @@ impl Output {
 /// Emits the evaluators for one point.
 fn scalar(tool: &CheckedTool) -> TokenStream {
     let mut all =
-        of_tests(tool, ("contains", &quote! { bool }), &tool.plan.inside, &|code, inside| {
+        of_tests(tool, "contains", &quote! { bool }, &tool.plan.inside, &|code, inside| {
             code.word(if *inside { "true" } else { "false" });
         });
     let owner = |code: &mut Tokens, owner: &Option<usize>| {
@@ -256,7 +256,7 @@ fn scalar(tool: &CheckedTool) -> TokenStream {
             None => code.word("None"),
         };
     };
-    all.extend(of_tests(tool, ("owner", &quote! { Option<usize> }), &tool.plan.owner, &owner));
+    all.extend(of_tests(tool, "owner", &quote! { Option<usize> }, &tool.plan.owner, &owner));
     for output in &OUTPUTS {
         let tree = tool
             .plan
@@ -327,7 +327,8 @@ fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
 /// Emits a function of a tree that needs nothing except its tests.
 fn of_tests<L>(
     tool: &CheckedTool,
-    (name, result): (&str, &TokenStream),
+    name: &str,
+    result: &TokenStream,
     tree: &Tree<L>,
     leaf: &impl Fn(&mut Tokens, &L),
 ) -> TokenStream {

@@ -104,7 +104,7 @@ impl Linter<'_> {
         for (quantity, id, span) in self.laws(owner) {
             if !self.evaluator.get(id).is_finite() {
                 let diagnostic =
-                    self.not_finite(owner, (quantity, id, span), self.format_point(point));
+                    self.not_finite(owner, quantity, id, span, self.format_point(point));
                 self.report(diagnostic);
             }
         }
@@ -114,7 +114,9 @@ impl Linter<'_> {
     pub(super) fn not_finite(
         &self,
         owner: usize,
-        (quantity, id, span): (&'static str, Id, Span),
+        quantity: &'static str,
+        id: Id,
+        span: Span,
         place: String,
     ) -> Diagnostic {
         let subject = Subject::Quantity(quantity, self.model.regions[owner].name.clone());

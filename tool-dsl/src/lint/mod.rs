@@ -262,7 +262,7 @@ impl<'m> Linter<'m> {
         if let Some((first, second)) = overlap {
             let (a, b) = (&self.model.regions[first], &self.model.regions[second]);
             let diagnostic =
-                overlapping(&a.name, (&b.name, b.span), self.format_point(point), a.span);
+                overlapping(&a.name, &b.name, b.span, self.format_point(point), a.span);
             self.report(diagnostic);
         }
         let owner = owner?;
@@ -286,7 +286,7 @@ impl<'m> Linter<'m> {
         for (quantity, id, span, slack) in laws {
             let value = get(id);
             let diagnostic = if !value.is_finite() {
-                self.not_finite(owner, (quantity, id, span), location)
+                self.not_finite(owner, quantity, id, span, location)
             } else if value < -slack {
                 let (region, value) = (name.clone(), FormattedNumber(value));
                 Diagnostic::new(
@@ -348,7 +348,7 @@ impl<'m> Linter<'m> {
                 [first, more @ ..] if self.holds[index] > 2 => {
                     // This error replaces the reports of its overlaps.
                     self.found.retain(|diagnostic| diagnostic.span != region.span);
-                    never_wins(&region.name, region.span, (&first.name, first.span), more.len())
+                    never_wins(&region.name, region.span, &first.name, first.span, more.len())
                 }
                 _ => {
                     let kind =

@@ -103,7 +103,7 @@ impl ProfileFeet {
                     break;
                 }
                 let Some(below) = one_side(cover.sign_at_claim(claim, *curve)) else { continue };
-                if let Some(min_distance) = self.min_distance((owner, end), (*curve, below), cell) {
+                if let Some(min_distance) = self.min_distance(owner, end, *curve, below, cell) {
                     overshoot = overshoot.min(-min_distance);
                 }
             }
@@ -119,8 +119,10 @@ impl ProfileFeet {
     /// line, or a conic that does not cross the normal.
     fn min_distance(
         &mut self,
-        (owner, end): (usize, usize),
-        (curve, below): (CurveIndex, bool),
+        owner: usize,
+        end: usize,
+        curve: CurveIndex,
+        below: bool,
         cell: Cell,
     ) -> Option<f64> {
         let (curves, ends) = (&self.curves, &self.ends);

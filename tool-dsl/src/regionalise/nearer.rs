@@ -56,11 +56,11 @@ impl Section<'_> {
             }
             (Kind::Arc(arc), Kind::Line(line)) => {
                 let corner = self.joint(this, other);
-                self.compare_arc_and_line(graph, arc, line, (corner, true))?
+                self.compare_arc_and_line(graph, arc, line, corner, true)?
             }
             (Kind::Line(line), Kind::Arc(arc)) => {
                 let corner = self.joint(this, other);
-                self.compare_arc_and_line(graph, arc, line, (corner, false))?
+                self.compare_arc_and_line(graph, arc, line, corner, false)?
             }
             (Kind::Arc(arc), Kind::Point(q)) if self.is_accurate_by_squares(arc, q) => {
                 compare_arc_and_point(graph, arc, q, true)?
@@ -143,7 +143,8 @@ impl Section<'_> {
         graph: &mut Graph,
         arc: &Circle,
         line: usize,
-        (joint, nearer): (Option<&ExactPoint>, bool),
+        joint: Option<&ExactPoint>,
+        nearer: bool,
     ) -> Option<Test> {
         let depth = self.outline[line].depth(graph)?;
         let radius = graph.number(arc.radius.clone());
@@ -237,7 +238,7 @@ fn ordered(graph: &mut Graph, a: Id, b: Id, forward: bool) -> Id {
 }
 
 /// Returns the condition `edge ≤ 0` or `a ≤ b`; if not `positive`, `edge ≥ 0` and `a ≥ b`.
-fn any_or_all(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
+fn any_or_all(graph: &mut Graph, edge: Id, a: Id, b: Id, positive: bool) -> Test {
     let curve = ordered(graph, a, b, positive);
     let edge = if positive { edge } else { graph.neg(edge) };
     let tests = vec![Test::AtMost(edge), Test::AtMost(curve)];
@@ -268,7 +269,7 @@ fn compare_arc_and_point(
     let square = &arc.radius * &arc.radius;
     let linear_difference = linear_difference(graph, &arc.centre, q, &square)?;
     let (left, right) = comparison_of_squares(graph, linear_difference, &arc.radius, &arc.centre);
-    Some(any_or_all(graph, linear_difference, (left, right), nearer))
+    Some(any_or_all(graph, linear_difference, left, right, nearer))
 }
 
 /// Returns the two sides of `lead² ≤ 4 t² |p - c|²`.
@@ -298,7 +299,7 @@ fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test
             linear_difference(graph, &first.centre, &second.centre, &(&sum * &sum))?;
         let (left, right) = comparison_of_squares(graph, linear_difference, &sum, &first.centre);
         // The first is nearer where L ≤ 0 or L² ≤ 4 T² A.
-        return Some(any_or_all(graph, linear_difference, (left, right), this.convex));
+        return Some(any_or_all(graph, linear_difference, left, right, this.convex));
     }
     let swapped = this.radius > other.radius;
     let (first, second) = if swapped { (other, this) } else { (this, other) };
@@ -315,5 +316,5 @@ fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test
         }));
     }
     let (left, right) = comparison_of_squares(graph, linear_difference, &difference, &first.centre);
-    Some(any_or_all(graph, linear_difference, (left, right), positive))
+    Some(any_or_all(graph, linear_difference, left, right, positive))
 }

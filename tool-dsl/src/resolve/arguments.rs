@@ -23,7 +23,8 @@ pub(super) struct Argument<'t> {
 /// Evaluates the arguments of a macro's call or of a command line: constants without names, in the file's own unit.
 pub(super) fn from_outside<'t>(
     settings: &'t [Definition],
-    (domain, unit): (Domain, Unit),
+    domain: Domain,
+    unit: Unit,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<Argument<'t>> {
     read_arguments(settings, &mut Lowering::new(domain, unit), diagnostics, |mut diagnostic| {

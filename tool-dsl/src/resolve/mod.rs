@@ -49,7 +49,7 @@ pub fn resolve(
 ) -> Result<Model, Reported> {
     let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = arguments::from_outside(given, (tool.domain, unit), diagnostics);
+    let given = arguments::from_outside(given, tool.domain, unit, diagnostics);
     arguments::report_unknown_params(tool, &given, diagnostics);
     constants(tool, &given, &mut lowering, diagnostics);
     let misplaced_item = match tool.domain {

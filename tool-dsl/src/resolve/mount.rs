@@ -151,9 +151,9 @@ impl Mounting<'_> {
             Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
-            self.diagnostics.extend(assembly.clamped_edge((mount, &at), &part));
+            self.diagnostics.extend(assembly.clamped_edge(mount, &at, &part));
             assembly
-                .join_part((last, &height), (mount, &at), part)
+                .join_part(last, &height, mount, &at, part)
                 .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
             (last, height) = (mount, at);
         }
@@ -373,11 +373,7 @@ impl MountedPart {
     }
 
     /// Returns a warning if a part that does not cut begins below the end of a cutting surface.
-    fn clamped_edge(
-        &self,
-        (mount, at): (&Mount, &Number),
-        part: &MountedPart,
-    ) -> Option<Diagnostic> {
+    fn clamped_edge(&self, mount: &Mount, at: &Number, part: &MountedPart) -> Option<Diagnostic> {
         if part.surfaces.iter().any(|surface| surface.cutting) {
             return None;
         }
@@ -395,8 +391,10 @@ impl MountedPart {
     /// Joins another part onto this one at a plane.
     fn join_part(
         &mut self,
-        (last, height): (&Mount, &Number),
-        (mount, at): (&Mount, &Number),
+        last: &Mount,
+        height: &Number,
+        mount: &Mount,
+        at: &Number,
         mut part: MountedPart,
     ) -> Result<(), Diagnostic> {
         let span = mount.position.as_ref().map_or(mount.span, |at| at.span);

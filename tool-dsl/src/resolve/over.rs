@@ -244,8 +244,8 @@ impl Conditions<'_> {
             let (a, b) = (&a.name, &b.name);
             let is_left = pairs.iter().any(|(_, condition)| *condition == second);
             diagnostics.push(match is_left {
-                true => overlapping(&a.text, (&b.text, b.span), formatted(p), a.span),
-                false => never_wins(&b.text, b.span, (&a.text, a.span), 0),
+                true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
+                false => never_wins(&b.text, b.span, &a.text, a.span, 0),
             });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
@@ -323,12 +323,7 @@ impl Conditions<'_> {
 }
 
 /// Returns the warning or error for a region that is entirely covered by one or more regions listed before it.
-pub(crate) fn never_wins(
-    name: &str,
-    span: Span,
-    (first, at): (&str, Span),
-    more: usize,
-) -> Diagnostic {
+pub(crate) fn never_wins(name: &str, span: Span, first: &str, at: Span, more: usize) -> Diagnostic {
     Diagnostic::new(
         span,
         CheckKind::CoveredRegion { region: name.to_owned(), covering: first.to_owned(), more },
@@ -339,7 +334,8 @@ pub(crate) fn never_wins(
 /// Returns the error for two regions that have points in common, for instance at `location`. The first region is at `at`.
 pub(crate) fn overlapping(
     first: &str,
-    (second, span): (&str, Span),
+    second: &str,
+    span: Span,
     location: String,
     at: Span,
 ) -> Diagnostic {

@@ -40,7 +40,7 @@ impl Batch {
     }
 
     /// Appends both halves of a face's rectangle. `index` is the face's index in its list.
-    pub(crate) fn rectangle(&mut self, face: &Face, (pose, index): (&Pose, u32)) {
+    pub(crate) fn rectangle(&mut self, face: &Face, pose: &Pose, index: u32) {
         let [a, b, c, d] = face.corners;
         for half in [[a, b, c], [a, c, d]] {
             let lane = self.indices.len();

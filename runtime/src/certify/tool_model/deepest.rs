@@ -78,7 +78,7 @@ impl Field<'_> {
             {
                 best = Some((middle, depth));
             }
-            if self.passes(&mut scratch, owners, middle, (reach, min_depth)) {
+            if self.passes(&mut scratch, owners, middle, reach, min_depth) {
                 continue;
             }
             // The depth of a point outside is minus a lower bound of its distance, and depth grows from the surface

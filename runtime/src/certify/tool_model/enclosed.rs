@@ -73,7 +73,8 @@ impl Field<'_> {
         scratch: &mut Scratch,
         owners: &Owners,
         point: Point,
-        (displacement, limit): (f64, f64),
+        displacement: f64,
+        limit: f64,
     ) -> bool {
         self.about(scratch, point, displacement).is_some_and(|found| {
             let deep = found.max_depth() + self.error > limit;

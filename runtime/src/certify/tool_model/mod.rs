@@ -92,9 +92,9 @@ impl ToolModel<'_> {
         }
         match self {
             ToolModel::Profile(section) => {
-                section.far_from(owners, rectangle, (meridian_point(point), depth, displacement))
+                section.far_from(owners, rectangle, meridian_point(point), depth, displacement)
             }
-            ToolModel::Field(field) => field.passes(scratch, owners, point, (displacement, limit)),
+            ToolModel::Field(field) => field.passes(scratch, owners, point, displacement, limit),
         }
     }
 }

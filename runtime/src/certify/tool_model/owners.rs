@@ -224,7 +224,7 @@ impl Owners {
             }
             let (middle, reach) = rectangle.ball();
             let corners = rectangle.corners();
-            if !self.may_peak(section, (middle, reach), &corners, others) {
+            if !self.may_peak(section, middle, reach, &corners, others) {
                 continue;
             }
             if reach <= min_size {
@@ -243,7 +243,8 @@ impl Owners {
     fn may_peak(
         &self,
         section: &Section,
-        (middle, reach): (MeridianPoint, f64),
+        middle: MeridianPoint,
+        reach: f64,
         corners: &[MeridianPoint],
         others: bool,
     ) -> bool {

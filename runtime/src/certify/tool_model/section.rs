@@ -193,7 +193,9 @@ impl Section {
         &self,
         owners: &Owners,
         rectangle: &[MeridianPoint; 4],
-        (p, depth, displacement): (MeridianPoint, f64, f64),
+        p: MeridianPoint,
+        depth: f64,
+        displacement: f64,
     ) -> bool {
         !owners.all()
             && self.owned(owners).all(|owner| {

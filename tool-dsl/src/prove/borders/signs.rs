@@ -18,7 +18,7 @@ impl BorderProver<'_> {
         let mut signs = cover.sign_at_claim(claim, curve);
         for (other, side) in &claim.signs {
             if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
-                signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
+                signs &= self.implied(*other, *side & NEGATIVE != 0, curve);
             }
         }
         if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
@@ -99,7 +99,7 @@ impl BorderProver<'_> {
 
     /// Returns the signs that a curve can have on one side of another, if one of them is straight and the two
     /// do not cross.
-    fn implied(&mut self, (known, below): (CurveIndex, bool), curve: CurveIndex) -> Signs {
+    fn implied(&mut self, known: CurveIndex, below: bool, curve: CurveIndex) -> Signs {
         let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
         match (self.conic_sign(known, curve), self.conic_sign(curve, known)) {
             (Some((positive, is_below)), _) if is_below == below => side(positive),
