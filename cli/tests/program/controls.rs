@@ -892,7 +892,7 @@ fn other_words_on_which_controls_differ_are_refused() {
     let begin = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\n";
     for (blocks, word) in [
         ("G99 G81 X4. Z0.5 R2.\nG20 X0.1", "coordinates, unit or tool have changed"),
-        ("G0 X12. Y0.\nG3 X12. Y0.0004 I-2. J0.", "less than an increment from its start"),
+        ("G0 X12. Y0.\nG3 X12. Y0.0004 I-2. J0.", "less than two increments from its start"),
         ("T1 M6\nS900 M3\nG91 G43 H1 Z20.", "the length offset has changed"),
         ("/1 G0 X5.\n/2 G0 X6.", "optional blocks have several switches"),
         ("G0 X0. Y0. Z20.\nG2 X20.02 Y0. I10. J0.", "the radii of an arc differ"),
@@ -1054,6 +1054,13 @@ fn words_at_which_a_control_stops_are_refused() {
             "X-12.\nX0.\nG1 Y0.\nG2 X.0004 Y.0104 R-5.",
             "has more digits than the least increment",
         ),
+        (
+            &FANUC,
+            "X1.0004 Y-0.0004\nG2 X0.9996 Y0.0004 I5. J5.",
+            "less than two increments from its start",
+        ),
+        (&FANUC, "G0 X3.33333\nG92 X0", "G92 X0 while it or the position is no multiple"),
+        (&SIEMENS, "G52 Z-3.\nG91 G28 Z0.", "shift or length has changed, which Sinumerik adds"),
         (&HAAS, "M30 M9", "M30 while its block has another M word"),
         (&SIEMENS, "G20\nG91 G1 X.0001", "no multiple of the least increment"),
         (&FANUC, "S900 M4\nG86 X4. Z1. R2. P0\nG80", "which it does not do after it on Fanuc"),
@@ -1091,6 +1098,8 @@ fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {
     scene("G234 X-6. Y0. Z30.").gives(&HAAS, 2, &["G234 needs H in its block"]);
     let again = "G43.4 H1\nX-6. Y0. Z30.\nG43 H1";
     scene(again).gives(&FANUC, 2, &["G43 while tool centre point control is on"]);
+    let tie = "G68.2 X0 Y0 Z0 I90. J25. K0\nG53.1\nX-6. Y0. Z30.\nG69";
+    scene(tie).gives(&FANUC, 2, &["two positions of the rotary axes give the tool axis"]);
     let in_feed = "a motion at feed rate is in force, at which Fanuc turns the axes";
     scene(&format!("G1 Z50.\n{plane}\nG53.1")).gives(&FANUC, 2, &[in_feed]);
 }
@@ -1103,6 +1112,14 @@ fn words_after_trafoof_need_a_work_offset_as_positions_do() {
         let scene = Scene::new(&format!("{start}\n{word}\nG54")).placed();
         let scene = scene.with("machine = \"A-C trunnion\"\nanyway = true");
         scene.gives_natively(2, &["since TRAORI and TRAFOOF deselect it"]);
+    }
+    // Parameters are no comment.
+    for (word, status) in [("TRAORI(1)", 0), ("TRAORI(1,0,0,1,30,0)", 2), ("TRAORI(2)", 2)] {
+        let blocks = format!(
+            "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\n{word}\nG54\nX-5.\nTRAFOOF\nG54\nG0 Z60."
+        );
+        let scene = Scene::new(&blocks).placed();
+        scene.with("machine = \"A-C trunnion\"\nanyway = true").gives_natively(status, &[]);
     }
     let blocks = "T1 D1 M6\nS9000 M3\nG0 X-6. Y0. Z20. A0. C0.\nTRAORI\nG54\nG18 G0 X-5.";
     let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"\nanyway = true");

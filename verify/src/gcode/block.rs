@@ -235,6 +235,14 @@ impl Block {
         if self.keyword.replace(keyword).is_some() {
             return Err(GcodeFault::Repeated { word: 'T' });
         }
+        // Parameters of the transformation, and no comment: offsets of the axes, or another data set than the first.
+        if whole.peek() == Some(b'(') {
+            let parameters = whole.take_until(')').ok_or(GcodeFault::OpenComment)?;
+            if !matches!(parameters[1..].trim(), "" | "1") {
+                let word = super::unquoted(&format!("{upper}{parameters})"));
+                return Err(GcodeFault::UnknownWord { word });
+            }
+        }
         *cursor = whole;
         Ok(())
     }

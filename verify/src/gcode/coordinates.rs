@@ -583,6 +583,7 @@ impl Control {
         if self.modal.incremental {
             return Err(combination(code, "G91 is in force", "write G90 before"));
         }
+        self.check_preset(block)?;
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
             return Err(GcodeFault::Missing { word: code.to_string(), needed: "an axis word" });

@@ -353,10 +353,11 @@ impl Control {
             return Ok(());
         };
         let chord = (u - x).hypot(v - y);
-        if chord > 0.0 && chord < self.modal.millimetres(self.modal.increment()) {
+        let [across, along] = [(u - x).abs(), (v - y).abs()];
+        if chord > 0.0 && across.max(along) < 2.0 * self.modal.millimetres(self.modal.increment()) {
             return Err(GcodeFault::Combination {
                 word: "an arc".to_owned(),
-                condition: "its end is less than an increment from its start, and so the same where coordinates are rounded",
+                condition: "its end is less than two increments from its start, and can be the same where coordinates are rounded",
                 remedy: "leave the end out for a full circle, or leave out the arc",
             });
         }
@@ -485,6 +486,7 @@ impl Control {
             block.take_whole('P', 2, 2, "P2, or no P")?;
         }
         self.check_tilted(block)?;
+        self.check_shifted(block)?;
         let (end, mut named, commanded) = self.take_end(block);
         if named.contains(&true) {
             self.push(true, end, commanded, StepPath::Line);

@@ -137,7 +137,6 @@ impl Control {
 
     /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
     pub(super) fn check_position(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        let dialect = self.stated(Rule::Dialect);
         let is_incremental = self.modal.incremental;
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
         if length_changed && is_incremental {
@@ -145,32 +144,11 @@ impl Control {
             let remedy = "write it in G90";
             return Err(GcodeFault::Combination { word: "Z".to_owned(), condition, remedy });
         }
+        self.check_shifted(block)?;
         for (axis, letter) in AXES.into_iter().enumerate() {
-            let Some(value) = block.value(letter).filter(|value| *value != 0.0 || !is_incremental)
-            else {
-                continue;
-            };
-            let is_shifted = std::mem::take(&mut self.origin_changed[axis]) && is_incremental;
-            if is_shifted && matches!(dialect, None | Some(Choice::Sinumerik)) {
-                return Err(GcodeFault::Combination {
-                    word: letter.to_string(),
-                    condition: "G91 is in force and its work offset or shift has changed, which Sinumerik adds",
-                    remedy: "write it in G90",
-                });
-            }
-            let increment = if axis < 3 { self.modal.increment() } else { 1e-3 };
-            let is_rounded = |value: f64, increment: f64| {
-                let steps = value / increment;
-                (steps - steps.round()).abs() > 1e-6
-            };
-            // Sinumerik rounds inches to micrometres.
-            let by_unit = axis < 3
-                && matches!(dialect, None | Some(Choice::Sinumerik))
-                && is_rounded(self.modal.millimetres(value), 1e-3);
-            if is_incremental
-                && dialect != Some(Choice::Rs274Ngc)
-                && (by_unit || is_rounded(value, increment))
-            {
+            let Some(value) = block.value(letter) else { continue };
+            self.origin_changed[axis] &= is_incremental && value == 0.0;
+            if is_incremental && self.is_rounded(axis, value) {
                 return Err(GcodeFault::Combination {
                     word: format!("{letter}{value}"),
                     condition: "G91 is in force, and it is no multiple of the least increment, to which controls round each",
@@ -179,6 +157,60 @@ impl Control {
             }
         }
         self.check_after_rotation(block)
+    }
+
+    /// Refuses increments along axes whose work offset, shift or length has changed, which Sinumerik adds to them, also to 0.
+    pub(super) fn check_shifted(&self, block: &Block) -> Result<(), GcodeFault> {
+        let is_changed = |axis: usize| {
+            block.has(AXES[axis]) && (self.origin_changed[axis] || axis == 2 && self.length_changed)
+        };
+        let is_sinumerik = matches!(self.stated(Rule::Dialect), None | Some(Choice::Sinumerik));
+        match (0..AXES.len()).find(|axis| is_changed(*axis)) {
+            Some(axis) if self.modal.incremental && is_sinumerik => Err(GcodeFault::Combination {
+                word: AXES[axis].to_string(),
+                condition: "G91 is in force and its work offset, shift or length has changed, which Sinumerik adds",
+                remedy: "write it in G90",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses G92 where the position or its new value has digits that a control rounds: the rest would add up.
+    pub(super) fn check_preset(&self, block: &Block) -> Result<(), GcodeFault> {
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let Some(value) = block.value(letter) else { continue };
+            let unit = if axis < 3 { self.modal.millimetres(1.0) } else { 1.0 };
+            let position = self.position[axis].map(|position| position / unit);
+            if [Some(value), position]
+                .into_iter()
+                .flatten()
+                .any(|value| self.is_rounded(axis, value))
+            {
+                return Err(GcodeFault::Combination {
+                    word: format!("G92 {letter}{value}"),
+                    condition: "it or the position is no multiple of the least increment, to which controls round",
+                    remedy: "move to such a position before",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns whether controls round a number of an axis, in the program's unit.
+    fn is_rounded(&self, axis: usize, value: f64) -> bool {
+        let is_rounded = |value: f64, increment: f64| {
+            let steps = value / increment;
+            (steps - steps.round()).abs() > 1e-6
+        };
+        let increment = if axis < 3 { self.modal.increment() } else { 1e-3 };
+        match self.stated(Rule::Dialect) {
+            Some(Choice::Rs274Ngc) => false,
+            // Sinumerik rounds inches to micrometres.
+            None | Some(Choice::Sinumerik) if axis < 3 => {
+                is_rounded(value, increment) || is_rounded(self.modal.millimetres(value), 1e-3)
+            }
+            _ => is_rounded(value, increment),
+        }
     }
 
     /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.

@@ -290,7 +290,7 @@ fn words_that_are_not_read_are_named() {
         (
             "G52 X1\nG91 G0 X1",
             2,
-            "X while G91 is in force and its work offset or shift has changed",
+            "X while G91 is in force and its work offset, shift or length has changed",
         ),
         ("G0 X1\nG20 X1", 2, "G20 while the program has lengths in another unit"),
         ("M3 M8 S1", 1, "M3 while its block has another M word"),

@@ -472,11 +472,23 @@ impl<'a> Resolver<'a> {
     /// axes are known.
     fn is_one_choice(&self, solutions: &[InverseSolution]) -> bool {
         let [first, others @ ..] = solutions else { return true };
-        others.iter().all(|other| {
-            (3..6).all(|k| {
-                let turn = |of: &InverseSolution| Some((of.joints[k] - self.joints[k]?).abs());
-                matches!((turn(first), turn(other)), (Some(first), Some(other)) if first <= other + ANGLE_INCREMENT)
-            })
+        let turn = |of: &InverseSolution, k: usize| Some((of.joints[k] - self.joints[k]?).abs());
+        let differs = |other: &&InverseSolution| {
+            (3..6).any(|k| (first.joints[k] - other.joints[k]).abs() > ANGLE_INCREMENT)
+        };
+        others.iter().filter(differs).all(|other| {
+            let turns = (3..6).map(|k| turn(first, k).zip(turn(other, k)));
+            let mut is_less = false;
+            for turns in turns {
+                match turns {
+                    Some((first, other)) if first <= other + ANGLE_INCREMENT => {
+                        is_less |= first < other - ANGLE_INCREMENT;
+                    }
+                    _ => return false,
+                }
+            }
+            // By equal turns Fanuc takes the axes nearer to 0.
+            is_less
         })
     }
 
