@@ -638,7 +638,7 @@ fn tool_centre_point_control_begins_with_the_table_at_zero() {
     let at_zero = blocks.replace("G43.4 H1", "G0 A0. C0.\nG43.4 H1");
     scene(&at_zero).gives(&FANUC, 0, &[]);
     let in_its_block = at_zero.replace("G43.4 H1", "G43.4 H1 C90.");
-    scene(&in_its_block).gives(&FANUC, 2, &["`tcp_start`"]);
+    scene(&in_its_block).gives(&FANUC, 2, &["G43.4 while its block turns the axes"]);
     // It begins anew without a motion between, and so does a plane.
     let anew = format!("{at_zero}\nG1 C40.\nG49\nG43.4 H1\nG0 X-6. Y0. Z50.\nG49");
     scene(&anew).gives(&FANUC, 0, &["1 motion not checked", "`tcp_start`"]);
@@ -772,7 +772,7 @@ fn a_program_that_ends_otherwise_than_it_begins_is_named() {
     // G49 at the start moves Z by the length that the run before has left.
     let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
     Scene::of(cancels).gives(&FANUC, 2, &["line 1: the program ends with G43 H1"]);
-    Scene::of(cancels).gives(&HAAS, 0, &[]);
+    Scene::of(cancels).gives(&HAAS, 2, &["the program ends with G43 H1"]);
     Scene::of(&cancels.replace("M30", "G49\nM30")).gives(&LINUXCNC, 0, &[]);
     // The operator can turn the switch for optional blocks between two runs.
     let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";
@@ -1095,6 +1095,9 @@ fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {
     scene(&format!("{plane}\nX-6. Y0. Z30.")).gives(&FANUC, 2, &[not_aligned]);
     let alone = scene(&format!("{plane}\nG53.1\nX-6. Y0. Z30.\nG69\nX-7."));
     alone.gives(&FANUC, 2, &["the first after G68 or G69, and not of both axes"]);
+    let began = "G1 A-20. F500.\nG43.4 H1 Z60.";
+    scene(began)
+        .gives_straight(2, &["the first of tool centre point control that began with turned axes"]);
     scene("G234 X-6. Y0. Z30.").gives(&HAAS, 2, &["G234 needs H in its block"]);
     let again = "G43.4 H1\nX-6. Y0. Z30.\nG43 H1";
     scene(again).gives(&FANUC, 2, &["G43 while tool centre point control is on"]);

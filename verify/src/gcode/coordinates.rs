@@ -291,6 +291,12 @@ impl Control {
             let needed = "H in its block, since Haas cancels the one before";
             return Err(GcodeFault::Missing { word: code.to_string(), needed });
         }
+        if code.tenths != 430 && block.has_any("ABCIJK") {
+            let condition = "its block turns the axes, without tool centre point control on Fanuc";
+            return Err(combination(code, condition, "write it in a block before"));
+        }
+        // With turned axes the offset moves X and Y too, on Fanuc and Haas, unless the block states where to.
+        self.tcp_position_needed = code.tenths != 430 && !at_zero;
         let mut given = block.take_whole('H', 0, MAX_REGISTER, "a whole number from 0 after H")?;
         let is_zero = given == Some(0) && code.tenths == 430;
         if given.is_none()

@@ -74,6 +74,8 @@ pub(super) struct Control {
     pub(super) rotation_changed: bool,
     /// The reason for which a work offset has to be selected before a position.
     pub(super) needs_offset: Option<&'static str>,
+    /// Set if tool centre point control has begun with turned axes, until a position is stated.
+    pub(super) tcp_position_needed: bool,
     /// Set once the program has a length.
     pub(super) unit_used: bool,
     /// Set if the length offset is that of the tool in the spindle without a word.
@@ -131,6 +133,7 @@ impl Control {
             origin_changed: [false; 6],
             rotation_changed: false,
             needs_offset: None,
+            tcp_position_needed: false,
             unit_used: false,
             length_implicit: false,
             length_cancelled: false,

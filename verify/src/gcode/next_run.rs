@@ -278,6 +278,7 @@ impl Control {
             && self.cycle == next.cycle
             && self.vector == next.vector
             && self.returned == next.returned
+            && (self.tcp_position_needed || !next.tcp_position_needed)
             && changed(self).zip(changed(next)).all(|(changed, next)| changed || !next)
     }
 }

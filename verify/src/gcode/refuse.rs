@@ -138,6 +138,15 @@ impl Control {
     /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
     pub(super) fn check_position(&mut self, block: &Block) -> Result<(), GcodeFault> {
         let is_incremental = self.modal.incremental;
+        if std::mem::take(&mut self.tcp_position_needed)
+            && (is_incremental || !"XYZ".chars().all(|letter| block.has(letter)))
+        {
+            return Err(GcodeFault::Combination {
+                word: "a position".to_owned(),
+                condition: "it is the first of tool centre point control that began with turned axes, and has not X, Y and Z in G90",
+                remedy: "write all three",
+            });
+        }
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
         if length_changed && is_incremental {
             let condition = "G91 is in force and the length offset has changed";

@@ -436,7 +436,7 @@ const CONTROLS: [(&str, [Choice; 22]); 5] = {
                 Units,
                 TableAtZero,
                 ByAxes,
-                CancelsLength,
+                KeepsModes,
             ],
         ),
         (

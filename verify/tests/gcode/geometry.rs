@@ -344,9 +344,9 @@ fn tool_centre_point_control() {
     for (on, off) in
         [("TRAORI G54", "TRAFOOF\nG54"), ("M428", "M429"), ("G234 H3", "G49"), ("G43.4", "G49")]
     {
-        let steps = steps_of(&format!("T3 M6\n{on}\nG1 F1 X1 C5\n{off}\nX2"), &setup);
+        let steps = steps_of(&format!("T3 M6\nG0 A0 B0 C0\n{on}\nG1 F1 X1 C5\n{off}\nX2"), &setup);
         let tcp = if on == "TRAORI G54" { Tcp::Transformation } else { Tcp::Rotary };
-        assert_eq!([steps[0].state.tcp, steps[1].state.tcp], [tcp, Tcp::Off], "{on}");
+        assert_eq!([steps[1].state.tcp, steps[2].state.tcp], [tcp, Tcp::Off], "{on}");
     }
     // M428 keeps its kinematics under G43 and G49.
     let steps = steps_of("T3 M6\nG0 A0 B0 C0\nM428\nG43 H3\nG0 X1\nG49\nX2", &setup);
