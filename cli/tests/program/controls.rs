@@ -1061,12 +1061,16 @@ fn words_at_which_a_control_stops_are_refused() {
         ),
         (&FANUC, "G0 X3.33333\nG92 X0", "G92 X0 while it or the position is no multiple"),
         (&SIEMENS, "G52 Z-3.\nG91 G28 Z0.", "shift or length has changed, which Sinumerik adds"),
+        (&HAAS, "G81 X4. Z1. R2.\nX5. L0", "to whose place Haas moves"),
+        (&HAAS, "G81 X4. Z1. R2.\nG98 Z1.5", "has no place of a hole, and is executed or not"),
         (&HAAS, "M30 M9", "M30 while its block has another M word"),
         (&SIEMENS, "G20\nG91 G1 X.0001", "no multiple of the least increment"),
         (&FANUC, "S900 M4\nG86 X4. Z1. R2. P0\nG80", "which it does not do after it on Fanuc"),
     ] {
         Scene::new(&format!("{begin}{blocks}")).gives(control, 2, &[word]);
     }
+    let off = Scene::new(&format!("{begin}M88\nM89\nG1 Z1.")).with("anyway = true");
+    off.gives(&HAAS, 1, &["feeds with the spindle off"]);
     let turned = Scene::new("T1 M6\nS900 M3\nG0 G43 H1 Z60.\nA-30. C0.\nM428\nG49\nX5.");
     let turned = turned.placed().with("machine = \"A-C trunnion\"");
     turned.gives(&LINUXCNC, 2, &["G49 while M428 is in force with turned axes"]);

@@ -70,6 +70,15 @@ impl Control {
             }
         }
         // LinuxCNC taps along another axis there (`convert_cycle_g74_g84` of its interpreter).
+        let in_plane = self.modal.plane.axes().map(|axis| AXES[axis]);
+        if self.cycle.is_some() && !is_linuxcnc && !in_plane.iter().any(|letter| block.has(*letter))
+        {
+            return Err(GcodeFault::Combination {
+                word,
+                condition: "its block goes on with a series and has no place of a hole, and is executed or not",
+                remedy: "write X or Y",
+            });
+        }
         let is_across = self.modal.plane != Plane::Xy;
         if is_across && (!is_linuxcnc || matches!(number, 74 | 84)) {
             return Err(GcodeFault::Combination {
@@ -141,6 +150,13 @@ impl Control {
     fn repeats(&mut self, block: &mut Block) -> Result<u32, GcodeFault> {
         let by_l = block.take_whole('L', 0, 1_000_000, "a number of repeats after L")?.unwrap_or(1);
         let by_k = block.take_whole('K', 0, 1_000_000, "a number of repeats after K")?.unwrap_or(1);
+        if by_l == 0 || by_k == 0 {
+            return Err(GcodeFault::Combination {
+                word: if by_l == 0 { "L0" } else { "K0" }.to_owned(),
+                condition: "its block has a canned cycle, to whose place Haas moves",
+                remedy: "write G80 and G0, and the cycle again",
+            });
+        }
         if by_l == by_k {
             return Ok(by_l);
         }

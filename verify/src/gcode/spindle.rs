@@ -65,6 +65,9 @@ impl Control {
             let is_on = matches!(before.turn, Spindle::Clockwise | Spindle::CounterClockwise);
             word = (is_on && stood != (speed == 0.0)).then(|| "S".to_owned());
         }
+        let dialect = self.stated(Rule::Dialect);
+        let stops_at_m89 =
+            matches!(dialect, None | Some(Choice::Iso)) && self.spindle.turn != Spindle::NotStated;
         for code in &block.passed_over {
             let turn = match (code.letter, code.tenths) {
                 ('M', 30) => Spindle::Clockwise,
@@ -73,6 +76,9 @@ impl Control {
                     self.spindle.end_rigid();
                     Spindle::Stopped
                 }
+                // Haas stops it before M89 (coolant through the spindle off), and does not start it again.
+                ('M', 890) if !stops_at_m89 => continue,
+                ('M', 890) => Spindle::Stopped,
                 ('M', 290) => {
                     self.spindle.rigid = true;
                     continue;

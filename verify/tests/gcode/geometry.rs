@@ -213,8 +213,6 @@ fn canned_cycles_stop_at_their_levels() {
         (7.0, fast),
     ];
     assert_eq!(series, expected);
-    // L0 stores the words without a motion.
-    assert_eq!(levels("G99 G81 X1 Z-5 R2 L0\nX2").len(), 4);
     assert_eq!(
         ends("G0 X0 Y0 Z9\nG91 G99 G81 X2 Y1 R-4 Z-3 L3 F1", &at_zero())
             .last()
