@@ -9,7 +9,7 @@ use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
 use touchoff_bench::page::Section;
-use touchoff_verify::gcode::{ControlRules, ControlSetup};
+use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{MachineProgram, ToolSelection, Verifier};
 
@@ -108,7 +108,8 @@ fn introduction(part: &Mesh) -> String {
 }
 
 fn row(bvh: &TriangleBvh, scene: Scene, blocks: usize) -> Result<String, Box<dyn Error>> {
-    let rules = ControlRules::named("linuxcnc")?;
+    // G43.4 is no word of LinuxCNC.
+    let rules = ControlRules::named("linuxcnc")?.with(Rule::Dialect, Choice::Iso);
     let mut setup = ControlSetup { rules, ..ControlSetup::default() };
     setup.work_offsets[0] = Some([0.0, 0.0, -480.0, 0.0, 0.0, 0.0]);
     setup.lengths.insert(1, 120.0);
