@@ -5,9 +5,9 @@ use super::curves::Curves;
 use super::map::{Edge, edges};
 use super::section::Piece;
 use super::stroke::{Stroke, fitted, round};
-use crate::vector::{Point, minus, norm};
 use std::collections::BTreeMap;
 use tool_dsl::formula::CurveIndex;
+use tool_dsl::vector::{Point, minus, norm};
 
 /// The area on one side of a border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

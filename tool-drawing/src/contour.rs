@@ -3,8 +3,8 @@
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::is_outline;
-use crate::vector::{Point, cross, dot, minus, norm};
 use tool_dsl::model::{Model, Unit};
+use tool_dsl::vector::{Point, cross, dot, minus, norm};
 
 /// Lengths that differ by less than this fraction of the tool's size are considered equal.
 const LENGTH_TOLERANCE_FRACTION: f64 = 1e-7;

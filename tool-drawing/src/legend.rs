@@ -6,8 +6,8 @@ use super::lettering::width;
 use super::marks::head;
 use super::regions::Marks;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
-use crate::vector::Point;
 use tool_dsl::model::Model;
+use tool_dsl::vector::Point;
 
 /// The height of capitals; `LINE_HEIGHT` is the height of a line. Sheet units.
 const TEXT_SIZE: f64 = 7.5;

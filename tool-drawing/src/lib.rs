@@ -35,10 +35,8 @@ mod shape;
 mod sheet;
 mod solid;
 mod stroke;
-mod vector;
 mod view;
 
-use crate::vector::Point;
 use borders::{Border, Nearness, Side};
 use curves::{Curves, Plane};
 use detail::Detail;
@@ -50,6 +48,7 @@ use sheet::{Anchor, Look, Sheet};
 use tool_dsl::CheckedTool;
 use tool_dsl::domain::Domain;
 use tool_dsl::model::Model;
+use tool_dsl::vector::Point;
 use view::View;
 
 /// The largest extent of a tool on the sheet: full width and height, in sheet units.

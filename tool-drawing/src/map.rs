@@ -2,9 +2,9 @@
 
 use super::borders::{Nearness, Side};
 use super::section::Piece;
-use crate::vector::{Point, cross, minus, norm};
 use std::collections::HashMap;
 use tool_dsl::formula::CurveIndex;
+use tool_dsl::vector::{Point, cross, minus, norm};
 
 /// A part of a border, from one welded corner to another.
 #[derive(Clone, Copy, Debug)]

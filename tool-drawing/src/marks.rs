@@ -2,9 +2,9 @@
 
 use super::shape::{Frame, Shape};
 use super::view::View;
-use crate::vector::{Point, cross, minus, norm};
 use tool_dsl::expr::value::{EvaluationPoint, Evaluator};
 use tool_dsl::model::Model;
+use tool_dsl::vector::{Point, cross, minus, norm};
 
 /// An arrow on the sheet, as tail and head.
 pub(super) type Arrow = [Point; 2];

@@ -9,7 +9,7 @@ use super::marks::head;
 use super::regions::Marks;
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::is_outline;
-use crate::vector::{Point, minus, norm};
+use tool_dsl::vector::{Point, minus, norm};
 
 /// The height of capitals, in sheet units.
 const TEXT_SIZE: f64 = 7.5;

@@ -7,7 +7,7 @@ use super::sheet::{Sheet, data, lines};
 use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
 use super::{Content, Picture};
-use crate::vector::Point;
+use tool_dsl::vector::Point;
 
 /// The look of hatch lines, and their distance in sheet units.
 const HATCH: &str = "fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"";

@@ -6,7 +6,7 @@ use super::marks::{Arrow, Directions, head};
 use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::{Content, Part, Picture, paint};
-use crate::vector::Point;
+use tool_dsl::vector::Point;
 
 /// Results of drawing the section that the notes and the legend need.
 #[derive(Default)]

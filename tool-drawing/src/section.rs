@@ -6,10 +6,10 @@
 //! both cells, since the cut of a side depends on the side alone.
 
 use super::curves::Curves;
-use crate::vector::{Point, cross, minus, norm};
 use std::collections::HashSet;
 use tool_dsl::formula::{CurveIndex, NEGATIVE, ZERO};
 use tool_dsl::plan::Tree;
+use tool_dsl::vector::{Point, cross, minus, norm};
 
 /// The plan's tree of owners.
 pub(super) type Owners = Tree<Option<usize>>;

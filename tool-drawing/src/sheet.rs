@@ -2,8 +2,8 @@
 
 use super::lettering::{scale, strokes, width};
 use super::stroke::Stroke;
-use crate::vector::Point;
 use std::fmt::Write;
+use tool_dsl::vector::Point;
 
 /// The end of a line of text that is anchored at its position.
 #[derive(Clone, Copy, PartialEq)]

@@ -13,9 +13,9 @@ use super::regions::name;
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::{View, is_outline};
 use super::{Content, Picture, paint, trace};
-use crate::vector::Point;
 use tool_dsl::CheckedTool;
 use tool_dsl::expr::interval::Interval;
+use tool_dsl::vector::Point;
 
 /// The axes, and those perpendicular to the front view, the side view and the top view.
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -8,7 +8,6 @@ use crate::diagnostic::{
 use crate::resolve;
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
-#[cfg(debug_assertions)]
 use crate::validate;
 use std::collections::BTreeSet;
 
@@ -128,8 +127,7 @@ fn compiled(
         .extend(found.into_iter().filter(|diagnostic| !unread || !follows(diagnostic, &broken)));
     let model = model?;
     without_error(diagnostics)?;
-    #[cfg(debug_assertions)]
-    validate::model(&model).expect("`resolve` keeps its guarantees");
+    debug_assert_eq!(validate::model(&model), Ok(()), "`resolve` keeps its guarantees");
     checked::check(model, diagnostics)
 }
 

@@ -33,8 +33,8 @@ mod regionalise;
 pub mod resolve;
 pub mod source;
 pub mod syntax;
-#[cfg(debug_assertions)]
 mod validate;
+pub mod vector;
 
 pub use checked::CheckedTool;
 pub use compile::{Accepted, Compiled, compile, compile_with_arguments};

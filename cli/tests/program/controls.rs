@@ -1008,7 +1008,7 @@ fn words_that_controls_execute_in_different_ways_are_refused_or_named() {
     passed.with("anyway = true").gives(&HAAS, 0, &[]);
 }
 
-/// Where a control stops with an error, what the program has set stays for the next one.
+/// Words at which a control stops with an error: what the program has set stays for the next one.
 #[test]
 fn words_at_which_a_control_stops_are_refused() {
     let begin = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";

@@ -5,11 +5,10 @@
 use crate::expr::{Coord, Graph, Id};
 use crate::number::Number;
 use crate::source::Span;
+pub(crate) use crate::vector::{Point, cross, dot, minus, norm};
 
 /// A point with exact coordinates.
 pub(crate) type ExactPoint = [Number; 2];
-/// A point in doubles.
-pub(crate) type Point = [f64; 2];
 
 /// The sine of the angle below which two directions count as tangent.
 pub(crate) const TANGENT_SINE: f64 = 1e-9;
@@ -57,22 +56,6 @@ impl Flat {
 
 pub(crate) fn doubles(point: &ExactPoint) -> Point {
     [point[0].to_f64(), point[1].to_f64()]
-}
-
-pub(crate) fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-pub(crate) fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(crate) fn cross(a: Point, b: Point) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-pub(crate) fn norm(a: Point) -> f64 {
-    (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
 fn unit(a: Point) -> Point {

@@ -298,19 +298,20 @@ impl MachineProgram {
         unit: Unit,
     ) -> Result<impl Iterator<Item = Move> + '_, JointError> {
         let restarts = tool != ToolSelection::All;
-        let blocks = self.blocks(&[link], unit, restarts)?;
-        let moves = blocks.filter(move |(number, _)| tool.contains(*number));
-        Ok(moves.flat_map(|(_, frames)| frames.into_iter().flatten()))
+        let blocks = self.blocks(&[link], unit, restarts, move |number| tool.contains(number))?;
+        Ok(blocks.flat_map(|(_, frames)| frames.into_iter().flatten()))
     }
 
     /// Returns the moves of each block with the number of the tool in the spindle, in the frames of links as for
-    /// [`MachineProgram::moves`]. `restarts` is set if a tool begins with a rest at its first position after each change.
-    pub(crate) fn blocks<'a>(
+    /// [`MachineProgram::moves`]. `restarts` is set if a tool begins with a rest at its first position after each change. A tool that
+    /// is not wanted makes none.
+    pub(crate) fn blocks<'a, W: Fn(Option<u32>) -> bool + 'a>(
         &'a self,
         links: &[Option<usize>],
         unit: Unit,
         restarts: bool,
-    ) -> Result<impl Iterator<Item = (Option<u32>, Vec<Vec<Move>>)> + use<'a>, JointError> {
+        is_wanted: W,
+    ) -> Result<impl Iterator<Item = (Option<u32>, Vec<Vec<Move>>)> + use<'a, W>, JointError> {
         for link in links.iter().flatten() {
             self.machine.chain(&Setup::default())?.relative_to(*link)?;
         }
@@ -329,6 +330,9 @@ impl MachineProgram {
             let resolved = resolver.resolve(&step).expect("a step that was resolved before");
             let tool = step.state.tool;
             from = from.filter(|(_, before)| !restarts || *before == tool);
+            if !is_wanted(tool) {
+                return (tool, vec![Vec::new(); frames.len()]);
+            }
             let start = from.map(|(line, _)| line);
             let moves: Vec<Vec<Move>> =
                 frames.iter().map(|frame| moves_of(&step, &resolved, *frame, start)).collect();

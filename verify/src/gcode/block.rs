@@ -387,12 +387,15 @@ pub(super) fn next(cursor: &mut Cursor) -> Result<Option<u8>, GcodeFault> {
     }
 }
 
+/// Returns whether a comment begins with a word, in either case.
+pub(super) fn begins(comment: &str, word: &str) -> bool {
+    let start = comment.trim_start().as_bytes().get(..word.len());
+    start.is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
+}
+
 /// Refuses a comment that LinuxCNC executes.
 fn check_comment(comment: &str) -> Result<(), GcodeFault> {
-    let start = comment.trim_start().as_bytes();
-    let begins =
-        |text: &[u8]| start.get(..text.len()).is_some_and(|start| start.eq_ignore_ascii_case(text));
-    if begins(b"py,") || begins(b"pyrun,") {
+    if begins(comment, "py,") || begins(comment, "pyrun,") {
         let meaning = "a comment whose Python LinuxCNC executes";
         let remedy = "remove it, or write a blank before the comma";
         return Err(GcodeFault::NotRead { word: "py,".to_owned(), meaning, remedy });

@@ -705,8 +705,22 @@ impl Control {
 }
 
 impl Control {
+    /// Refuses a position before the work offset that it depends on is selected.
+    pub(super) fn check_offset(&mut self, block: &Block) -> Result<(), GcodeFault> {
+        if !self.uses_offset(block) {
+            return Ok(());
+        }
+        let mut needed = self.needs_offset;
+        if !self.offset_stated && self.choice(Rule::StartOffset) == Choice::NoOffset {
+            needed
+                .get_or_insert("a work offset (G54) before, since this control starts without one");
+        }
+        let Some(needed) = needed else { return Ok(()) };
+        Err(GcodeFault::Missing { word: "a position".to_owned(), needed })
+    }
+
     /// Returns whether a block has a position that depends on the work offset.
-    pub(super) fn uses_offset(&self, block: &Block) -> bool {
+    fn uses_offset(&self, block: &Block) -> bool {
         let is_absolute = !self.modal.incremental && block.has_any("XYZABC");
         let one_shot = block.code_of(Group::OneShot).map(|code| code.tenths);
         let rotation = block.code_of(Group::Rotation).map(|code| code.tenths);

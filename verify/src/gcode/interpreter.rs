@@ -325,16 +325,7 @@ impl Control {
                 remedy: "post the program in G17",
             });
         }
-        if let Some(needed) = self.needs_offset.filter(|_| self.uses_offset(block)) {
-            return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
-        }
-        if !self.offset_stated
-            && self.uses_offset(block)
-            && self.choice(Rule::StartOffset) == Choice::NoOffset
-        {
-            let needed = "a work offset (G54) before, since this control starts without one";
-            return Err(GcodeFault::Missing { word: "a position".to_owned(), needed });
-        }
+        self.check_offset(block)?;
         self.motion(block)
     }
 

@@ -1,10 +1,11 @@
-//! What LinuxCNC does not read. Where a control stops with an error, the modes in force stay for its next program.
+//! Lines and words at which LinuxCNC stops with an error. The modes in force stay for its next program then.
 //!
 //! Each was run with its interpreter (`rs274`). M428 and M429 of its configurations for five axes are read.
 
 use super::GcodeFault;
-use super::block::Block;
+use super::block::{Block, begins};
 use super::code::{Code, Group};
+use super::text::before_semicolon;
 
 /// The longest line, in bytes without its end (`LINELEN` of the interpreter).
 const MAX_LINE: usize = 251;
@@ -13,24 +14,14 @@ const MAX_LINE: usize = 251;
 pub(super) fn check_line(text: &str) -> Result<(), GcodeFault> {
     let (word, meaning, remedy) = if text.len() > MAX_LINE {
         ("the line", "longer than the 251 bytes that LinuxCNC reads", "write two lines")
-    } else if outside_comment(text).trim_end().ends_with('*') {
+    } else if before_semicolon(text).trim_end().ends_with('*') {
         ("`*`", "an error on LinuxCNC", "remove it, or state another `dialect`")
-    } else if text.split('(').skip(1).any(is_abort) {
+    } else if text.split('(').skip(1).any(|comment| begins(comment, "abort,")) {
         ("(abort,", "a comment at which LinuxCNC stops", "remove it")
     } else {
         return Ok(());
     };
     Err(GcodeFault::NotRead { word: word.to_owned(), meaning, remedy })
-}
-
-/// Returns the text of a line before its comment that begins with a semicolon.
-pub(super) fn outside_comment(text: &str) -> &str {
-    text.split(';').next().unwrap_or_default()
-}
-
-fn is_abort(comment: &str) -> bool {
-    let start = comment.trim_start().as_bytes();
-    start.get(..6).is_some_and(|start| start.eq_ignore_ascii_case(b"abort,"))
 }
 
 /// Refuses the words of a block that are known elsewhere.
@@ -108,11 +99,10 @@ fn is_unknown(code: &Code) -> bool {
     }
 }
 
-/// Returns the modal group of an M word that neither moves nor stops (RS274/NGC, table 4).
+/// Returns the modal group of an M word that neither moves, nor stops, nor turns the spindle (RS274/NGC, table 4).
 fn m_group(code: Code) -> Option<u32> {
     match (code.letter, code.tenths) {
         ('M', 620..=680) => Some(5),
-        ('M', 30 | 40 | 50 | 190) => Some(7),
         ('M', 70 | 80 | 90) => Some(8),
         ('M', 480..=530) => Some(9),
         _ => None,

@@ -7,6 +7,7 @@ use super::code::Group;
 use super::cycle::Cycle;
 use super::modal::{FeedMode, Modal, Motion};
 use super::note::{Notes, Subject};
+use super::refuse::is_multiple;
 use super::rules::{Choice, ControlRules, Rule};
 use super::spindle::{Spindle, SpindleWords};
 use super::state::{ControlState, LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -382,10 +383,7 @@ impl Control {
             return;
         };
         let increment = self.modal.millimetres(self.modal.increment());
-        let is_whole = |value: f64| {
-            let steps = value / increment;
-            (steps - steps.round()).abs() < 1e-6
-        };
+        let is_whole = |value: f64| is_multiple(value, increment);
         if [x, y, u, v, radius].into_iter().all(is_whole) {
             return;
         }

@@ -10,6 +10,7 @@ use super::modal::Motion;
 use super::motion::{AXES, Control};
 use super::rules::{Choice, Rule};
 use super::state::{LengthOffset, Rotation, Tcp};
+use super::text::before_semicolon;
 
 impl Control {
     /// Refuses words that mean something else in the dialect of the control.
@@ -64,7 +65,7 @@ impl Control {
             Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
             Some(Choice::Heidenhain) => {
                 let is_other = |c: &char| matches!(c, '(' | '#');
-                let Some(found) = linuxcnc::outside_comment(text).chars().find(is_other) else {
+                let Some(found) = before_semicolon(text).chars().find(is_other) else {
                     return Ok(());
                 };
                 let meaning = "no word of DIN/ISO programs of Heidenhain";
@@ -207,18 +208,14 @@ impl Control {
 
     /// Returns whether controls round a number of an axis, in the program's unit.
     fn is_rounded(&self, axis: usize, value: f64) -> bool {
-        let is_rounded = |value: f64, increment: f64| {
-            let steps = value / increment;
-            (steps - steps.round()).abs() > 1e-6
-        };
         let increment = if axis < 3 { self.modal.increment() } else { 1e-3 };
         match self.stated(Rule::Dialect) {
             Some(Choice::Rs274Ngc) => false,
             // Sinumerik rounds inches to micrometres.
             None | Some(Choice::Sinumerik) if axis < 3 => {
-                is_rounded(value, increment) || is_rounded(self.modal.millimetres(value), 1e-3)
+                !is_multiple(value, increment) || !is_multiple(self.modal.millimetres(value), 1e-3)
             }
-            _ => is_rounded(value, increment),
+            _ => !is_multiple(value, increment),
         }
     }
 
@@ -284,6 +281,12 @@ fn is_other_word(code: Code) -> bool {
         ('M', tenths) => matches!(tenths, 890 | 980 | 990),
         _ => false,
     }
+}
+
+/// Returns whether a value is a multiple of an increment, but for rounding in doubles.
+pub(super) fn is_multiple(value: f64, increment: f64) -> bool {
+    let steps = value / increment;
+    (steps - steps.round()).abs() <= 1e-6
 }
 
 /// Returns whether Fanuc, Haas and Sinumerik stop at a word of LinuxCNC.

@@ -16,6 +16,11 @@ pub(super) fn line(text: &str, place: Place) -> Option<(&str, Place)> {
     Some((found.strip_suffix('\r').unwrap_or(found), after))
 }
 
+/// Returns the text of a line before the first semicolon.
+pub(super) fn before_semicolon(line: &str) -> &str {
+    line.split(';').next().unwrap_or_default()
+}
+
 /// Returns whether a line is the `%` that encloses a program. A name may follow the first one.
 pub(super) fn is_percent(line: &str, is_first: bool) -> bool {
     match line.trim().strip_prefix('%') {

@@ -5,7 +5,7 @@ use super::machine::{MachineFinding, MachineRow};
 use super::report::{JobReport, PairReport, Remedy, by_reading};
 use super::stock::{StockFinding, StockRow};
 use super::text::describe;
-use crate::{Finding, FindingGroup, FindingKind};
+use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
 
 /// A finding of a job.
@@ -28,7 +28,7 @@ pub struct JobFinding {
     pub detail: FindingDetail,
 }
 
-/// What a finding is about.
+/// Subject of a finding.
 #[derive(Clone, Debug)]
 pub enum FindingDetail {
     /// A surface of a tool at the part or at a fixture.
@@ -55,16 +55,6 @@ pub enum Severity {
     Undecided,
     /// The verdict does not depend on it.
     Remark,
-}
-
-impl JobFinding {
-    /// Returns the worst motion, if the finding is about a surface.
-    pub fn worst(&self) -> Option<&Finding> {
-        match &self.detail {
-            FindingDetail::Surface { group, .. } => Some(&group.worst),
-            FindingDetail::Machine(_) | FindingDetail::Stock(_) => None,
-        }
-    }
 }
 
 /// Returns the keyword of a finding's kind.

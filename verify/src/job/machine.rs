@@ -17,7 +17,7 @@ pub struct MachineFinding {
     pub kind: MachineFindingKind,
 }
 
-/// What is wrong with the use of a machine.
+/// Fault in the use of a machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum MachineFindingKind {

@@ -180,7 +180,7 @@ pub enum JobError {
         /// The reason.
         source: std::io::Error,
     },
-    /// What a job states does not go together.
+    /// Statements of a job that do not go together.
     #[error("{0}")]
     Mismatch(&'static str),
     /// No tool is given for a number of the program.

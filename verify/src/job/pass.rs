@@ -36,9 +36,13 @@ impl<'a> Job<'a> {
         reading: usize,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<ReadingResult, JobError> {
+        // The links of the bodies, that of the part first, and the index of that of each body.
         let mut links: Vec<Option<usize>> = Vec::new();
+        let mut frame_of = Vec::new();
         for body in &self.bodies {
-            if !links.contains(&body.link) {
+            let known = links.iter().position(|link| *link == body.link);
+            frame_of.push(known.unwrap_or(links.len()));
+            if known.is_none() {
                 links.push(body.link);
             }
         }
@@ -75,13 +79,9 @@ impl<'a> Job<'a> {
         let restarts = !self.tools.iter().any(|tool| tool.motions == crate::ToolSelection::All);
         let blocks = self.program.blocks(reading, &links, self.unit(), restarts, symmetry)?;
         for BlockMoves { tool: number, frames } in blocks {
-            let Some(index) = self.tools.iter().position(|tool| tool.motions.contains(number))
-            else {
-                continue;
-            };
-            for (body, check) in self.bodies.iter().zip(&mut checks[index * self.bodies.len()..]) {
-                let frame = links.iter().position(|link| *link == body.link);
-                for step in &frames[frame.unwrap_or(0)] {
+            let Some(index) = self.tool_index(number) else { continue };
+            for (frame, check) in frame_of.iter().zip(&mut checks[index * self.bodies.len()..]) {
+                for step in &frames[*frame] {
                     check.add(step.clone(), progress)?;
                 }
             }
@@ -123,6 +123,10 @@ impl<'a> Job<'a> {
 
     /// Returns the tool that makes the motions of a number.
     pub(super) fn tool_of(&self, number: Option<u32>) -> Option<&JobTool<'a>> {
-        self.tools.iter().find(|tool| tool.motions.contains(number))
+        Some(&self.tools[self.tool_index(number)?])
+    }
+
+    fn tool_index(&self, number: Option<u32>) -> Option<usize> {
+        self.tools.iter().position(|tool| tool.motions.contains(number))
     }
 }

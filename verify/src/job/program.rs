@@ -241,7 +241,8 @@ impl Program {
                 moves.map(move |step| BlockMoves { tool, frames: vec![vec![step]] })
             })),
             Program::Machine(readings) => {
-                let blocks = readings[reading].blocks(links, unit, restarts)?;
+                let is_wanted = move |number| symmetry(number).is_some();
+                let blocks = readings[reading].blocks(links, unit, restarts, is_wanted)?;
                 Box::new(blocks.map(|(tool, frames)| BlockMoves { tool, frames }))
             }
         })

@@ -41,7 +41,7 @@ pub struct StockFinding {
 pub struct CutStock {
     /// The findings, the deepest first.
     pub findings: Vec<StockFinding>,
-    /// What remains.
+    /// The material that remains.
     pub stock: Stock,
     /// Depth that surfaces may have that must not touch.
     pub tolerance: f64,
