@@ -1085,6 +1085,34 @@ fn words_at_which_a_control_stops_are_refused() {
     }
 }
 
+/// A number that two words of a block take, and limits of LinuxCNC that it exceeds in silence or stops at.
+#[test]
+fn numbers_that_controls_share_out_differently_are_refused() {
+    let begin = "G0 X-6. Y0. Z20.\n";
+    let shared = "some controls give its number to both";
+    for (blocks, word) in [
+        ("G64 P3 G2 X4. I5. Z5.", shared),
+        ("G2 X4. I5. Z5.\nM62 P3 X-6. I-5.", shared),
+        ("G3 X4. Z5. R9. P2 M64", shared),
+        ("G82 X4. Z1. R2. P1 G64", shared),
+        ("G82 X4. Z1. R2. P-1", "P-1 is not understood"),
+        ("M62 P-1", "P-1 is not understood"),
+    ] {
+        Scene::new(&format!("{begin}{blocks}")).gives(&LINUXCNC, 2, &[word]);
+    }
+    let many = |count: usize| format!("{begin}#1=4{}\nG0 X#1 Z1.", "#2=2".repeat(count - 1));
+    Scene::new(&many(50)).gives(&LINUXCNC, 0, &[]);
+    Scene::new(&many(51)).gives(&LINUXCNC, 2, &["more than 50 assignments"]);
+    let nested = |deep: usize| {
+        let calls = (1..deep).map(|k| format!("O{k}\nM98 P{}\nM99\n", k + 1));
+        let subprograms: String = calls.collect();
+        let main = program(&format!("{begin}M98 P1"));
+        Scene::of(&format!("{main}{subprograms}O{deep}\nG1 X4. Z1.\nM99\n"))
+    };
+    nested(9).gives(&LINUXCNC, 0, &[]);
+    nested(10).gives(&LINUXCNC, 2, &["more than 9 deep"]);
+}
+
 /// Motions in a plane whose tool is not along it, and the way in which the axes turn there.
 #[test]
 fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {

@@ -30,6 +30,10 @@ const DECISIONS: [&str; 14] = [
     "UNTIL", "WHILE",
 ];
 
+/// The largest number of assignments in a block: LinuxCNC writes those beyond it over the values of the first ones
+/// (`MAX_NAMED_PARAMETERS` of its interpreter).
+pub(super) const MAX_ASSIGNMENTS: usize = 50;
+
 /// The words of a block. Words that no other word uses remain in it, and are refused at its end.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
@@ -90,6 +94,9 @@ impl Block {
             match byte {
                 b'#' => {
                     let start = cursor.rest();
+                    if self.assignments.len() == MAX_ASSIGNMENTS {
+                        return Err(GcodeFault::Assignments);
+                    }
                     self.assignments.push(assignment(&mut cursor, parameters)?);
                     let written = &start[1..start.len() - cursor.rest().len()];
                     uses += usize::from(written.contains('#'));

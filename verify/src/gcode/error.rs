@@ -241,6 +241,12 @@ pub enum GcodeFault {
         super::MAX_CALLS
     )]
     TooDeep,
+    /// More assignments in a block than LinuxCNC keeps.
+    #[error(
+        "a block has more than {} assignments, which LinuxCNC mixes up: write them in several blocks",
+        super::block::MAX_ASSIGNMENTS
+    )]
+    Assignments,
     /// Subprograms that take too many blocks and steps.
     #[error(
         "subprograms take more than {} blocks and motions: reduce the repeats",

@@ -35,7 +35,7 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
             ('M', 620..=650) => (!block.has('P'), "P with the number of an output"),
             ('M', 670 | 680) => (!block.has('E'), "E with the number of an output"),
             ('G', 960) => (!block.has('S'), "S with a speed"),
-            ('G', 40) => (block.value('P').is_none_or(|time| time < 0.0), "P with a time from 0"),
+            ('G', 40) => (!block.has('P'), "P with a time"),
             ('G', 20 | 30) => (!block.has_any("XYZABCIJKR"), "its end, its centre or its radius"),
             ('G', 820 | 860 | 890) => (!block.has('P'), "P with the time of its dwell"),
             _ => continue,
@@ -43,6 +43,10 @@ pub(super) fn check_words(block: &Block) -> Result<(), GcodeFault> {
         if is_missing {
             return Err(GcodeFault::Missing { word: code.to_string(), needed });
         }
+    }
+    // -1 stands for a word that is not there.
+    if let Some(value) = block.value('P').filter(|value| *value < 0.0) {
+        return Err(GcodeFault::NotAllowed { word: 'P', value, expected: "a number from 0" });
     }
     if block.has('D') {
         return Err(GcodeFault::Unused { word: 'D' });

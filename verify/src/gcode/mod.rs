@@ -87,8 +87,8 @@ use std::sync::Arc;
 
 /// Largest absolute value of a number in a program, in its unit.
 pub const LARGEST_NUMBER: f64 = 1e9;
-/// Largest nesting of calls of subprograms: LinuxCNC's.
-pub const MAX_CALLS: usize = 10;
+/// Largest nesting of calls of subprograms: LinuxCNC's (`INTERP_SUB_ROUTINE_LEVELS` counts the main program too).
+pub const MAX_CALLS: usize = 9;
 /// Largest number of blocks and steps in subprograms, with all repeats.
 pub const MAX_REPEATED: usize = 10_000_000;
 /// Largest number of motions of one block with a canned cycle.

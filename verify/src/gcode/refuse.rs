@@ -133,7 +133,32 @@ impl Control {
             let (first, second) = (cycle.to_string(), end.to_string());
             return Err(GcodeFault::SameGroup { first, second });
         }
-        check_axis_words(block)
+        check_axis_words(block)?;
+        self.check_shared(block)
+    }
+
+    /// Refuses a letter that two words of the block take: LinuxCNC gives its number to both, as P to G64 and to the turns of an
+    /// arc (`interp_check.cc`, `interp_arc.cc`).
+    fn check_shared(&self, block: &Block) -> Result<(), GcodeFault> {
+        let is_executed = block.has_any("XYZIJKR") && block.code_of(Group::Motion).is_none();
+        let in_force = match self.modal.motion.filter(|_| is_executed) {
+            Some(Motion::Arc { clockwise: true }) => Some(20),
+            Some(Motion::Arc { clockwise: false }) => Some(30),
+            Some(Motion::Cycle(number)) => Some(10 * number),
+            _ => None,
+        };
+        let in_force = in_force.map(|tenths| Code { letter: 'G', tenths });
+        for letter in "PQLR".chars().filter(|letter| block.has(*letter)) {
+            let mut users = block.codes().chain(in_force).filter(|code| takes(*code, letter));
+            if let (Some(first), Some(second)) = (users.next(), users.next()) {
+                return Err(GcodeFault::Combination {
+                    word: format!("{letter} beside {first} and {second}"),
+                    condition: "some controls give its number to both",
+                    remedy: "write them in two blocks",
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Refuses a position whose meaning depends on what a control does after a change of coordinates.
@@ -267,6 +292,26 @@ impl Control {
             return Err(GcodeFault::Combination { word: letter.to_string(), condition, remedy });
         }
         Ok(())
+    }
+}
+
+/// Returns whether a word takes the number after a letter.
+fn takes(code: Code, letter: char) -> bool {
+    let is_cycle = code.letter == 'G' && (730..=890).contains(&code.tenths) && code.tenths != 800;
+    let is_arc = code.letter == 'G' && matches!(code.tenths, 20 | 30);
+    match (letter, code.letter) {
+        ('P', 'G') => {
+            is_arc
+                || is_cycle
+                || matches!(code.tenths, 40 | 50 | 80 | 100 | 300 | 541 | 640 | 682 | 1030 | 1870)
+        }
+        ('P', _) => matches!(code.tenths, 190 | 510..=530 | 620..=650 | 980),
+        ('Q', 'G') => is_cycle || matches!(code.tenths, 51 | 640),
+        ('Q', _) => matches!(code.tenths, 190 | 670 | 680),
+        ('L', 'G') => is_cycle || code.tenths == 100,
+        ('L', _) => code.tenths == 980,
+        ('R', 'G') => is_arc || is_cycle || matches!(code.tenths, 100 | 640 | 680),
+        _ => code.tenths == 190,
     }
 }
 
