@@ -10,17 +10,25 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools")
 }
 
-/// Reads every tool of the library, in the order of file names.
+/// Returns the files of the library's tools, in the order of their names.
 ///
 /// # Panics
 /// If the library's folder cannot be read.
-pub fn library() -> Vec<Source> {
+pub fn files() -> Vec<PathBuf> {
     let files = std::fs::read_dir(folder()).expect("the library's folder");
     let mut files: Vec<PathBuf> = files.filter_map(|file| Some(file.ok()?.path())).collect();
     files.retain(|path| path.extension().is_some_and(|end| end == "tool"));
     files.sort();
+    files
+}
+
+/// Reads every tool of the library, in the order of file names.
+///
+/// # Panics
+/// If a file cannot be read.
+pub fn library() -> Vec<Source> {
     let read = |path| Source::read(path).expect("the library has the file");
-    files.into_iter().map(read).collect()
+    files().into_iter().map(read).collect()
 }
 
 /// Compiles a tool of the library from its text, for the interpreter and for proofs.

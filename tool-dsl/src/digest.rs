@@ -55,7 +55,6 @@ fn meaning(tool: &CheckedTool) -> String {
     }
     model.curves.iter().for_each(|curve| line(&index(curve.value)));
     line(&tests(&tool.plan.owner, &|owner| format!("{owner:?}")));
-    line(&tests(&tool.plan.inside, &|inside| inside.to_string()));
     line(&tests(&tool.plan.clearance, &|id| index(*id).to_string()));
     for id in &needed {
         match model.graph.node(*id) {

@@ -34,8 +34,6 @@ pub(crate) enum Broken {
     FileCurve { index: usize },
     /// A tree has more tests than allowed.
     Tests,
-    /// `inside` does not agree with `owner`.
-    Inside,
 }
 
 /// Checks what `resolve` guarantees of a model.
@@ -98,12 +96,7 @@ pub(crate) fn planned(file_curves: &[Id], tool: &PlannedTool) -> Result<(), Brok
         _ => Ok(()),
     };
     tree(planned, &plan.owner, &region)?;
-    tree(planned, &plan.inside, &|_| Ok(()))?;
     tree(planned, &plan.clearance, &|value| function(planned, "a clearance", [*value]))?;
-    let inside = plan.owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
-    if inside.as_ref() != Some(&plan.inside) {
-        return Err(Broken::Inside);
-    }
     let outputs = planned.regions.iter().flat_map(|region| region.outputs.roots());
     let curves = planned.curves.iter().map(|curve| curve.value);
     let is_finite =
@@ -313,11 +306,9 @@ mod tests {
         assert_eq!(found, Some(Broken::FileCurve { index: 0 }));
         let found = broken(|tool| tool.plan.owner = Tree::Leaf(Some(5)));
         assert_eq!(found, Some(Broken::Region { index: 5 }));
-        let found = broken(|tool| tool.plan.owner = Tree::Leaf(Some(0)));
-        assert_eq!(found, Some(Broken::Inside));
         let found = broken(|tool| {
-            let [below, above] = [Tree::Leaf(true), Tree::Leaf(false)].map(Box::new);
-            tool.plan.inside = Tree::Split { curve: 99, strict: false, below, above };
+            let [below, above] = [Tree::Leaf(Some(0)), Tree::Leaf(None)].map(Box::new);
+            tool.plan.owner = Tree::Split { curve: 99, strict: false, below, above };
         });
         assert_eq!(found, Some(Broken::Curve { index: 99 }));
         let found = broken(|tool| {

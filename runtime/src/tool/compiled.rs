@@ -11,28 +11,22 @@ use std::ops::Range;
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
 /// Points are finite, in the tool's frame and the file's unit. `length` is the length of the file's unit in the part's
-/// unit. All functions but `contains`, `owner` and `clearance` are defined only at points of the solid; elsewhere their
-/// results are meaningless. [`Evaluators::evaluate_lanes`] has the same bits as the functions of a single point.
+/// unit.
 pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Returns the tool's description.
     fn info() -> &'static ToolInfo;
 
-    /// Returns whether a point belongs to the solid, surface included.
-    fn contains(point: [f64; 3]) -> bool;
-    /// Returns the region that a point belongs to, as an index into the tool's list; `None` outside.
-    fn owner(point: [f64; 3]) -> Option<usize>;
-    /// Returns the penetration depth, at least 0.
-    fn depth(point: [f64; 3]) -> f64;
-    /// Returns the magnitude.
-    fn magnitude(point: [f64; 3], length: f64) -> f64;
-    /// Returns the niceness, at least 0.
-    fn niceness(point: [f64; 3]) -> f64;
-    /// Returns the unit vector to the surface. On the axis its radial component points along +x. At a centre, where no
-    /// direction is nearest, it is +z.
-    fn direction(point: [f64; 3]) -> [f64; 3];
-    /// Returns the magnitude's gradient with respect to the position in the part's unit.
-    fn gradient(point: [f64; 3], length: f64) -> [f64; 3];
+    /// Evaluates the requested outputs in the lanes that are `present` and belong to the solid. Every type of lane
+    /// gives the same bits.
+    fn evaluate_lanes<L: Lane>(
+        point: [L; 3],
+        length: L,
+        present: L::Mask,
+        outputs: Outputs,
+    ) -> LaneEvaluation<L>;
+
     /// Returns the distance from a point outside to the tool, in the file's unit, as specified by [`Tool::clearance`].
+    /// Its result at a point of the solid is meaningless.
     fn clearance(point: [f64; 3]) -> f64;
 
     /// Returns an enclosure of the evaluation over a box, for a tool without a profile; see [`Tool::enclose`].
@@ -40,13 +34,42 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
         None
     }
 
-    /// Evaluates the requested outputs in the lanes that are `present` and belong to the solid.
-    fn evaluate_lanes<L: Lane>(
-        point: [L; 3],
-        length: L,
-        present: L::Mask,
-        outputs: Outputs,
-    ) -> LaneEvaluation<L>;
+    /// Returns whether a point belongs to the solid, surface included.
+    #[inline]
+    fn contains(point: [f64; 3]) -> bool {
+        Self::evaluate_lanes(point, 1.0, true, Outputs::INSIDE).inside
+    }
+
+    /// Returns the evaluation at a point; `None` outside.
+    fn evaluate_point(point: [f64; 3], length: f64) -> Option<PointEvaluation> {
+        let lane = Self::evaluate_lanes(point, length, true, Outputs::EVERYTHING);
+        lane.inside.then_some(PointEvaluation {
+            region: lane.region as usize,
+            depth: lane.depth,
+            magnitude: lane.magnitude,
+            niceness: lane.niceness,
+            direction: lane.direction,
+            gradient: lane.gradient,
+        })
+    }
+}
+
+/// The evaluation at a point of the solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointEvaluation {
+    /// The region that the point belongs to, as an index into the tool's list.
+    pub region: usize,
+    /// Penetration depth, at least 0, in the file's unit.
+    pub depth: f64,
+    /// Magnitude: in the part's unit if it is the depth, otherwise the file's own number.
+    pub magnitude: f64,
+    /// Niceness, at least 0.
+    pub niceness: f64,
+    /// Unit vector to the nearest surface, in the tool's frame. On the axis its radial component points along +x. At a
+    /// centre, where no direction is nearest, it is +z.
+    pub direction: [f64; 3],
+    /// Gradient of the magnitude with respect to the position in the part's unit, in the tool's frame.
+    pub gradient: [f64; 3],
 }
 
 /// The evaluation at points side by side. Lanes that are not inside, and outputs that were not requested, are
@@ -190,7 +213,7 @@ fn evaluate_blocks<T: Evaluators, S: Simd>(
     }
 }
 
-/// Evaluates the points without vectors, by the functions of a single point.
+/// Evaluates the points one by one, without vectors.
 fn evaluate_points<T: Evaluators>(
     outputs: Outputs,
     points: &PointBatch,
@@ -199,32 +222,32 @@ fn evaluate_points<T: Evaluators>(
 ) {
     let [x, y, z] = points.coordinates();
     for index in 0..points.len() {
-        let p = [x[index], y[index], z[index]];
-        if !T::contains(p) {
+        let evaluation = T::evaluate_lanes([x[index], y[index], z[index]], length, true, outputs);
+        if !evaluation.inside {
             continue;
         }
         evaluations.inside[index / LANES] |= 1 << (index % LANES);
         if outputs.depth {
-            evaluations.depth[index] = T::depth(p);
+            evaluations.depth[index] = evaluation.depth;
         }
         if outputs.magnitude {
-            evaluations.magnitude[index] = T::magnitude(p, length);
+            evaluations.magnitude[index] = evaluation.magnitude;
         }
         if outputs.niceness {
-            evaluations.niceness[index] = T::niceness(p);
+            evaluations.niceness[index] = evaluation.niceness;
         }
         if outputs.direction {
-            for (list, component) in evaluations.direction.iter_mut().zip(T::direction(p)) {
-                list[index] = component;
+            for (list, part) in evaluations.direction.iter_mut().zip(evaluation.direction) {
+                list[index] = part;
             }
         }
         if outputs.gradient {
-            for (list, component) in evaluations.gradient.iter_mut().zip(T::gradient(p, length)) {
-                list[index] = component;
+            for (list, part) in evaluations.gradient.iter_mut().zip(evaluation.gradient) {
+                list[index] = part;
             }
         }
         if outputs.region {
-            evaluations.region[index] = T::owner(p).map_or(-1.0, |region| region as f64);
+            evaluations.region[index] = evaluation.region;
         }
     }
 }

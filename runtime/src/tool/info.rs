@@ -59,29 +59,6 @@ pub enum Symmetry {
 }
 
 impl ToolInfo {
-    /// Returns a description made of constants, as generated code writes it.
-    pub const fn new(
-        [name, title]: [&'static str; 2],
-        unit: Unit,
-        (surfaces, regions): (&'static [Surface], &'static [Region]),
-        (symmetry, envelope): (Symmetry, &'static [EnvelopeSlab]),
-        (outline, depth): (&'static [ProfileSegment], DepthBounds),
-        digest: u64,
-    ) -> ToolInfo {
-        ToolInfo {
-            name: Cow::Borrowed(name),
-            title: Cow::Borrowed(title),
-            unit,
-            surfaces: Cow::Borrowed(surfaces),
-            regions: Cow::Borrowed(regions),
-            envelope: Cow::Borrowed(envelope),
-            symmetry,
-            outline: Cow::Borrowed(outline),
-            depth,
-            digest,
-        }
-    }
-
     /// Returns whether depth and clearance are true distances, which holds for a tool with a profile. Even then,
     /// farther out than 48 sizes of the tool the clearance is a lower bound. Without a profile, depth is whatever the
     /// file defines, and clearance is a lower bound everywhere.

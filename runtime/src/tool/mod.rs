@@ -12,7 +12,7 @@ mod info;
 mod interpreted;
 mod lane;
 
-pub use compiled::{Evaluators, LaneEvaluation};
+pub use compiled::{Evaluators, LaneEvaluation, PointEvaluation};
 pub use dual::Dual;
 pub(crate) use enclosure::bit;
 pub use enclosure::{Enclosure, EvaluationEnclosure, Ternary};

@@ -26,7 +26,7 @@ const FUNCTIONS: [&str; 18] = [
     "Lane::quotient",
     "L::any",
     "LaneEvaluation::none",
-    "ToolInfo::new",
+    "std::borrow::Cow::Borrowed",
     "ProfileSegment::line",
     "ProfileSegment::arc",
     "Region::new",

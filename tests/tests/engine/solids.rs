@@ -8,13 +8,19 @@ use tool_dsl::{CheckedTool, compile, compile_with_arguments};
 use tools_library::{Block, LBracket};
 use touchoff::Interval;
 use touchoff::Unit;
-use touchoff::tool::{Evaluators, Symmetry};
+use touchoff::tool::{Evaluators, PointEvaluation, Symmetry};
 use touchoff_tests::oracle::rng::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
 /// Returns the region and the depth at a point.
 fn at<T: Evaluators>(p: [f64; 3]) -> Option<(&'static str, f64)> {
-    T::owner(p).map(|region| (T::info().regions[region].name.as_ref(), T::depth(p)))
+    let evaluation = T::evaluate_point(p, 1.0)?;
+    Some((T::info().regions[evaluation.region].name.as_ref(), evaluation.depth))
+}
+
+/// Returns the evaluation at a point inside.
+fn inside<T: Evaluators>(p: [f64; 3], length: f64) -> PointEvaluation {
+    T::evaluate_point(p, length).unwrap_or_else(|| panic!("{p:?} is outside"))
 }
 
 #[test]
@@ -37,10 +43,11 @@ fn a_block_at_faces_edges_and_corners() {
         p[axis] = f64::next_up(p[axis]);
         assert!(!Block::contains(p), "{p:?}");
     }
-    assert_eq!(Block::direction([3.0, 14.5, 9.0]), [0.0, 1.0, 0.0]);
-    assert_eq!(Block::gradient([3.0, 14.5, 9.0], 1.0), [0.0, -1.0, 0.0]);
+    let near_the_back = inside::<Block>([3.0, 14.5, 9.0], 1.0);
+    assert_eq!(near_the_back.direction, [0.0, 1.0, 0.0]);
+    assert_eq!(near_the_back.gradient, [0.0, -1.0, 0.0]);
     // A magnitude that is the depth, in the part's unit.
-    assert_eq!(Block::magnitude([3.0, 2.0, 2.5], 2.0), 5.0);
+    assert_eq!(inside::<Block>([3.0, 2.0, 2.5], 2.0).magnitude, 5.0);
 }
 
 #[test]
@@ -78,10 +85,11 @@ fn a_bracket_at_its_hole_and_edges() {
     for p in [[20.0, 0.0, 10.0], [0.0, 10.0, 10.0], [0.0, 0.0, 24.0], [10.0, 0.0, 0.0]] {
         assert!(!LBracket::contains(p), "{p:?}");
     }
-    let toward = LBracket::direction([14.0, 0.0, 3.0]);
+    let toward = inside::<LBracket>([14.0, 0.0, 3.0], 1.0).direction;
     assert_eq!(toward, [-1.0, 0.0, 0.0]);
     let half = 0.5f64.sqrt();
-    for (part, expected) in LBracket::direction([-5.0, 0.0, 5.0]).into_iter().zip([half, 0.0, half])
+    for (part, expected) in
+        inside::<LBracket>([-5.0, 0.0, 5.0], 1.0).direction.into_iter().zip([half, 0.0, half])
     {
         assert!((part - expected).abs() < 1e-15);
     }

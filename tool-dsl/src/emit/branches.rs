@@ -1,4 +1,4 @@
-//! Trees of splits as Rust: nested `if`s for one point, masks for lanes.
+//! Trees of splits as Rust: nested `if`s where each leaf is an expression, masks where it is an owner.
 
 use super::code::Writer;
 use super::tokens::Tokens;
@@ -7,27 +7,20 @@ use crate::plan::Tree;
 use std::collections::{BTreeSet, HashMap};
 
 impl Writer<'_> {
-    /// Writes a tree as nested `if`s. `leaf` writes the value of a leaf, and `needs` lists its nodes. Nodes
-    /// that every path down the tree needs are computed before the first test.
-    pub(super) fn nested<L>(
-        &self,
-        code: &mut Tokens,
-        tree: &Tree<L>,
-        needs: &impl Fn(&L) -> Vec<Id>,
-        leaf: &impl Fn(&mut Tokens, &L),
-    ) {
+    /// Writes a tree of expressions as nested `if`s. Nodes that every path down the tree needs are computed
+    /// before the first test.
+    pub(super) fn nested(&self, code: &mut Tokens, tree: &Tree<Id>) {
         let mut always = HashMap::new();
-        self.always(tree, needs, &mut always);
-        self.branch(code, tree, &always, leaf, &BTreeSet::new());
+        self.always(tree, &|id| vec![*id], &mut always);
+        self.branch(code, tree, &always, &BTreeSet::new());
     }
 
     /// Writes a tree's code, and returns whether it is a single `if`.
-    fn branch<L>(
+    fn branch(
         &self,
         code: &mut Tokens,
-        tree: &Tree<L>,
-        always: &HashMap<*const Tree<L>, BTreeSet<Id>>,
-        leaf: &impl Fn(&mut Tokens, &L),
+        tree: &Tree<Id>,
+        always: &HashMap<*const Tree<Id>, BTreeSet<Id>>,
         scope: &BTreeSet<Id>,
     ) -> bool {
         let mut scope = scope.clone();
@@ -36,31 +29,26 @@ impl Writer<'_> {
         self.lets(&mut lets, needed, &mut scope);
         let without_lets = lets.is_empty();
         code.add(lets);
-        let Tree::Split { curve, strict, below, above } = tree else {
-            if let Tree::Leaf(own) = tree {
-                leaf(code, own);
+        let (curve, strict, below, above) = match tree {
+            Tree::Leaf(id) => {
+                self.leaf(code, *id);
+                return false;
             }
-            return false;
+            Tree::Split { curve, strict, below, above } => (*curve, *strict, below, above),
         };
-        let mut sides = [Tokens::default(), Tokens::default()];
-        self.branch(&mut sides[0], below, always, leaf, &scope);
-        let chained = self.branch(&mut sides[1], above, always, leaf, &scope);
-        let [below, above] = sides;
-        if below.is_word("true") && above.is_word("false") {
-            self.test(code, *curve, *strict);
-            return false;
-        }
         code.word("if");
-        self.test(code, *curve, *strict);
+        self.test(code, curve, strict);
         code.brace(|code| {
-            code.add(below);
+            self.branch(code, below, always, &scope);
         });
+        let mut other = Tokens::default();
+        let is_chain = self.branch(&mut other, above, always, &scope);
         code.word("else");
-        if chained {
-            code.add(above);
+        if is_chain {
+            code.add(other);
         } else {
             code.brace(|code| {
-                code.add(above);
+                code.add(other);
             });
         }
         without_lets

@@ -1,5 +1,6 @@
-//! Emission of a checked tool as Rust: straight-line code without loops, recursion, tables or panics, in two
-//! forms of one plan. Emission cannot fail, since all errors are found earlier.
+//! Emission of a checked tool as Rust: straight-line code without loops, recursion, tables or panics. Points
+//! inside have one evaluator, generic over numbers, vectors of numbers, duals and enclosures; the distance from
+//! a point outside is a function of `f64`. Emission cannot fail, since all errors are found earlier.
 
 mod branches;
 mod code;
@@ -21,7 +22,7 @@ use crate::model::RegionOutputs;
 use crate::plan::Tree;
 use code::{Form, Writer};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 use std::fmt::Write;
 use tokens::{Tokens, literal};
 
@@ -42,7 +43,7 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
     let info = info(tool);
-    let scalar = scalar(tool);
+    let clearance = clearance(tool);
     let lanes = lanes::evaluator(tool);
     // A profile needs no enclosure by interval evaluation: its geometry is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
@@ -67,7 +68,7 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
 
             impl Evaluators for #name {
                 #info
-                #scalar
+                #clearance
                 #enclose
                 #lanes
             }
@@ -79,19 +80,6 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
 /// that uses the tool, so that one mistake gives one message.
 pub fn placeholder(name: &str) -> TokenStream {
     let name = Ident::new(name, Span::call_site());
-    let mut functions = quote! { fn info() -> &'static ToolInfo { ::core::unreachable!() } };
-    let empty = quote! { ::core::unreachable!() };
-    functions.extend(quote! {
-        fn evaluate_lanes<L: Lane>(
-            point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
-        ) -> LaneEvaluation<L> { #empty }
-    });
-    functions.extend(function("contains", false, &quote! { bool }, &empty));
-    functions.extend(function("owner", false, &quote! { Option<usize> }, &empty));
-    functions.extend(function("clearance", false, &quote! { f64 }, &empty));
-    for output in &OUTPUTS {
-        functions.extend(function(output.name, output.with_length, &output.result(), &empty));
-    }
     quote! {
         #[allow(missing_docs)]
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,7 +88,13 @@ pub fn placeholder(name: &str) -> TokenStream {
         #[allow(unused)]
         const _: () = {
             use ::touchoff::tool::{Outputs, ToolInfo, Evaluators, LaneEvaluation, Lane};
-            impl Evaluators for #name { #functions }
+            impl Evaluators for #name {
+                fn info() -> &'static ToolInfo { ::core::unreachable!() }
+                fn clearance(point: [f64; 3]) -> f64 { ::core::unreachable!() }
+                fn evaluate_lanes<L: Lane>(
+                    point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
+                ) -> LaneEvaluation<L> { ::core::unreachable!() }
+            }
         };
     }
 }
@@ -186,7 +180,7 @@ fn info(tool: &CheckedTool) -> TokenStream {
             }
             None => quote! { None },
         });
-    let shape = match model.domain {
+    let symmetry = match model.domain {
         Domain::HalfPlane => quote! { Symmetry::Revolved },
         Domain::Space => {
             let [x, y] = lateral_extent(&tool.extent).map(|ends| {
@@ -198,146 +192,61 @@ fn info(tool: &CheckedTool) -> TokenStream {
     };
     quote! {
         fn info() -> &'static ToolInfo {
-            static SURFACES: &[Surface] = &[#(#surfaces),*];
-            static REGIONS: &[Region] = &[#(#regions),*];
-            static SLABS: &[EnvelopeSlab] = &[#(#slabs),*];
-            static OUTLINE: &[ProfileSegment] = &[#(#pieces),*];
-            static INFO: ToolInfo = ToolInfo::new(
-                [#name, #title],
-                ::touchoff::Unit::#unit,
-                (SURFACES, REGIONS),
-                (#shape, SLABS),
-                (OUTLINE, DepthBounds { lower_slope: #lower_slope, lipschitz: #lipschitz, rounding: #rounding }),
-                #digest,
-            );
+            static INFO: ToolInfo = ToolInfo {
+                name: ::std::borrow::Cow::Borrowed(#name),
+                title: ::std::borrow::Cow::Borrowed(#title),
+                unit: ::touchoff::Unit::#unit,
+                surfaces: ::std::borrow::Cow::Borrowed(&[#(#surfaces),*]),
+                regions: ::std::borrow::Cow::Borrowed(&[#(#regions),*]),
+                envelope: ::std::borrow::Cow::Borrowed(&[#(#slabs),*]),
+                symmetry: #symmetry,
+                outline: ::std::borrow::Cow::Borrowed(&[#(#pieces),*]),
+                depth: DepthBounds { lower_slope: #lower_slope, lipschitz: #lipschitz, rounding: #rounding },
+                digest: #digest,
+            };
             &INFO
         }
     }
 }
 
-/// One quantity that an evaluator computes.
+/// One quantity that the evaluator computes.
 struct Output {
     name: &'static str,
-    /// True if it depends on the unit of the part.
-    with_length: bool,
-    vector: bool,
     of: fn(&RegionOutputs) -> Vec<Id>,
 }
 
 const OUTPUTS: [Output; 5] = [
-    Output { name: "depth", with_length: false, vector: false, of: |o| vec![o.depth] },
-    Output { name: "magnitude", with_length: true, vector: false, of: |o| vec![o.magnitude] },
-    Output { name: "niceness", with_length: false, vector: false, of: |o| vec![o.niceness] },
-    Output { name: "direction", with_length: false, vector: true, of: |o| o.direction.to_vec() },
-    Output { name: "gradient", with_length: true, vector: true, of: |o| o.gradient.to_vec() },
+    Output { name: "depth", of: |o| vec![o.depth] },
+    Output { name: "magnitude", of: |o| vec![o.magnitude] },
+    Output { name: "niceness", of: |o| vec![o.niceness] },
+    Output { name: "direction", of: |o| o.direction.to_vec() },
+    Output { name: "gradient", of: |o| o.gradient.to_vec() },
 ];
 
-impl Output {
-    fn result(&self) -> TokenStream {
-        if self.vector {
-            quote! { [f64; 3] }
-        } else {
-            quote! { f64 }
-        }
-    }
-}
-
-/// Emits the evaluators for one point.
-fn scalar(tool: &CheckedTool) -> TokenStream {
-    let mut all =
-        of_tests(tool, "contains", &quote! { bool }, &tool.plan.inside, &|code, inside| {
-            code.word(if *inside { "true" } else { "false" });
-        });
-    let owner = |code: &mut Tokens, owner: &Option<usize>| {
-        match owner {
-            Some(index) => code.word("Some").paren(|code| {
-                code.count(*index);
-            }),
-            None => code.word("None"),
-        };
-    };
-    all.extend(of_tests(tool, "owner", &quote! { Option<usize> }, &tool.plan.owner, &owner));
-    for output in &OUTPUTS {
-        let tree = tool
-            .plan
-            .owner
-            // Evaluators of outputs are not called outside, so those leaves are replaced by their siblings.
-            .map(&|owner: &Option<usize>| {
-                owner.map(|r| (output.of)(&tool.model.regions[r].outputs))
-            });
-        if let Some(tree) = tree {
-            let body = body(tool, &tree);
-            all.extend(function(output.name, output.with_length, &output.result(), &body));
-        }
-    }
-    if let Some(tree) = tool.plan.clearance.map(&|id: &Id| Some(vec![*id])) {
-        all.extend(function("clearance", false, &quote! { f64 }, &body(tool, &tree)));
-    }
-    all
-}
-
-fn function(name: &str, length: bool, result: &TokenStream, body: &TokenStream) -> TokenStream {
-    let name = format_ident!("{name}");
-    let extra = length.then(|| quote! { , length: f64 });
-    quote! {
-        #[inline]
-        fn #name([x, y, z]: [f64; 3] #extra) -> #result { #body }
-    }
-}
-
-/// Writes the body of a function whose leaves are one or three expressions.
-fn body(tool: &CheckedTool, tree: &Tree<Vec<Id>>) -> TokenStream {
+/// Emits the distance from a point outside, a tree of nested `if`s.
+fn clearance(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let mut roots = Vec::new();
-    leaves(tree, &mut roots);
+    leaves(&tool.plan.clearance, &mut roots);
+    let tree = &tool.plan.clearance;
     let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &roots, tree);
     let mut code = Tokens::default();
-    writer.nested(&mut code, tree, &|ids: &Vec<Id>| ids.clone(), &|code, ids| {
-        together(code, ids, |code, id| writer.leaf(code, *id));
-    });
+    writer.nested(&mut code, tree);
     let (given, code) = (writer.given(), code.done());
-    quote! { #given #code }
-}
-
-/// Writes one value as it is, several as an array.
-fn together<T>(code: &mut Tokens, values: &[T], one: impl Fn(&mut Tokens, &T)) {
-    if let [only] = values {
-        return one(code, only);
+    quote! {
+        #[inline]
+        fn clearance([x, y, z]: [f64; 3]) -> f64 { #given #code }
     }
-    code.bracket(|code| {
-        for (k, value) in values.iter().enumerate() {
-            if k > 0 {
-                code.sign(",");
-            }
-            one(code, value);
-        }
-    });
 }
 
-fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
+fn leaves(tree: &Tree<Id>, roots: &mut Vec<Id>) {
     match tree {
-        Tree::Leaf(ids) => roots.extend(ids),
+        Tree::Leaf(id) => roots.push(*id),
         Tree::Split { below, above, .. } => {
             leaves(below, roots);
             leaves(above, roots);
         }
     }
-}
-
-/// Emits a function of a tree that needs nothing except its tests.
-fn of_tests<L>(
-    tool: &CheckedTool,
-    name: &str,
-    result: &TokenStream,
-    tree: &Tree<L>,
-    leaf: &impl Fn(&mut Tokens, &L),
-) -> TokenStream {
-    let model = &tool.model;
-    let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &[], tree);
-    let mut code = Tokens::default();
-    writer.nested(&mut code, tree, &|_| vec![], leaf);
-    let (given, code) = (writer.given(), code.done());
-    function(name, false, result, &quote! { #given #code })
 }
 
 /// Formats the code for people, without the drawing in its documentation.

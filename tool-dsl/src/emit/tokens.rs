@@ -1,6 +1,6 @@
 //! An append-only list of tokens, so that tokens once written are never copied.
 
-use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::TokenStreamExt;
 
 /// Code under construction.
@@ -49,11 +49,6 @@ impl Tokens {
         self
     }
 
-    pub(super) fn count(&mut self, value: usize) -> &mut Tokens {
-        self.0.append(Literal::usize_suffixed(value));
-        self
-    }
-
     /// Appends a group in parentheses.
     pub(super) fn paren(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
         self.group(Delimiter::Parenthesis, inner)
@@ -93,13 +88,6 @@ impl Tokens {
         self.word("z").sign(".").word("of").paren(|code| {
             code.number(value);
         })
-    }
-
-    /// Returns whether this consists of one word only.
-    pub(super) fn is_word(&self, word: &str) -> bool {
-        let mut tokens = self.0.clone().into_iter();
-        let first = tokens.next();
-        tokens.next().is_none() && matches!(first, Some(TokenTree::Ident(ident)) if ident == word)
     }
 }
 

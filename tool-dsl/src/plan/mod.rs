@@ -121,8 +121,6 @@ impl<L: Clone + PartialEq> Tree<L> {
 pub struct Plan {
     /// The index of the region that owns a point.
     pub owner: Tree<Option<usize>>,
-    /// True for points that belong to any region.
-    pub inside: Tree<bool>,
     /// The distance from a point outside to the tool; without a profile, a lower bound of it.
     pub clearance: Tree<Id>,
 }
@@ -158,10 +156,7 @@ fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
         }
         None => (by_signs(model, extent)?, Tree::Leaf(distance_to_box(model, extent))),
     };
-    // Both trees have the same tests, so `inside` agrees with `owner` to the last bit.
-    let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
-    let inside = inside.unwrap_or(Tree::Leaf(false));
-    Ok(Plan { owner, inside, clearance })
+    Ok(Plan { owner, clearance })
 }
 
 /// Returns a tree that tests the section's box first, since curves may recur beyond it.

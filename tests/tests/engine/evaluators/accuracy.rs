@@ -2,9 +2,10 @@
 //! side certain beyond 2 ulp(S), unit directions to 8 ε · max(1, S/ρ). S is the next power of two above the tool's
 //! largest coordinate, and ρ the distance to the nearest point at which the direction does not exist.
 
-use super::LENGTHS;
 use super::points::{format_point, scale};
-use touchoff::tool::Evaluators;
+use super::{LENGTHS, at, batch, evaluate};
+use touchoff::Level;
+use touchoff::tool::{Outputs, PointEvaluation, Tool};
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 
@@ -54,31 +55,34 @@ struct Findings {
 }
 
 /// Compares a tool with its oracle at some points, prints a row and asserts the contract.
-pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
+pub(crate) fn of(tool: &dyn Tool, oracle: &dyn Oracle, points: &[[f64; 3]]) {
     let s = scale(oracle);
     let ulp = s * f64::EPSILON;
     let reference = restated::of(oracle.name()).map(|tool| Reference::new(&tool));
     let mut found = Findings::default();
     let mut inside = 0;
-    for &p in points {
+    let list = batch(points);
+    let by_length =
+        LENGTHS.map(|length| evaluate(tool, Level::baseline(), Outputs::EVERYTHING, &list, length));
+    for (i, &p) in points.iter().enumerate() {
         let distance = oracle.signed_distance(p);
-        let contained = T::contains(p);
+        let contained = at(&by_length[0], i).is_some();
         if distance.abs() > 2.0 * ulp && contained != (distance < 0.0) {
             found.sides.push(format!(
                 "contains = {contained}, distance {distance:e}: {}",
                 format_point(p)
             ));
         }
-        let owner = T::owner(p);
+        let owner = at(&by_length[0], i).map(|evaluated| evaluated.region);
         let expected = oracle.evaluate(p);
         if oracle.border_distance(p) > BORDER_DISTANCE_FRACTION * s
             && owner != expected.map(|expected| expected.owner)
         {
             found.owners.push(format!("{owner:?}, not {expected:?}: {}", format_point(p)));
         }
-        if let Some(owner) = owner.filter(|_| contained) {
+        if let [Some(one), Some(other)] = by_length.each_ref().map(|list| at(list, i)) {
             inside += 1;
-            evaluation::<T>(oracle, p, owner, expected, ulp, reference.as_ref(), &mut found);
+            evaluation(oracle, p, [one, other], expected, ulp, reference.as_ref(), &mut found);
         }
     }
     println!(
@@ -109,17 +113,17 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
     found.niceness.within(1.0, "niceness in ulp(S)");
 }
 
-/// Compares the evaluation at one point inside.
-fn evaluation<T: Evaluators>(
+/// Compares the evaluations at one point inside, one for each of [`LENGTHS`].
+fn evaluation(
     oracle: &dyn Oracle,
     p: [f64; 3],
-    owner: usize,
+    by_length: [PointEvaluation; 2],
     expected: Option<OracleEvaluation>,
     ulp: f64,
     reference: Option<&Reference>,
     found: &mut Findings,
 ) {
-    let (depth, niceness, direction) = (T::depth(p), T::niceness(p), T::direction(p));
+    let PointEvaluation { region: owner, depth, niceness, direction, .. } = by_length[0];
     let whole = [depth, niceness].into_iter().chain(direction);
     assert!(
         whole.clone().all(f64::is_finite),
@@ -138,12 +142,11 @@ fn evaluation<T: Evaluators>(
     let is_depth = magnitude_is_depth(oracle);
     let hard = if is_depth { deep } else { expected.map_or(0.0, |expected| expected.magnitude) };
     found.depth.see((depth - deep).abs() / ulp, p, || format!("{depth:e}, not {deep:e}"));
-    for length in LENGTHS {
-        let magnitude = T::magnitude(p, length);
+    for (length, PointEvaluation { magnitude, gradient, .. }) in LENGTHS.into_iter().zip(by_length)
+    {
         let unit = if is_depth { length } else { 1.0 };
         let error = (magnitude / unit - hard).abs() / ulp;
         found.magnitude.see(error, p, || format!("{magnitude:e} at length {length}"));
-        let gradient = T::gradient(p, length);
         assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", format_point(p));
     }
     let size = norm(direction);
@@ -169,9 +172,9 @@ fn evaluation<T: Evaluators>(
         return;
     }
     let slope = oracle.gradient(p).expect("the oracle has the point inside");
-    for length in LENGTHS {
+    for (length, evaluated) in LENGTHS.into_iter().zip(by_length) {
         let per = if is_depth { 1.0 } else { length };
-        let gradient = T::gradient(p, length).map(|part| part * per);
+        let gradient = evaluated.gradient.map(|part| part * per);
         let error = distance(gradient, slope) / norm(slope).max(1.0) / doubt;
         found.gradient.see(error, p, || format!("{gradient:?}, not {slope:?}"));
     }

@@ -1,11 +1,11 @@
 //! All evaluators of a tool have the bits of the reference, which follows the text region by region.
 
-use super::LENGTHS;
 use super::points::{format_point, scale};
+use super::{LENGTHS, at, batch, evaluate, is_inside};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Evaluators, Interpreted, Outputs, PointBatch, Tool};
+use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
 use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
@@ -16,24 +16,20 @@ type Answer = Option<(usize, [u64; 9])>;
 /// geometry has not.
 const CORNER: f64 = 1.0;
 
-/// Compares all evaluators at some points. Those that follow the plan (both forms of code, the tape) have the same
+/// Compares all evaluators at some points. Those that follow the plan (code on numbers and on vectors, the tape) have the same
 /// bits everywhere; the reference has them too, but for [`CORNER`]s.
-pub(crate) fn of<T: Evaluators>(
-    tool: T,
+pub(crate) fn of(
+    tool: &dyn Tool,
     oracle: &dyn Oracle,
     checked: &CheckedTool,
     tape: &Interpreted,
     points: &[[f64; 3]],
 ) {
-    let mut list = PointBatch::default();
-    points.iter().for_each(|p| list.push(*p));
-    for p in points {
-        assert_eq!(T::contains(*p), T::owner(*p).is_some(), "at {}", format_point(*p));
-    }
+    let list = batch(points);
     let mut corners = 0;
     for length in LENGTHS {
         let mut reference = Interpreter::new(checked);
-        let code: Vec<Answer> = points.iter().map(|p| scalar::<T>(*p, length)).collect();
+        let code = everything(tool, "baseline", Level::baseline(), &list, length);
         let assert_same_bits = |what: &str, got: &[Answer]| {
             for ((got, expected), p) in got.iter().zip(&code).zip(points) {
                 let message = || format!("{what} at {}: {:?}", format_point(*p), numbers(*got));
@@ -42,7 +38,7 @@ pub(crate) fn of<T: Evaluators>(
         };
         assert_same_bits("tape", &everything(tape, "the tape", Level::baseline(), &list, length));
         for (name, level) in levels() {
-            assert_same_bits(name, &everything(&tool, name, level, &list, length));
+            assert_same_bits(name, &everything(tool, name, level, &list, length));
         }
         for (p, code) in points.iter().zip(&code) {
             let expected = answer_of(reference.evaluate(*p, length));
@@ -57,7 +53,7 @@ pub(crate) fn of<T: Evaluators>(
     }
     println!(
         "{:20} {:7} points: code, tape and lanes at {} alike; reference too, but for {corners} answers at corners",
-        T::info().name,
+        tool.info().name,
         points.len(),
         levels().map(|(name, _)| name).collect::<Vec<_>>().join(", "),
     );
@@ -66,7 +62,7 @@ pub(crate) fn of<T: Evaluators>(
 /// Returns every SIMD level of this machine, the best among them twice.
 fn levels() -> impl Iterator<Item = (&'static str, Level)> {
     let best = Level::new();
-    let mut levels = vec![("baseline", Level::baseline()), ("best", best)];
+    let mut levels = vec![("best", best)];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse2().map(|token| ("sse2", Level::Sse2(token))));
@@ -77,18 +73,6 @@ fn levels() -> impl Iterator<Item = (&'static str, Level)> {
     levels.into_iter()
 }
 
-fn evaluated(
-    tool: &dyn Tool,
-    level: Level,
-    ask: Outputs,
-    points: &PointBatch,
-    length: f64,
-) -> Evaluations {
-    let mut evaluation = Evaluations::default();
-    tool.evaluate(level, ask, points, length, &mut evaluation);
-    evaluation
-}
-
 /// Returns all outputs of a tool, after a check that a request for fewer outputs gives the same values.
 fn everything(
     tool: &dyn Tool,
@@ -97,12 +81,12 @@ fn everything(
     list: &PointBatch,
     length: f64,
 ) -> Vec<Answer> {
-    let evaluation = evaluated(tool, level, Outputs::EVERYTHING, list, length);
+    let evaluation = evaluate(tool, level, Outputs::EVERYTHING, list, length);
     for ask in [Outputs::INSIDE, Outputs::DIRECTION, Outputs::GRADIENT] {
-        let part = evaluated(tool, level, ask, list, length);
+        let part = evaluate(tool, level, ask, list, length);
         same(what, ask, &part, &evaluation, list.len());
     }
-    (0..list.len()).map(|i| at(&evaluation, i)).collect()
+    (0..list.len()).map(|i| at(&evaluation, i).map(answer)).collect()
 }
 
 fn bits(depth: f64, magnitude: f64, niceness: f64, u: [f64; 3], g: [f64; 3]) -> [u64; 9] {
@@ -117,35 +101,8 @@ fn answer_of(evaluation: Option<tool_dsl::interpret::Evaluation>) -> Answer {
     evaluation.map(|f| (f.region, bits(f.depth, f.magnitude, f.niceness, f.direction, f.gradient)))
 }
 
-fn scalar<T: Evaluators>(p: [f64; 3], length: f64) -> Answer {
-    let owner = T::owner(p);
-    owner.filter(|_| T::contains(p)).map(|region| {
-        let evaluation = bits(
-            T::depth(p),
-            T::magnitude(p, length),
-            T::niceness(p),
-            T::direction(p),
-            T::gradient(p, length),
-        );
-        (region, evaluation)
-    })
-}
-
-fn inside(evaluation: &Evaluations, i: usize) -> bool {
-    evaluation.inside[i / 8] >> (i % 8) & 1 == 1
-}
-
-fn at(evaluation: &Evaluations, i: usize) -> Answer {
-    inside(evaluation, i).then(|| {
-        let felt_here = bits(
-            evaluation.depth[i],
-            evaluation.magnitude[i],
-            evaluation.niceness[i],
-            [0, 1, 2].map(|k| evaluation.direction[k][i]),
-            [0, 1, 2].map(|k| evaluation.gradient[k][i]),
-        );
-        (evaluation.region[i] as usize, felt_here)
-    })
+fn answer(e: PointEvaluation) -> (usize, [u64; 9]) {
+    (e.region, bits(e.depth, e.magnitude, e.niceness, e.direction, e.gradient))
 }
 
 /// Asserts that a request for fewer outputs gives the same values of these.
@@ -164,7 +121,7 @@ fn same(what: &str, ask: Outputs, part: &Evaluations, everything: &Evaluations, 
         }
         numbers.into_iter().map(f64::to_bits).collect()
     };
-    for i in (0..count).filter(|i| inside(everything, *i)) {
+    for i in (0..count).filter(|i| is_inside(everything, *i)) {
         assert_eq!(lists(part, i), lists(everything, i), "{what}, {ask:?}, point {i}");
     }
 }

@@ -9,20 +9,16 @@ mod info;
 mod partitions;
 mod points;
 
-use std::path::Path;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
-use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::{self, Nearest, restated};
+use tools_library::TOOLS;
+use touchoff::Level;
+use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff_tests::library;
+use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
 
 /// Lengths of the file's unit in the part's that are tested: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
-
-/// Returns the text of a tool of the library.
-fn text(file: &str) -> Source {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    Source::read(path).expect("the library has the file")
-}
 
 /// Returns the tool of a text, checked for the reference interpreter.
 fn checked(source: &Source) -> CheckedTool {
@@ -36,87 +32,77 @@ fn interpreted(source: &Source) -> Interpreted {
     Interpreted::parse(source).expect("a tool of the library has no error")
 }
 
-macro_rules! suites {
-    ($($test:ident: $tool:ident in $file:literal, $oracle:expr;)*) => {
-        $(mod $test {
-            use super::*;
-
-            #[test]
-            fn all_evaluators_agree() {
-                let oracle = $oracle;
-                let source = text($file);
-                let (checked, tape) = (checked(&source), interpreted(&source));
-                let points = points::all(&oracle, 1);
-                agreement::of(tools_library::$tool, &oracle, &checked, &tape, &points);
-            }
-
-            #[test]
-            fn the_card_agrees() {
-                let info = touchoff::Tool::info(&tools_library::$tool);
-                match restated::of(stringify!($tool)) {
-                    Some(tool) => info::of(&tools_library::$tool, &Nearest::new(&tool)),
-                    None => assert!(info.outline.is_empty(), "its profile is not restated"),
-                }
-            }
-
-            #[test]
-            fn the_oracle_agrees() {
-                let oracle = $oracle;
-                accuracy::of::<tools_library::$tool>(&oracle, &points::all(&oracle, 2));
-            }
-        })*
-
-        #[test]
-        fn no_tool_of_the_library_is_left_out() {
-            let mut tested = [$(stringify!($tool)),*].map(String::from).to_vec();
-            let mut there: Vec<String> =
-                tools_library::TOOLS.iter().map(|tool| tool.info().name.to_string()).collect();
-            tested.sort();
-            there.sort();
-            assert_eq!(tested, there);
-            let mut oracles: Vec<String> =
-                oracle::all().iter().map(|oracle| oracle.name().to_owned()).collect();
-            oracles.sort();
-            assert_eq!(tested, oracles);
-        }
-    };
+/// Returns the requested outputs of a tool at some points.
+fn evaluate(
+    tool: &dyn Tool,
+    level: Level,
+    outputs: Outputs,
+    points: &PointBatch,
+    length: f64,
+) -> Evaluations {
+    let mut evaluations = Evaluations::default();
+    tool.evaluate(level, outputs, points, length, &mut evaluations);
+    evaluations
 }
 
-suites! {
-    unit_sphere: UnitSphere in "unit_sphere.tool", oracle::UnitSphere;
-    cylinder: Cylinder in "cylinder.tool", oracle::Cylinder;
-    half_sphere_cylinder: HalfSphereCylinder in "half_sphere_cylinder.tool", oracle::half_sphere_cylinder();
-    fig_7_3: Fig73 in "fig_7_3.tool", oracle::Fig73::default();
-    block: Block in "block.tool", oracle::Block;
-    l_bracket: LBracket in "l_bracket.tool", oracle::LBracket;
-    fig_7_3_exact: Fig73Exact in "fig_7_3_exact.tool", oracle::fig_7_3_exact();
-    d2_ball: D2Ball in "d2_ball.tool", oracle::d2_ball();
-    ball: Ball in "ball.tool", Nearest::of("Ball");
-    ball_er16: BallEr16 in "ball_er16.tool", Nearest::of("BallEr16");
-    barrel: Barrel in "barrel.tool", Nearest::of("Barrel");
-    boring_bar: BoringBar in "boring_bar.tool", Nearest::of("BoringBar");
-    bull_nose: BullNose in "bull_nose.tool", Nearest::of("BullNose");
-    bull_nose_hsk63: BullNoseHsk63 in "bull_nose_hsk63.tool", Nearest::of("BullNoseHsk63");
-    chamfer_mill: ChamferMill in "chamfer_mill.tool", Nearest::of("ChamferMill");
-    corner_rounding: CornerRounding in "corner_rounding.tool", Nearest::of("CornerRounding");
-    countersink: Countersink in "countersink.tool", Nearest::of("Countersink");
-    deburrer: Deburrer in "deburrer.tool", Nearest::of("Deburrer");
-    dovetail: Dovetail in "dovetail.tool", Nearest::of("Dovetail");
-    drill: Drill in "drill.tool", Nearest::of("Drill");
-    drill_bt40: DrillBt40 in "drill_bt40.tool", Nearest::of("DrillBt40");
-    engraver: Engraver in "engraver.tool", Nearest::of("Engraver");
-    face_mill: FaceMill in "face_mill.tool", Nearest::of("FaceMill");
-    flat: Flat in "flat.tool", Nearest::of("Flat");
-    half_inch_ball_cat40: HalfInchBallCat40 in "half_inch_ball_cat40.tool", Nearest::of("HalfInchBallCat40");
-    lens: Lens in "lens.tool", Nearest::of("Lens");
-    lollipop: Lollipop in "lollipop.tool", Nearest::of("Lollipop");
-    oval: Oval in "oval.tool", Nearest::of("Oval");
-    quarter_inch_flat: QuarterInchFlat in "quarter_inch_flat.tool", Nearest::of("QuarterInchFlat");
-    reamer: Reamer in "reamer.tool", Nearest::of("Reamer");
-    single_tooth: SingleTooth in "single_tooth.tool", Nearest::of("SingleTooth");
-    spot_drill: SpotDrill in "spot_drill.tool", Nearest::of("SpotDrill");
-    t_slot: TSlot in "t_slot.tool", Nearest::of("TSlot");
-    tapered_ball: TaperedBall in "tapered_ball.tool", Nearest::of("TaperedBall");
-    thread_mill: ThreadMill in "thread_mill.tool", Nearest::of("ThreadMill");
-    woodruff: Woodruff in "woodruff.tool", Nearest::of("Woodruff");
+fn is_inside(evaluations: &Evaluations, i: usize) -> bool {
+    evaluations.inside[i / 8] >> (i % 8) & 1 == 1
+}
+
+/// Returns all outputs at a point; `None` outside.
+fn at(evaluations: &Evaluations, i: usize) -> Option<PointEvaluation> {
+    is_inside(evaluations, i).then(|| PointEvaluation {
+        region: evaluations.region[i] as usize,
+        depth: evaluations.depth[i],
+        magnitude: evaluations.magnitude[i],
+        niceness: evaluations.niceness[i],
+        direction: [0, 1, 2].map(|k| evaluations.direction[k][i]),
+        gradient: [0, 1, 2].map(|k| evaluations.gradient[k][i]),
+    })
+}
+
+fn batch(points: &[[f64; 3]]) -> PointBatch {
+    let mut batch = PointBatch::default();
+    points.iter().for_each(|p| batch.push(*p));
+    batch
+}
+
+/// Runs a check on every tool of the library, each in a thread that has the tool's name, as its messages then do.
+fn for_each_tool(check: fn(&'static dyn Tool, &dyn Oracle, &Source)) {
+    let files = library::files();
+    assert_eq!(files.len(), TOOLS.len());
+    let threads = TOOLS.iter().zip(files).map(|(tool, file)| {
+        let name = tool.info().name.to_string();
+        let oracle = move || {
+            let mut all = oracle::all().into_iter();
+            all.find(|oracle| oracle.name() == tool.info().name).expect("every tool has an oracle")
+        };
+        let thread = std::thread::Builder::new().name(name.clone());
+        let read = move || Source::read(file).expect("the library has the file");
+        (name, thread.spawn(move || check(*tool, &*oracle(), &read())).expect("a thread"))
+    });
+    let threads: Vec<_> = threads.collect();
+    let failed = threads.into_iter().filter_map(|(name, thread)| thread.join().err().map(|_| name));
+    assert_eq!(failed.collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+#[test]
+fn all_evaluators_agree() {
+    for_each_tool(|tool, oracle, source| {
+        let points = points::all(oracle, 1);
+        agreement::of(tool, oracle, &checked(source), &interpreted(source), &points);
+    });
+}
+
+#[test]
+fn the_card_agrees() {
+    for_each_tool(|tool, _, _| match restated::of(&tool.info().name) {
+        Some(restated) => info::of(tool, &Nearest::new(&restated)),
+        None => assert!(tool.info().outline.is_empty(), "its profile is not restated"),
+    });
+}
+
+#[test]
+fn the_oracle_agrees() {
+    for_each_tool(|tool, oracle, _| accuracy::of(tool, oracle, &points::all(oracle, 2)));
 }
