@@ -1113,6 +1113,52 @@ fn numbers_that_controls_share_out_differently_are_refused() {
     nested(10).gives(&LINUXCNC, 2, &["more than 9 deep"]);
 }
 
+/// LinuxCNC seeks a subprogram after its call, and reads what stands between.
+#[test]
+fn a_subprogram_that_linuxcnc_does_not_find_is_refused() {
+    let scene = |main: &str, subprograms: &str| {
+        Scene::of(&format!("{}{subprograms}", program(&format!("G0 X-6. Y0. Z20.\n{main}"))))
+    };
+    let seven = "O7\nG1 Z3.\nM99\n";
+    let eight = "O8\nM98 P7\nG1 X4. Z1.\nM99\n";
+    scene("M98 P8", &format!("{eight}{seven}")).gives(&LINUXCNC, 0, &[]);
+    scene("M98 P7\nM98 P8", &format!("{seven}{eight}")).gives(&LINUXCNC, 0, &[]);
+    let not_found = "a call of O7 while it stands before the call";
+    scene("M98 P8", &format!("{seven}{eight}")).gives(&LINUXCNC, 2, &[not_found]);
+    for spelling in ["M98. P7", "M098 P7"] {
+        scene(spelling, seven).gives(&LINUXCNC, 2, &["write M98 or M99"]);
+    }
+    scene("#<x>=7\nM98 P#<x>", seven).gives(&LINUXCNC, 2, &["P of M98 while it depends on a name"]);
+    let passed = |line: &str| format!("O9\n{line}\nM99\n{seven}");
+    scene("M98 P7\nG1 X4. Z1.", &passed("G1 X1.")).gives(&LINUXCNC, 0, &[]);
+    for (line, word) in [
+        ("(A(B))", "comment"),
+        ("(A", "comment"),
+        ("M98 P#<q>", "P of M98 while it depends on a name"),
+    ] {
+        scene("M98 P7", &passed(line)).gives(&LINUXCNC, 2, &[word]);
+    }
+    Scene::of("G21 G90 G54 G94 S9000 M3\nG0 X-6. Y0. Z20.\nF0\nG1\nF100.\nG1 X4. Z1.\nM30\n")
+        .gives(&LINUXCNC, 2, &["G1 needs a feed rate"]);
+}
+
+/// A rapid traverse of a thin tool through a block of stock between its points.
+#[test]
+fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
+    let text = "tool Pin { units mm; profile { start (0, 0); line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting; } }";
+    for (spacing, status, word) in [
+        (1.0, 2, "T1 is too thin for a stock whose points are 1.0000 mm apart"),
+        (0.4, 1, "pin touches the stock in rapid traverse"),
+    ] {
+        let mut scene = Scene::new("T1 M6\nS900 M3\nG0 X-30. Y0. Z5.3\nX30.\nG1 X4. Y40.");
+        scene.bench.write("pin.tool", text);
+        scene.job = scene.job.replace("D2Ball", "pin.tool");
+        scene.job +=
+            &format!("[stock]\nbox = [[-20, -20, -20], [20, 20, 20]]\nspacing = {spacing}\n");
+        scene.gives(&LINUXCNC, status, &[word]);
+    }
+}
+
 /// Motions in a plane whose tool is not along it, and the way in which the axes turn there.
 #[test]
 fn a_tilted_plane_is_aligned_in_rapid_traverse_before_its_first_position() {

@@ -320,6 +320,11 @@ impl Block {
             || self.passed_over.iter().any(|code| code.letter == 'G' && names_axes(code))
     }
 
+    /// Returns whether the block has words besides a keyword, of which none was used.
+    pub(super) fn has_words(&self) -> bool {
+        self.unused != 0 || self.codes().next().is_some()
+    }
+
     /// Returns whether the block moves, or changes what motions do.
     pub(super) fn has_effect(&self) -> bool {
         self.codes.iter().any(Option::is_some) || self.keyword.is_some() || self.has_any("XYZABC")

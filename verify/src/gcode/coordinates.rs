@@ -384,6 +384,13 @@ impl Control {
             });
         }
         if block.keyword.is_some() {
+            if block.has_words() {
+                return Err(GcodeFault::Combination {
+                    word,
+                    condition: "its block has other words, before or after which the transformation changes",
+                    remedy: "write it in a block of its own",
+                });
+            }
             let needed = "a work offset (G54) before, since TRAORI and TRAFOOF deselect it";
             self.needs_offset = Some(needed);
         }

@@ -6,6 +6,7 @@ use super::expression::Parameters;
 use super::label::{Label, OWord, Place, Role, Subprogram, Subprograms};
 use super::text::{self, Extent};
 use super::{GcodeFault, MAX_CALLS, MAX_REPEATED};
+use std::collections::HashSet;
 
 /// A subprogram that is being executed.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub(super) struct Flow<'a> {
     closed: bool,
     subprograms: Subprograms,
     calls: Vec<Call>,
+    /// The labels that were called, or passed as a `sub`.
+    found: HashSet<Label>,
     /// Set once the program has a title.
     titled: bool,
     /// Set once a block of the main program was executed.
@@ -42,6 +45,7 @@ impl<'a> Flow<'a> {
             closed: extent.closed,
             subprograms: Subprograms::find(extent.text)?,
             calls: Vec::new(),
+            found: HashSet::new(),
             titled: false,
             started: false,
             repeated: 0,
@@ -62,6 +66,17 @@ impl<'a> Flow<'a> {
         self.place = after;
         self.count(1).map_err(|fault| (number, fault))?;
         Ok(Some((number, line)))
+    }
+
+    /// Returns whether the text has subprograms.
+    pub(super) fn has_subprograms(&self) -> bool {
+        self.subprograms.is_known()
+    }
+
+    /// Returns whether a subprogram stands before the present line, and was neither called nor passed as a `sub` so far.
+    pub(super) fn has_passed(&self, label: &Label) -> bool {
+        let is_before = |known: &Subprogram| known.body.offset <= self.place.offset;
+        self.subprograms.get(label).is_some_and(is_before) && !self.found.contains(label)
     }
 
     /// Returns whether there is a subprogram with a label.
@@ -132,6 +147,7 @@ impl<'a> Flow<'a> {
             }
             Role::Sub if self.calls.is_empty() && !self.titled => {
                 let known = self.subprograms.get(&label).and_then(|known| known.after);
+                self.found.insert(label.clone());
                 self.place = known.ok_or_else(|| GcodeFault::Nesting {
                     label: label.to_string(),
                     word: "sub",
@@ -168,6 +184,7 @@ impl<'a> Flow<'a> {
         if times == 0 {
             return Ok(());
         }
+        self.found.insert(label.clone());
         let locals = parameters.take_locals(role == Role::Sub);
         let return_to = self.place;
         self.place = subprogram.body;

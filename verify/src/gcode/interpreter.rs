@@ -7,6 +7,7 @@ use super::coordinates::is_programmed;
 use super::expression::Parameters;
 use super::flow::Flow;
 use super::label::{Label, Role};
+use super::linuxcnc;
 use super::modal::{FeedMode, Motion};
 use super::motion::Control;
 use super::next_run;
@@ -56,7 +57,11 @@ impl<'a> Interpreter<'a> {
             return Err(GcodeError { line, fault: GcodeFault::LoneReturn });
         }
         let extent = text::extent(text);
-        let flow = Flow::new(&extent).map_err(|(line, fault)| GcodeError { line, fault })?;
+        let located = |(line, fault)| GcodeError { line, fault };
+        let flow = Flow::new(&extent).map_err(located)?;
+        if setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc) && flow.has_subprograms() {
+            linuxcnc::check_text(extent.text).map_err(located)?;
+        }
         let mut control = Control::new(setup);
         let dialect = setup.rules.get(Rule::Dialect);
         // The head of a program of Heidenhain is a title elsewhere.
@@ -166,6 +171,21 @@ impl<'a> Interpreter<'a> {
         Ok((Label::Number(number), times.unwrap_or(1)))
     }
 
+    /// Refuses a call of a subprogram that LinuxCNC does not find: it seeks those that it does not know after the call only
+    /// (`control_back_to`).
+    fn check_order(&self, label: &Label) -> Result<(), GcodeFault> {
+        match self.control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
+            && self.flow.has_passed(label)
+        {
+            true => Err(GcodeFault::Combination {
+                word: format!("a call of {label}"),
+                condition: "it stands before the call and was not called before",
+                remedy: "move it to the end of the file: LinuxCNC seeks it after the call only",
+            }),
+            false => Ok(()),
+        }
+    }
+
     fn line(&mut self, line: usize, text: &str, block: &mut Block) -> Result<(), GcodeFault> {
         let switch = text.trim_start().strip_prefix('/');
         let is_optional = switch.is_some();
@@ -187,6 +207,9 @@ impl<'a> Interpreter<'a> {
             self.control.notes.add(line, Subject::ExecutedOptionalBlock);
         }
         if let Some(word) = block.label.take() {
+            if word.role == Role::Call {
+                self.check_order(&word.label)?;
+            }
             return self.flow.o_word(word, &mut self.parameters);
         }
         if block.is_empty() {
@@ -212,6 +235,7 @@ impl<'a> Interpreter<'a> {
         block.check_used()?;
         match (call, subprogram) {
             (Some((label, times)), _) => {
+                self.check_order(&label)?;
                 self.flow.call(label, Role::Title, times, &mut self.parameters)?;
             }
             (None, Some(_)) => self.flow.end_subprogram(&mut self.parameters)?,
@@ -387,11 +411,18 @@ impl Control {
         let is_dwell = block.code_of(Group::Dwell).is_some();
         match block.take('F') {
             Some(value) if value < 0.0 => {
-                Err(GcodeFault::NotAllowed { word: 'F', value, expected: "a positive number" })
+                let expected = "a positive number";
+                return Err(GcodeFault::NotAllowed { word: 'F', value, expected });
             }
-            Some(feed) if !is_dwell => {
-                self.modal.feed = Some(feed).filter(|feed| *feed > 0.0);
-                Ok(())
+            Some(feed) if !is_dwell => self.modal.feed = Some(feed).filter(|feed| *feed > 0.0),
+            _ => {}
+        }
+        // LinuxCNC asks for a feed rate also where no axis moves (`convert_straight`).
+        match block.code_of(Group::Motion) {
+            Some(Code { tenths: 10, .. })
+                if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) =>
+            {
+                self.check_feed("G1")
             }
             _ => Ok(()),
         }

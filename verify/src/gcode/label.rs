@@ -169,6 +169,11 @@ impl Subprograms {
         }
     }
 
+    /// Returns whether there is one.
+    pub(super) fn is_known(&self) -> bool {
+        !self.known.is_empty()
+    }
+
     pub(super) fn get(&self, label: &Label) -> Option<&Subprogram> {
         self.known.get(label)
     }

@@ -5,7 +5,8 @@
 use super::GcodeFault;
 use super::block::{Block, begins};
 use super::code::{Code, Group};
-use super::text::before_semicolon;
+use super::label::Place;
+use super::text::{before_semicolon, line};
 
 /// The longest line, in bytes without its end (`LINELEN` of the interpreter).
 const MAX_LINE: usize = 251;
@@ -18,10 +19,79 @@ pub(super) fn check_line(text: &str) -> Result<(), GcodeFault> {
         ("`*`", "an error on LinuxCNC", "remove it, or state another `dialect`")
     } else if text.split('(').skip(1).any(|comment| begins(comment, "abort,")) {
         ("(abort,", "a comment at which LinuxCNC stops", "remove it")
+    } else if text.contains("98") || text.contains("99") {
+        return check_spelling(&code(text)?);
     } else {
         return Ok(());
     };
     Err(GcodeFault::NotRead { word: word.to_owned(), meaning, remedy })
+}
+
+/// Refuses lines at which LinuxCNC stops also where it only seeks a subprogram after them.
+pub(super) fn check_text(text: &str) -> Result<(), (usize, GcodeFault)> {
+    let mut place = Place { offset: 0, line: 1 };
+    while let Some((line, after)) = line(text, place) {
+        let checked = check_line(line).and_then(|()| check_sought(line));
+        checked.map_err(|fault| (place.line, fault))?;
+        place = after;
+    }
+    Ok(())
+}
+
+/// Refuses a line without a comment's end, and one with a label or the number of a call that may have no value: it is computed
+/// also where the line is not executed.
+fn check_sought(text: &str) -> Result<(), GcodeFault> {
+    let code = code(text)?;
+    let code = code.trim_start_matches('/');
+    let label = code.trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit() || c == '.');
+    // Numbered parameters have a value always.
+    let can_fail = |text: &str| text.contains("#<") || text.contains('/') || text.contains("SQRT");
+    let (word, can_fail) = match code.split_once("M98") {
+        Some((_, call)) => ("P of M98", can_fail(call)),
+        None => {
+            let is_computed = label.starts_with("O#") || label.starts_with("O[");
+            ("the label after O", is_computed && can_fail(label))
+        }
+    };
+    match can_fail {
+        true => Err(GcodeFault::Combination {
+            word: word.to_owned(),
+            condition: "it depends on a name, a quotient or a root, which LinuxCNC computes also where it passes the line",
+            remedy: "write a number",
+        }),
+        false => Ok(()),
+    }
+}
+
+/// Refuses M98 and M99 in another spelling, of which LinuxCNC reads three characters.
+fn check_spelling(code: &str) -> Result<(), GcodeFault> {
+    for text in code.split('M').skip(1) {
+        let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+        let number = &text[..end];
+        let is_call = number.parse().is_ok_and(|number: f64| number == 98.0 || number == 99.0);
+        if is_call && number.len() > 2 {
+            let word = format!("M{number}");
+            let (meaning, remedy) = ("no word of LinuxCNC", "write M98 or M99");
+            return Err(GcodeFault::NotRead { word, meaning, remedy });
+        }
+    }
+    Ok(())
+}
+
+/// Returns a line in capitals without blanks and comments.
+fn code(text: &str) -> Result<String, GcodeFault> {
+    let mut code = String::new();
+    let mut is_comment = false;
+    for c in text.chars() {
+        match c {
+            '(' if is_comment => return Err(GcodeFault::OpenComment),
+            '(' | ')' => is_comment = c == '(',
+            ';' if !is_comment => return Ok(code),
+            c if !is_comment && !c.is_whitespace() => code.push(c.to_ascii_uppercase()),
+            _ => {}
+        }
+    }
+    if is_comment { Err(GcodeFault::OpenComment) } else { Ok(code) }
 }
 
 /// Refuses the words of a block that are known elsewhere.

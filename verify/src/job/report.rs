@@ -99,6 +99,12 @@ impl Job<'_> {
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, progress)?;
             pairs.extend(result.pairs);
+            for (line, reason) in result.cut.iter().flat_map(|cut| &cut.too_thin) {
+                let gap = Gap::open(*line, reason.clone());
+                if !gaps.contains(&gap) {
+                    gaps.push(gap);
+                }
+            }
             cuts.extend(result.cut);
             for (offset, line) in result.far_offsets {
                 let reason = format!(

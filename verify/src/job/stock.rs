@@ -45,6 +45,10 @@ pub struct CutStock {
     pub stock: Stock,
     /// Depth that surfaces may have that must not touch.
     pub tolerance: f64,
+    /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit.
+    pub found_layer: f64,
+    /// The tools that can pass through material between its points: the line of the first motion, and the reason.
+    pub(super) too_thin: Vec<(usize, String)>,
 }
 
 /// A finding as a JSON object.
@@ -73,6 +77,8 @@ pub(super) struct StockCut {
     unit: Unit,
     /// The index of the finding that each surface goes on with.
     open: Vec<(usize, usize)>,
+    /// The tools that have moved, by their numbers.
+    seen: Vec<Option<u32>>,
 }
 
 impl StockCut {
@@ -83,8 +89,38 @@ impl StockCut {
     pub(super) fn new(entry: &JobStock, job: &Job<'_>) -> Result<StockCut, JobError> {
         let stock = entry.build(job.unit())?;
         let tolerance = entry.tolerance.unwrap_or(stock.step());
-        let cut = CutStock { findings: Vec::new(), stock, tolerance };
-        Ok(StockCut { cut, unit: job.unit(), open: Vec::new() })
+        let found_layer = stock.found_layer(tolerance);
+        let cut =
+            CutStock { findings: Vec::new(), stock, tolerance, found_layer, too_thin: Vec::new() };
+        Ok(StockCut { cut, unit: job.unit(), open: Vec::new(), seen: Vec::new() })
+    }
+
+    /// Notes how far a tool can be in material that is not found, and that this is more than its cutting part.
+    fn see(&mut self, tool: &JobTool<'_>, line: usize) {
+        if self.seen.contains(&tool.number()) {
+            return;
+        }
+        self.seen.push(tool.number());
+        let CutStock { stock, tolerance, found_layer, too_thin, .. } = &mut self.cut;
+        let info = tool.tool.info();
+        let cutting = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
+        let height = cutting.map(|piece| piece.from[1].max(piece.to[1])).fold(0.0, f64::max);
+        let height = height * info.unit.factor_to(self.unit);
+        let limit = height + stock.found_layer(*tolerance);
+        let name = tool.number().map_or(info.name.to_string(), |number| format!("T{number}"));
+        match stock.found_depth(tool.tool, *tolerance) {
+            Some(depth) if depth <= limit || info.outline.is_empty() => {
+                *found_layer = found_layer.max(depth);
+            }
+            _ => too_thin.push((
+                line,
+                format!(
+                    "{name} is too thin for a stock whose points are {} apart, and can pass between them: state a smaller \
+                     `spacing`, or a smaller `tolerance` of the stock",
+                    self.unit.format(stock.spacing())
+                ),
+            )),
+        }
     }
 
     /// Runs a motion through the stock.
@@ -92,7 +128,8 @@ impl StockCut {
     /// # Errors
     /// If it cannot be cut.
     pub(super) fn advance(&mut self, tool: &JobTool<'_>, step: &Move) -> Result<(), JobError> {
-        let CutStock { findings, stock, tolerance } = &mut self.cut;
+        self.see(tool, step.line);
+        let CutStock { findings, stock, tolerance, .. } = &mut self.cut;
         let info = tool.tool.info();
         let max_speed = step.path.max_speed(info, self.unit);
         let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };
@@ -180,7 +217,7 @@ impl CutStock {
     pub fn resolution(&self) -> String {
         format!(
             "a layer is found for certain from a thickness of {}",
-            self.stock.unit().format(self.stock.found_layer(self.tolerance))
+            self.stock.unit().format(self.found_layer)
         )
     }
 

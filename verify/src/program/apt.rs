@@ -1,6 +1,6 @@
 //! APT-CL: the cutter location files that CAM systems write before a machine is chosen.
 //!
-//! These statements are read: `GOTO/x,y,z[,i,j,k]` and `FROM/` (the tip, and the unit vector from the tip to
+//! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and the unit vector from the tip to
 //! the spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
 //! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
@@ -132,7 +132,10 @@ impl Reader {
                 self.has_moved = true;
                 self.position(line, "GOTO", rest, rapid).map_err(as_unfinished)?;
             }
-            "FROM" => self.position(line, "FROM", rest, true).map_err(as_unfinished)?,
+            "FROM" if self.tape.locations.is_empty() => {
+                self.position(line, "FROM", rest, true).map_err(as_unfinished)?;
+            }
+            "FROM" => return Err(ProgramFault::LateFrom),
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,

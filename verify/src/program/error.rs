@@ -255,6 +255,11 @@ pub enum ProgramFault {
     /// A unit stated after the first position.
     #[error("UNITS comes after the first position: state it before")]
     UnitLate,
+    /// `FROM` after a position.
+    #[error(
+        "FROM after a position states where the tool is, or moves it there: write GOTO if it moves, or remove it"
+    )]
+    LateFrom,
     /// The end of the file before the end of the program.
     #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
     Unfinished,

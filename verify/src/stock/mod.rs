@@ -38,6 +38,8 @@
 //!   is all deeper than the tolerance plus `e` in a surface that must not touch, and nearer to that surface
 //!   than to any other by a step. The exception is material of contacts that have ended.
 //!
+//! A tool that is thinner than the points are apart passes between them: [`Stock::found_depth`] returns how far.
+//!
 //! For a tool without a Lipschitz constant (a file with formulas, of which no bound is proved), nothing is
 //! known between samples.
 //!
@@ -69,7 +71,8 @@ use lattice::Lattice;
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
-use touchoff::{Cloud, InsidePoint, InsideQuery, PointBvh, TriangleId, Unit};
+use touchoff::tool::{DepthBounds, Evaluations, Outputs, PointBatch, Tool};
+use touchoff::{Cloud, InsidePoint, InsideQuery, Level, PointBvh, TriangleId, Unit};
 
 /// The greatest number of points of a stock. A point takes some 34 bytes, and 110 while the stock is built: at
 /// most 2.2 gigabytes.
@@ -252,6 +255,38 @@ impl Stock {
     /// deeper. It holds for a tool with a profile.
     pub fn found_layer(&self, tolerance: f64) -> f64 {
         2.0 * self.missed_ball_radius() + tolerance + 0.5 * self.step()
+    }
+
+    /// Returns how far the tip of a tool can be in material, from above, before the tool is found for certain at a tolerance, in the
+    /// unit of the stock; `None` if it is nowhere wide enough for its points. Below that height the tool contains a ball about
+    /// its axis whose points that are deeper than the tolerance and the error of sampling are a ball that is not missed.
+    ///
+    /// It holds where no surface of the tool may touch, as in rapid traverse. The balls that are tried have centres an
+    /// eighth of their radius apart.
+    pub fn found_depth(&self, tool: &dyn Tool, tolerance: f64) -> Option<f64> {
+        let info = tool.info();
+        let DepthBounds { lower_slope: Some(slope), lipschitz: Some(lipschitz), .. } = info.depth
+        else {
+            return None;
+        };
+        let unit = info.unit.factor_to(self.unit);
+        let missed = self.missed_ball_radius();
+        // Points at this distance from the surface are deep enough to be found.
+        let margin = (tolerance + 0.5 * lipschitz * self.step()) / slope;
+        let needed = missed + margin;
+        let reach = info.reach();
+        let step = needed / 8.0;
+        let count = ((reach.high - reach.low) * unit / step).min(100_000.0) as usize;
+        let centre = |index: usize| reach.low * unit + step * index as f64;
+        let mut points = PointBatch::default();
+        for index in 0..=count {
+            points.push([0.0, 0.0, centre(index) / unit]);
+        }
+        let outputs = Outputs { depth: true, ..Outputs::INSIDE };
+        let mut evaluations = Evaluations::default();
+        tool.evaluate(Level::new(), outputs, &points, unit, &mut evaluations);
+        let fits = |index: &usize| evaluations.depth[*index] * unit / lipschitz >= needed;
+        evaluations.inside_indices().find(fits).map(|index| centre(index) + missed)
     }
 
     /// Returns the step: no point of a tool travels farther between two samples of a motion.

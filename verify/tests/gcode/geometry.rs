@@ -340,10 +340,10 @@ fn tool_centre_point_control() {
     // Elsewhere the kinematics decide.
     assert_eq!(linear(steps[2].end), [None, None, Some(50.0)]);
     for (on, off) in
-        [("TRAORI G54", "TRAFOOF\nG54"), ("M428", "M429"), ("G234 H3", "G49"), ("G43.4", "G49")]
+        [("TRAORI\nG54", "TRAFOOF\nG54"), ("M428", "M429"), ("G234 H3", "G49"), ("G43.4", "G49")]
     {
         let steps = steps_of(&format!("T3 M6\nG0 A0 B0 C0\n{on}\nG1 F1 X1 C5\n{off}\nX2"), &setup);
-        let tcp = if on == "TRAORI G54" { Tcp::Transformation } else { Tcp::Rotary };
+        let tcp = if on == "TRAORI\nG54" { Tcp::Transformation } else { Tcp::Rotary };
         assert_eq!([steps[1].state.tcp, steps[2].state.tcp], [tcp, Tcp::Off], "{on}");
     }
     // M428 keeps its kinematics under G43 and G49.

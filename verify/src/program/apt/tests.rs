@@ -341,6 +341,11 @@ fn every_refusal_names_its_line_and_remedy() {
             "UNITS/INCH\nFINI",
             "2: UNITS changes from mm to inch: post the whole program in one unit".to_owned(),
         ),
+        (
+            "GOTO/1,2,3\nFROM/4,5,6\nFINI",
+            "3: FROM after a position states where the tool is, or moves it there: write GOTO if it moves, or remove it"
+                .to_owned(),
+        ),
         ("GOTO/1,2,3\n\n", format!("2: {unfinished}")),
         ("GOTO/1,2,3\nGOTO/4,5", format!("3: {unfinished}")),
         ("GOTO/1,2,3\nGOTO/4,5,6,0,0.7", format!("3: {unfinished}")),
