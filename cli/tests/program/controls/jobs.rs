@@ -1,0 +1,304 @@
+//! What a job states, what a verdict says, and what a program leaves to its next run.
+
+use super::{FANUC, HAAS, LINUXCNC, SIEMENS, Scene};
+use crate::bench::{Bench, objects, stderr, stdout, touchoff};
+use std::fs;
+use touchoff_verify::gcode::{ControlRules, Rule};
+
+/// Every tool with motions is in the verdict.
+#[test]
+fn a_tool_without_a_checked_motion_is_named() {
+    let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    for (tool, words) in
+        [("T2", "no motion of T2 is checked"), ("T0", "no motion of T0 is checked")]
+    {
+        let scene = Scene::new(&format!("{start}G49\n{tool} M6\nG0 X0. Y0.\nZ-5."));
+        let mut scene = scene.placed();
+        scene.job += "[tool.2]\ntool = \"D2Ball\"\n";
+        scene.gives(&LINUXCNC, 2, &[words, "moves without a tool length offset"]);
+    }
+}
+
+#[test]
+fn a_number_that_two_tools_of_a_library_have_is_refused() {
+    let scene = Scene::new("T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    let bit = |name: &str| {
+        format!(
+            "{{\"guid\": \"{name}\", \"type\": \"flat end mill\", \"unit\": \"millimeters\", \"description\": \"{name}\", \
+             \"geometry\": {{\"DC\": 6, \"LCF\": 20, \"OAL\": 60, \"LB\": 30, \"SFDM\": 6, \"shoulder-length\": 25}}, \
+             \"post-process\": {{\"number\": 1}}}}"
+        )
+    };
+    let library = format!("{{\"version\": 1, \"data\": [{}, {}]}}", bit("one"), bit("two"));
+    let library = scene.bench.write("two.json", library);
+    let place = |name: &str| scene.bench.folder.path().join(name).display().to_string();
+    let (part, program) = (place("block.stl"), place("a.nc"));
+    let common = ["verify", "--part", &part, "--unit", "mm", "--program", &program];
+    let verify = |more: &[&str]| touchoff(&[&common, &LINUXCNC[..], more].concat());
+    let output = verify(&["--tools", &library]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("has 2 tools `T1`: `one`, `two`"), "{said}");
+    // A folder keeps the numbers of the tools that were imported into it.
+    let folder = place("tools");
+    for (only, expected) in [("one", 0), ("two", 2)] {
+        let imported = touchoff(&["import", &library, "-o", &folder, "--only", only]);
+        assert!(imported.status.success(), "{}", stderr(&imported));
+        let output = verify(&["--tools", &folder]);
+        assert_eq!(output.status.code(), Some(expected), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_work_offset_far_from_the_part_is_named() {
+    let blocks =
+        "G43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\nG55 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let mut scene = Scene::new(blocks).placed();
+    scene.job += "G55 = [200, 0, -400]\n";
+    scene.gives(&LINUXCNC, 2, &["under G55 the tool never comes within its diameter of the part"]);
+    scene.job = scene.job.replace("[200, 0, -400]", "[1, 0, -400]");
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+#[test]
+fn a_feed_needs_a_spindle_that_turns_the_right_way() {
+    let feed = "G0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nM30\n";
+    let given = |start: &str, status: i32, words: &str| {
+        let scene = Scene::of(&format!("G21 G90 G54\n{start}\n{feed}"));
+        scene.gives(&LINUXCNC, status, &[words]);
+    };
+    given("S900 M3", 0, "");
+    given("S900 M13", 2, "a brake of a rotary axis on Haas");
+    given("S900 M3\nM5", 1, "feeds with the spindle off");
+    given("M3", 1, "no speed of the spindle");
+    given("S0 M3", 1, "feeds with the spindle off");
+    given("S900 M4", 1, "the wrong way round");
+    given("", 2, "never starts the spindle");
+    let mut left = Scene::of(&format!("G21 G90 G54\nT1 M6\nS900 M4\nG43 H1\n{feed}"));
+    left.gives(&LINUXCNC, 1, &["the wrong way round"]);
+    left.job = left.job.replace("LENGTH", "hand = \"left\"\nLENGTH");
+    left.gives(&LINUXCNC, 0, &[]);
+    // A stop stops the spindle of a Haas, and not that of LinuxCNC.
+    let stop = Scene::of(&format!("G21 G90 G54\nS900 M3\nM0\n{feed}"));
+    stop.gives(&LINUXCNC, 0, &[]);
+    stop.gives(&HAAS, 1, &["feeds with the spindle off"]);
+    stop.gives(&[], 1, &["feeds with the spindle off", "under stop = \"stops spindle\""]);
+    let heidenhain = Scene::of(&format!("G71 G90\nS900 M3\nM0\n{feed}"));
+    let heidenhain_words = ["feeds with the spindle off"];
+    heidenhain.gives(&["--control", "heidenhain"], 1, &heidenhain_words);
+    // M6 stops the spindle without a change of the tool, too.
+    let change = Scene::of(&format!("G71 G90\nT1\nS900 M3\nM6\n{feed}"));
+    change.gives(&["--control", "heidenhain"], 1, &heidenhain_words);
+    let order =
+        Scene::of(&format!("G21 G90 G54\nG0 X-6. Y0. Z20.\nG1 X4. Z1. F100.\nS900 M3\n{feed}"));
+    order.gives(&LINUXCNC, 1, &["feeds with the spindle off"]);
+}
+
+#[test]
+fn what_a_program_leaves_out_at_its_start_is_named() {
+    let blocks = "G0 X-6. Y0. Z20.\nG1 X4. Z1.";
+    let scene = Scene::of(&format!("G90 G54 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(&[], 2, &["no G20 or G21", "state `unit` of the control"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+    let scene = Scene::of(&format!("G90 G21 S900 M3 F100.\n{blocks}\nM30\n"));
+    scene.gives(&[], 2, &["no work offset before a position", "`start_offset`"]);
+    scene.gives(&SIEMENS, 2, &["a work offset (G54) before"]);
+    scene.gives(&LINUXCNC, 0, &[]);
+}
+
+/// A collision is one however far it is from the part.
+#[test]
+fn a_collision_far_from_the_part_has_status_1() {
+    let blocks = "G0 X100. Y0. Z20.\nG1 Z5.\nG0 Z20.";
+    let scene = Scene::new(blocks).obstacle([95.0, -5.0, 0.0], [105.0, 5.0, 10.0]);
+    scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    let free = Scene::new(blocks);
+    free.gives(&LINUXCNC, 2, &["never comes within the tool's diameter"]);
+    // The reason comes before everything else that is said of the program.
+    let said = stderr(&free.run(&LINUXCNC));
+    assert!(said.find("not verified:") < said.find("program:"), "{said}");
+}
+
+#[test]
+fn a_mesh_in_place_of_a_job_is_named() {
+    let bench = Bench::new();
+    let part = bench.folder.path().join("block.stl").display().to_string();
+    let output = touchoff(&["verify", &part]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("is a mesh, and `verify` takes a job file"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn what_was_not_checked_is_in_the_json() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nM8\nM0\nG1 X4. Z1.");
+    let rows = objects(&scene.run(&[&LINUXCNC[..], &["--json"]].concat()));
+    let reasons: Vec<&str> = rows.iter().filter_map(|row| row["reason"].as_str()).collect();
+    assert!(
+        rows.iter().all(|row| row["kind"] == "not-checked" && row["open"] == false),
+        "{rows:?}"
+    );
+    for word in
+        ["limits of X, Y and Z", "no position before", "by hand during the stop", "of the tip"]
+    {
+        assert!(reasons.iter().any(|reason| reason.contains(word)), "{word}: {reasons:?}");
+    }
+    assert!(!reasons.iter().any(|reason| reason.contains("passed over")), "{reasons:?}");
+}
+
+/// Too many rules at once that are not stated are no verdict.
+#[test]
+fn too_many_readings_name_the_rules() {
+    let blocks = "G0 X-6 Y0. Z2.\n/G0 X5.\nG81 X-6 Y0. Z1. R6.\nX6. ; G0 X1.\nG80\nM0\nG1 Z2.";
+    let scene = Scene::new(blocks);
+    let words = ["in more than 8 ways", "`whole_numbers` (line 2)", "`cycle_below_r`"];
+    scene.gives(&[], 2, &words);
+}
+
+#[test]
+fn a_wrong_control_is_refused_with_the_nearest_key() {
+    let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4. Z1.");
+    scene.gives(&["--control", "fanac"], 2, &["did you mean `fanuc`?"]);
+    let file = ControlRules::named("linuxcnc").expect("a control").to_toml();
+    let control = scene.bench.folder.path().join("c.toml").display().to_string();
+    for (from, to, word) in [
+        (
+            "whole_numbers",
+            "whole_number",
+            "`whole_number` is no rule: did you mean `whole_numbers`?",
+        ),
+        ("\nrapid =", "\n#rapid =", "the rule `rapid` is missing"),
+        ("\"straight\"", "\"fast\"", "`rapid` is one of \"straight\", \"each axis\""),
+    ] {
+        fs::write(&control, file.replace(from, to)).expect("a file");
+        scene.gives(&["--control", &control], 2, &[word, "c.toml"]);
+    }
+    fs::write(&control, &file).expect("a file");
+    scene.gives(&["--control", &control], 0, &[]);
+}
+
+/// The commands list every rule of every control, and every axis of every machine; what they print is a file.
+#[test]
+fn controls_and_machines_are_listed() {
+    let listed = stdout(&touchoff(&["controls"]));
+    for name in ControlRules::names() {
+        let control = ControlRules::named(name).expect("a control");
+        assert!(listed.contains(&format!("{name}\n")), "{listed}");
+        assert_eq!(stdout(&touchoff(&["controls", name])), control.to_toml());
+    }
+    let rows = objects(&touchoff(&["controls", "--json"]));
+    let keys = Rule::all().filter(|rule| *rule != Rule::OptionalBlocks).count();
+    for row in &rows {
+        let stated = row["rules"].as_object().map_or(0, |rules| rules.len());
+        let open = match row["name"].as_str() {
+            Some("fanuc") => 3,
+            Some("haas") => 2,
+            Some("siemens") => 3,
+            Some("heidenhain") => 1,
+            _ => 0,
+        };
+        assert_eq!(stated, keys - open, "{row}");
+    }
+    let machines = stdout(&touchoff(&["machines"]));
+    let trunnion = "A moves the table, from -120 to 30°, home 0, about [1.0, 0.0, 0.0] through [0.0, 0.0, -480.0]";
+    assert!(machines.contains(trunnion), "{machines}");
+    let unknown = touchoff(&["machines", "4-axis"]);
+    assert!(!unknown.status.success() && stderr(&unknown).contains("A-C trunnion"));
+}
+
+/// The page has a row for each rule, with what each control does.
+#[test]
+fn the_page_about_controls_states_every_rule() {
+    let page = include_str!("../../../../docs/controls.md");
+    for rule in Rule::all().filter(|rule| *rule != Rule::OptionalBlocks) {
+        let words = ControlRules::names().map(|name| {
+            let control = ControlRules::named(name).expect("a control");
+            control.get(rule).map_or("either", |choice| rule.describe(choice)[0])
+        });
+        let row = format!("| `{}` | {} |", rule.key(), words.collect::<Vec<_>>().join(" | "));
+        assert!(page.contains(&row), "{row}");
+    }
+}
+
+/// The tool of a program that names none is that of its first length offset.
+#[test]
+fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
+    let start = "G43 H1 G0 X-6. Y0. Z45.\nG1 X-4. Z1.\nG0 Z45.\n";
+    for end in ["G49 Z45.\nX6.\nG1 X5.", "G91 G28 Z0.\nG90 G49 G0 Z45.\nX6.\nG1 X5."] {
+        let scene = Scene::new(&format!("{start}{end}")).placed();
+        let scene = scene.obstacle([0.0, -2.0, -20.0], [8.0, 2.0, -1.0]).with("anyway = true");
+        scene.gives(&LINUXCNC, 1, &["the clamp"]);
+    }
+    let other = Scene::new(&format!("{start}G43 H7 Z45.\nX6.\nG1 X5.")).placed();
+    other.gives(&LINUXCNC, 2, &["with the length offset H7 of another tool"]);
+}
+
+/// The state at the end of a program is that in which its next run begins, on some controls.
+#[test]
+fn a_program_that_ends_otherwise_than_it_begins_is_named() {
+    let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
+    let word = "which a control can keep, and its next run is another";
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&FANUC, 2, &[word]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(&LINUXCNC, 0, &[]);
+    Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(&FANUC, 0, &[]);
+    Scene::of(&format!("{begin}G52 X1.\nM30\n")).gives(&LINUXCNC, 2, &[word]);
+    Scene::of(&format!("%\n{begin}G91 G0 Z1.\n%\n")).gives(&LINUXCNC, 2, &[word]);
+    let cycles = "G81 X-4. Y0. Z1. R3.\nG80\nG99 G81 X-5. Z1. R3.\nG80\nG0 Z20.\nG90\nM30\n";
+    Scene::of(&format!("{begin}{cycles}")).gives(&FANUC, 2, &[word]);
+    // LinuxCNC keeps the unit and the length offset, of all that M30 leaves.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
+    let unit = format!("G90 G54 S900 M3 F100.\nG43 H1\n{moves}\nG20\nM30\n");
+    Scene::of(&unit).gives(&LINUXCNC, 2, &["line 3: the program ends with G20"]);
+    let length = format!("{begin}G43 H1\nG0 Z20.\nM30\n");
+    Scene::of(&length).gives(&LINUXCNC, 2, &["line 2: the program ends with G43 H1"]);
+    let stated = format!("{begin}G0 G90 Z20.\nG20 G55\nM30\n");
+    Scene::of(&stated).gives(&LINUXCNC, 0, &[]);
+    // G49 at the start moves Z by the length that the run before has left.
+    let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
+    Scene::of(cancels).gives(&FANUC, 2, &["line 1: the program ends with G43 H1"]);
+    Scene::of(cancels).gives(&HAAS, 2, &["the program ends with G43 H1"]);
+    Scene::of(&cancels.replace("M30", "G49\nM30")).gives(&LINUXCNC, 0, &[]);
+    // The operator can turn the switch for optional blocks between two runs.
+    let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";
+    let switched = Scene::new(&format!("/G52 X0\n{moves}\n/G52 X-8."));
+    switched.gives(&LINUXCNC, 2, &["line 3: the program ends with G52"]);
+    Scene::new(&format!("/G52 X0\n{moves}")).gives(&LINUXCNC, 0, &[]);
+    // A new origin and a shift, which cancel each other where both are kept.
+    let both = format!("G43 H1\nG55\n{moves}\nG10 L2 P2 X40. Y0. Z-400.\nG52 X-40.\nG0 X-6.\nG49");
+    let mut both = Scene::new(&both).placed();
+    both.job += "G55 = [0, 0, -400]\n";
+    both.gives(&FANUC, 2, &["the program ends with G10, G52"]);
+    both.gives(&LINUXCNC, 0, &[]);
+}
+
+/// A program that begins with a return along one axis is followed from its first position on.
+#[test]
+fn a_program_begins_with_a_return_along_one_axis() {
+    for first in ["G91 G28 Z0.\nG90", "G91 G28 X0. Y0. Z0.\nG90", "G53 G0 Z0."] {
+        let blocks = format!(
+            "{first}\nT1 M6\nS9000 M3\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 X4. Z1.\nG0 Z20.\nG91 G28 Z0."
+        );
+        Scene::new(&blocks).placed().gives(&LINUXCNC, 0, &[]);
+        Scene::new(&blocks).gives(&LINUXCNC, 0, &[]);
+    }
+}
+
+/// A rapid traverse of a thin tool through a block of stock between its points.
+#[test]
+fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
+    let text = "tool Pin { units mm; profile { start (0, 0); line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting; } }";
+    for (spacing, status, word) in [
+        (1.0, 2, "T1 is too thin for a stock whose points are 1.0000 mm apart"),
+        (0.4, 1, "pin touches the stock in rapid traverse"),
+    ] {
+        let mut scene = Scene::new("T1 M6\nS900 M3\nG0 X-30. Y0. Z5.3\nX30.\nG1 X4. Y40.");
+        scene.bench.write("pin.tool", text);
+        scene.job = scene.job.replace("D2Ball", "pin.tool");
+        scene.job +=
+            &format!("[stock]\nbox = [[-20, -20, -20], [20, 20, 20]]\nspacing = {spacing}\n");
+        scene.gives(&LINUXCNC, status, &[word]);
+    }
+}
