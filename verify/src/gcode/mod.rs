@@ -156,8 +156,8 @@ pub struct Step {
     pub tool_vector: Option<[f64; 3]>,
     /// Set if the end is stated, in G90 or in machine coordinates, and not by increments.
     pub absolute: bool,
-    /// Set if the end is stated in machine coordinates: under G53, and to a reference position.
-    pub in_machine: bool,
+    /// Set for the way home: to a reference position, and under G53 of Z to 0, or of other axes after it.
+    pub is_homeward: bool,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,
     /// The spindle during the motion.

@@ -458,7 +458,10 @@ impl Control {
         {
             target[2] = length.map(|length| z + length);
         }
+        // Home of Z is the top of its travel; from there on the other axes are free.
+        let is_homeward = axes[2].map_or(self.position[2].is_none(), |z| z == 0.0);
         self.move_machine(axes.map(|value| value.is_some()), target, StepPath::Line);
+        self.pending.back_mut().expect("the step that was added").is_homeward = is_homeward;
         if axes[2].is_some() && self.state.length != LengthOffset::Off {
             self.returned = self.returned.or(Some(true));
         }
@@ -504,7 +507,8 @@ impl Control {
         let home = if word == "G28" { self.home } else { self.second_home };
         let target = home.map_or([None; 6], |home| home.map(Some));
         self.move_machine(named, target, StepPath::Line);
-        self.pending.back_mut().expect("the step that was added").is_return = true;
+        let step = self.pending.back_mut().expect("the step that was added");
+        (step.is_return, step.is_homeward) = (true, true);
         self.returned = (self.state.length != LengthOffset::Off).then_some(false);
         Ok(())
     }
@@ -539,8 +543,7 @@ impl Control {
         }
         self.push(true, end, commanded, path);
         // Machine coordinates are stated in G91, too.
-        let step = self.pending.back_mut().expect("the step that was added");
-        (step.absolute, step.in_machine) = (true, true);
+        self.pending.back_mut().expect("the step that was added").absolute = true;
     }
 
     /// Adds a step from the present position, and moves there.
@@ -571,7 +574,7 @@ impl Control {
             tool_vector,
             spindle,
             absolute: !self.modal.incremental,
-            in_machine: false,
+            is_homeward: false,
             is_return: false,
             state,
         });

@@ -45,7 +45,8 @@ pub struct CutStock {
     pub stock: Stock,
     /// Depth that surfaces may have that must not touch.
     pub tolerance: f64,
-    /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit.
+    /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit; infinite if
+    /// none is.
     pub found_layer: f64,
     /// The tools that can pass through material between its points: the line of the first motion, and the reason.
     pub(super) too_thin: Vec<(usize, String)>,
@@ -95,7 +96,7 @@ impl StockCut {
         Ok(StockCut { cut, unit: job.unit(), open: Vec::new(), seen: Vec::new() })
     }
 
-    /// Notes how far a tool can be in material that is not found, and that this is more than its cutting part.
+    /// Notes the layer that a tool finds for certain, and that it is more than twice as thick as that of a wide tool.
     fn see(&mut self, tool: &JobTool<'_>, line: usize) {
         if self.seen.contains(&tool.number()) {
             return;
@@ -103,23 +104,21 @@ impl StockCut {
         self.seen.push(tool.number());
         let CutStock { stock, tolerance, found_layer, too_thin, .. } = &mut self.cut;
         let info = tool.tool.info();
-        let cutting = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
-        let height = cutting.map(|piece| piece.from[1].max(piece.to[1])).fold(0.0, f64::max);
-        let height = height * info.unit.factor_to(self.unit);
-        let limit = height + stock.found_layer(*tolerance);
-        let name = tool.number().map_or(info.name.to_string(), |number| format!("T{number}"));
-        match stock.found_depth(tool.tool, *tolerance) {
-            Some(depth) if depth <= limit || info.outline.is_empty() => {
-                *found_layer = found_layer.max(depth);
-            }
-            _ => too_thin.push((
-                line,
-                format!(
-                    "{name} is too thin for a stock whose points are {} apart, and can pass between them: state a smaller \
-                     `spacing`, or a smaller `tolerance` of the stock",
-                    self.unit.format(stock.spacing())
-                ),
-            )),
+        let layer = stock.found_layer_of(tool.tool, *tolerance);
+        *found_layer = found_layer.max(layer.unwrap_or(f64::INFINITY));
+        if layer.is_none_or(|layer| layer > 2.0 * stock.found_layer(*tolerance)) {
+            let name = tool.number().map_or(info.name.to_string(), |number| format!("T{number}"));
+            let unit = self.unit;
+            let found = match layer {
+                Some(layer) => format!("up to a thickness of {}", unit.format(layer)),
+                None => "of any thickness".to_owned(),
+            };
+            let reason = format!(
+                "{name} is thin for a stock whose points are {} apart, and may pass through material {found} unseen: state \
+                 a smaller `spacing`, or a smaller `tolerance` of the stock",
+                unit.format(stock.spacing())
+            );
+            too_thin.push((line, reason));
         }
     }
 
@@ -215,10 +214,13 @@ impl StockFinding {
 impl CutStock {
     /// States what is found for certain.
     pub fn resolution(&self) -> String {
-        format!(
-            "a layer is found for certain from a thickness of {}",
-            self.stock.unit().format(self.found_layer)
-        )
+        match self.found_layer.is_finite() {
+            true => format!(
+                "a layer is found for certain from a thickness of {}",
+                self.stock.unit().format(self.found_layer)
+            ),
+            false => "no layer is found for certain".to_owned(),
+        }
     }
 
     /// Describes a deviation from the part at its farthest point, as far as points of the stock show it.

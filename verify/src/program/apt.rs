@@ -1,8 +1,8 @@
 //! APT-CL: the cutter location files that CAM systems write before a machine is chosen.
 //!
 //! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and the unit vector from the tip to
-//! the spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
-//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
+//! the spindle; without one, `0,0,1`, or the last given in NX's files), `RAPID` (for the next `GOTO`),
+//! `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter.
@@ -22,6 +22,7 @@ use touchoff::Unit;
 
 /// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tapes, Located> {
+    check_frames(text)?;
     let (statements, unfinished_line) = statements(text);
     let mut reader = Reader::default();
     let mut end = 0;
@@ -39,6 +40,29 @@ pub(super) fn read(text: &str) -> Result<Tapes, Located> {
     } else {
         Err((unfinished_line.unwrap_or(end), ProgramFault::Unfinished))
     }
+}
+
+/// Refuses a second frame among the comments: CATIA writes the machining axis after `$$*CATIA0` (a name, then three rows), Creo
+/// its coordinate system after `$$-> CSYS`.
+fn check_frames(text: &str) -> Result<(), Located> {
+    let mut first: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let mut lines = lines(text).peekable();
+    while let Some((line, comment)) = lines.next() {
+        let (word, skipped) = if comment.starts_with("$$*CATIA0") {
+            ("$$*CATIA0", 1)
+        } else if comment.starts_with("$$-> CSYS") {
+            ("$$-> CSYS", 0)
+        } else {
+            continue;
+        };
+        let mut frame = if skipped == 0 { vec![comment] } else { Vec::new() };
+        let mut rest = std::iter::from_fn(|| lines.next_if(|(_, next)| next.starts_with("$$")));
+        frame.extend(rest.by_ref().skip(skipped).take(3).map(|(_, row)| row));
+        if first.entry(word).or_insert_with(|| frame.clone()) != &frame {
+            return Err((line, ProgramFault::Frame { word: word.to_owned() }));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the statements, each with the line on which it begins, and the line of a last statement whose
@@ -76,6 +100,10 @@ struct Reader {
     tapes: Vec<Tape>,
     tape: Tape,
     axis: Option<[f64; 3]>,
+    /// Set where CAM systems take different axes for a position without one.
+    is_axis_open: bool,
+    /// Set in a file of NX, which has `TOOL PATH`.
+    is_nx: bool,
     rapid: bool,
     /// Set once there was a `GOTO`.
     has_moved: bool,
@@ -141,6 +169,7 @@ impl Reader {
             "UNITS" => self.units(line, rest)?,
             "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
                 refuse_motions(word, rest)?;
+                self.is_nx |= word == "TOOL PATH";
                 if mem::take(&mut self.path_ended) {
                     let after = ProgramFault::AfterEnd { end: "END-OF-PATH" };
                     self.several.get_or_insert((line, after));
@@ -174,6 +203,7 @@ impl Reader {
         }
         let values = rest.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>()?;
         let (tip, axis) = match values[..] {
+            [_, _, _] if self.is_axis_open => return Err(ProgramFault::OpenAxis),
             [x, y, z] => ([x, y, z], self.axis.unwrap_or([0.0, 0.0, 1.0])),
             [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
             _ => {
@@ -181,6 +211,8 @@ impl Reader {
             }
         };
         let pose = axis_pose(tip, axis)?;
+        // NX leaves an axis out that stays, Creo one that is +Z.
+        self.is_axis_open = !self.is_nx && axis != [0.0, 0.0, 1.0];
         self.axis = Some(axis);
         self.tape.locations.push(CutterLocation { line, pose, rapid });
         Ok(())
@@ -189,7 +221,11 @@ impl Reader {
     fn multax(&mut self, argument: &str) -> Result<(), ProgramFault> {
         match argument.to_ascii_uppercase().as_str() {
             "" | "ON" => {}
-            "OFF" => self.axis = None,
+            // CATIA locks the last axis then.
+            "OFF" => {
+                self.is_axis_open |= self.axis.is_some_and(|axis| axis != [0.0, 0.0, 1.0]);
+                self.axis = None;
+            }
             _ => {
                 return Err(ProgramFault::Multax { argument: unquoted(argument) });
             }

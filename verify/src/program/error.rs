@@ -255,6 +255,11 @@ pub enum ProgramFault {
     /// A unit stated after the first position.
     #[error("UNITS comes after the first position: state it before")]
     UnitLate,
+    /// A position without an axis after a tilted one.
+    #[error(
+        "GOTO has no axis after a tilted one: NX keeps that one, and Creo takes 0,0,1: write i,j,k"
+    )]
+    OpenAxis,
     /// `FROM` after a position.
     #[error(
         "FROM after a position states where the tool is, or moves it there: write GOTO if it moves, or remove it"

@@ -38,7 +38,8 @@
 //!   is all deeper than the tolerance plus `e` in a surface that must not touch, and nearer to that surface
 //!   than to any other by a step. The exception is material of contacts that have ended.
 //!
-//! A tool that is thinner than the points are apart passes between them: [`Stock::found_depth`] returns how far.
+//! A part of a tool that is thinner than the points are apart passes between them: [`Stock::found_layer_of`] takes it into
+//! account.
 //!
 //! For a tool without a Lipschitz constant (a file with formulas, of which no bound is proved), nothing is
 //! known between samples.
@@ -257,13 +258,14 @@ impl Stock {
         2.0 * self.missed_ball_radius() + tolerance + 0.5 * self.step()
     }
 
-    /// Returns how far the tip of a tool can be in material, from above, before the tool is found for certain at a tolerance, in the
-    /// unit of the stock; `None` if it is nowhere wide enough for its points. Below that height the tool contains a ball about
-    /// its axis whose points that are deeper than the tolerance and the error of sampling are a ball that is not missed.
+    /// Returns the thickness from which a layer of material is found for certain, however it lies, by a tool of which no surface may
+    /// touch it, as in rapid traverse; `None` if the tool is nowhere wide enough for the points.
     ///
-    /// It holds where no surface of the tool may touch, as in rapid traverse. The balls that are tried have centres an
-    /// eighth of their radius apart.
-    pub fn found_depth(&self, tool: &dyn Tool, tolerance: f64) -> Option<f64> {
+    /// A layer is found if a ball about the tool's axis lies in it that is not missed, and whose points are deeper in the tool
+    /// than the tolerance and the error of sampling. It is thicker than [`Stock::found_layer`] by the thin parts of the tool: a
+    /// pointed end, or a neck, which the layer may surround. The balls that are tried have centres an eighth of their radius
+    /// apart.
+    pub fn found_layer_of(&self, tool: &dyn Tool, tolerance: f64) -> Option<f64> {
         let info = tool.info();
         let DepthBounds { lower_slope: Some(slope), lipschitz: Some(lipschitz), .. } = info.depth
         else {
@@ -272,8 +274,7 @@ impl Stock {
         let unit = info.unit.factor_to(self.unit);
         let missed = self.missed_ball_radius();
         // Points at this distance from the surface are deep enough to be found.
-        let margin = (tolerance + 0.5 * lipschitz * self.step()) / slope;
-        let needed = missed + margin;
+        let needed = missed + (tolerance + 0.5 * lipschitz * self.step()) / slope;
         let reach = info.reach();
         let step = needed / 8.0;
         let count = ((reach.high - reach.low) * unit / step).min(100_000.0) as usize;
@@ -285,8 +286,18 @@ impl Stock {
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };
         let mut evaluations = Evaluations::default();
         tool.evaluate(Level::new(), outputs, &points, unit, &mut evaluations);
-        let fits = |index: &usize| evaluations.depth[*index] * unit / lipschitz >= needed;
-        evaluations.inside_indices().find(fits).map(|index| centre(index) + missed)
+        // From the tip to the first ball, then from each to the next.
+        let mut thickness: Option<f64> = None;
+        let mut below = reach.low * unit - missed;
+        for index in evaluations.inside_indices() {
+            if evaluations.depth[index] * unit / lipschitz >= needed {
+                let layer = centre(index) - below + 2.0 * missed;
+                let layer = if thickness.is_none() { layer - missed } else { layer };
+                thickness = Some(thickness.map_or(layer, |thickness| thickness.max(layer)));
+                below = centre(index);
+            }
+        }
+        thickness.map(|thickness| thickness.max(self.found_layer(tolerance)))
     }
 
     /// Returns the step: no point of a tool travels farther between two samples of a motion.

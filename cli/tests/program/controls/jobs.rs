@@ -286,19 +286,24 @@ fn a_program_begins_with_a_return_along_one_axis() {
     }
 }
 
-/// A rapid traverse of a thin tool through a block of stock between its points.
+/// Thin tools and necks, which pass between the points of a stock.
 #[test]
 fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
-    let text = "tool Pin { units mm; profile { start (0, 0); line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting; } }";
-    for (spacing, status, word) in [
-        (1.0, 2, "T1 is too thin for a stock whose points are 1.0000 mm apart"),
-        (0.4, 1, "pin touches the stock in rapid traverse"),
+    let pin = "line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting;";
+    let necked = "line to (3, 0), (3, 3) as disc cutting; line to (0.75, 3), (0.75, 30) as neck; \
+                  line to (3, 30), (3, 40), (0, 40) as shank;";
+    for (profile, spacing, status, word) in [
+        (pin, 1.0, 2, "and may pass through material of any thickness unseen"),
+        (pin, 0.4, 1, "pin touches the stock in rapid traverse"),
+        (necked, 1.0, 2, "and may pass through material up to a thickness of"),
+        (necked, 0.5, 1, "neck touches the stock in rapid traverse"),
     ] {
-        let mut scene = Scene::new("T1 M6\nS900 M3\nG0 X-30. Y0. Z5.3\nX30.\nG1 X4. Y40.");
+        let text = format!("tool Pin {{ units mm; profile {{ start (0, 0); {profile} }} }}");
+        let mut scene = Scene::new("T1 M6\nS900 M3\nG0 X-30. Y0. Z5.3\nX30.\nZ60.\nG1 X29.");
         scene.bench.write("pin.tool", text);
         scene.job = scene.job.replace("D2Ball", "pin.tool");
         scene.job +=
-            &format!("[stock]\nbox = [[-20, -20, -20], [20, 20, 20]]\nspacing = {spacing}\n");
+            &format!("[stock]\nbox = [[-20, -20, 12], [20, 20, 20]]\nspacing = {spacing}\n");
         scene.gives(&LINUXCNC, status, &[word]);
     }
 }

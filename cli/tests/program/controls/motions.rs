@@ -271,3 +271,18 @@ fn the_repeats_of_a_cycle_are_after_l_or_k() {
     scene.gives(&FANUC, 1, &["the clamp"]);
     scene.gives(&HAAS, 0, &[]);
 }
+
+/// Where the part is on the machine is not known: only the way home is no part of the verdict.
+#[test]
+fn a_position_in_machine_coordinates_is_not_the_way_home() {
+    let start = "T1 M6\nS9000 M3\nG43 H1 G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.\n";
+    for (way, status) in [
+        ("G53 G0 Z0.", 0),
+        ("G53 G0 Z0.\nG53 G0 X-20. Y30.", 0),
+        ("G91 G28 Z0.", 0),
+        ("G53 G0 Z-150.", 2),
+        ("G53 G0 X-20. Y30.", 2),
+    ] {
+        Scene::new(&format!("{start}{way}")).gives(&LINUXCNC, status, &[]);
+    }
+}

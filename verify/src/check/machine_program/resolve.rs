@@ -394,8 +394,7 @@ impl<'a> Resolver<'a> {
                 return UnknownCause::Axis;
             }
         }
-        // An axis leaves a known position for one in machine coordinates: that is its way home.
-        match step.in_machine && lost().all(|k| current[k].is_some()) {
+        match step.is_homeward && lost().all(|k| current[k].is_some()) {
             true => UnknownCause::Home,
             false => self.cause,
         }

@@ -49,12 +49,39 @@ fn the_impeller(path: &Path) {
 }
 
 #[test]
-fn keeps_the_last_axis() {
-    let text = "GOTO/1,2,3\nGOTO/4,5,6,1,0,0\nGOTO/7,8,9\nMULTAX\nGOTO/1,1,1\nMULTAX/OFF\n\
-                GOTO/2,2,2\nFINI\n";
+fn an_axis_that_is_left_out_stays_in_files_of_nx() {
+    let text =
+        "TOOL PATH/A,TOOL,B\nGOTO/1,2,3\nGOTO/4,5,6,1,0,0\nGOTO/7,8,9\nMULTAX\nGOTO/1,1,1\nFINI\n";
     let axes: Vec<_> = program(text).locations.iter().map(|stop| stop.pose.axis()).collect();
     let [x, z] = [Vector3::x(), Vector3::z()];
-    assert_eq!(axes, [z, x, x, x, z]);
+    assert_eq!(axes, [z, x, x, x]);
+    // Elsewhere it stays, or is +Z.
+    let upright = program("GOTO/1,2,3,0,0,1\nGOTO/4,5,6\nMULTAX/OFF\nGOTO/7,8,9\nFINI\n");
+    assert!(upright.locations.iter().all(|stop| stop.pose.axis() == z));
+    for text in [
+        "GOTO/4,5,6,1,0,0\nGOTO/7,8,9\nFINI",
+        "GOTO/4,5,6,1,0,0\nMULTAX/OFF\nGOTO/7,8,9\nFINI",
+        "GOTO/4,5,6,1,0,0\nLOADTL/2\nGOTO/7,8,9\nFINI",
+        "TOOL PATH/A,TOOL,B\nGOTO/4,5,6,1,0,0\nMULTAX/OFF\nGOTO/7,8,9\nFINI",
+    ] {
+        assert!(refusal(text).contains("GOTO has no axis after a tilted one"), "{text}");
+    }
+}
+
+/// Frames among the comments, of which a second one changes what positions mean.
+#[test]
+fn another_frame_among_the_comments_is_refused() {
+    let catia = |x: &str| {
+        format!(
+            "$$*CATIA0\n$$ Machining.1\n$$ 1.0 0.0 0.0 {x}\n$$ 0.0 1.0 0.0 0.0\n$$ 0.0 0.0 1.0 0.0\n"
+        )
+    };
+    let creo = |x: &str| format!("$$-> CSYS / 1, 0, 0, {x}\n");
+    for frame in [&catia as &dyn Fn(&str) -> String, &creo] {
+        let text = |x: &str| format!("{}GOTO/1,2,3\n{}GOTO/4,5,6\nFINI\n", frame("0.0"), frame(x));
+        assert_eq!(program(&text("0.0")).locations.len(), 2);
+        assert!(refusal(text("100.0")).contains("changes what positions mean"));
+    }
 }
 
 #[test]
@@ -190,13 +217,12 @@ fn tools(text: &str) -> Result<Vec<ToolLines>, String> {
 #[test]
 fn a_tool_change_begins_another_program() {
     let text = "UNITS/INCHES\nFROM/0,0,9\nLOADTL/3,ADJUST,3\nCUTTER/.5\nGOTO/1,2,3\nLOADTL/3\nGOTO/2,2,3\n\
-                CUTTER/.25,.125\nLOADTL/7\nFROM/0,0,9,1,0,0\nGOTO/4,5,6\nGOTO/5,5,6\nLOADTL/3\nCUTTER/.5\n\
-                GOTO/7,8,9\nLOADTL/0\nFINI\n";
+                CUTTER/.25,.125\nLOADTL/7\nFROM/0,0,9\nGOTO/4,5,6\nGOTO/5,5,6\nLOADTL/3\nCUTTER/.5\n\
+                GOTO/7,8,9,1,0,0\nLOADTL/0\nFINI\n";
     let expected = vec![(Some(3), vec![2, 5, 7]), (Some(7), vec![10, 11, 12]), (Some(3), vec![15])];
     assert_eq!(tools(text), Ok(expected));
     let programs = ClData::parse_tools(text, "part.cl").expect("three programs");
     assert!(programs.iter().all(|program| program.unit == Some(Unit::Inch)));
-    // The axis stays as APT has it.
     assert_eq!(programs[2].locations[0].pose.axis(), Vector3::x());
     assert_eq!(
         refusal(text),
