@@ -73,7 +73,7 @@ use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
 use touchoff::tool::{DepthBounds, Evaluations, Outputs, PointBatch, Tool};
-use touchoff::{Cloud, InsidePoint, InsideQuery, Level, PointBvh, TriangleId, Unit};
+use touchoff::{Cloud, InsidePoint, InsideQuery, Interval, Level, PointBvh, TriangleId, Unit};
 
 /// The greatest number of points of a stock. A point takes some 34 bytes, and 110 while the stock is built: at
 /// most 2.2 gigabytes.
@@ -275,10 +275,12 @@ impl Stock {
         let missed = self.missed_ball_radius();
         // Points at this distance from the surface are deep enough to be found.
         let needed = missed + (tolerance + 0.5 * lipschitz * self.step()) / slope;
-        let reach = info.reach();
+        let Interval { low, high } = info.reach();
+        let (low, high) = (low * unit, high * unit);
         let step = needed / 8.0;
-        let count = ((reach.high - reach.low) * unit / step).min(100_000.0) as usize;
-        let centre = |index: usize| reach.low * unit + step * index as f64;
+        let count = ((high - low) / step).min(100_000.0) as usize;
+        // No ball that fits has its centre nearer to the tip; the excess is above rounding.
+        let centre = |index: usize| low + (1.0 + 1e-9) * needed + step * index as f64;
         let mut points = PointBatch::default();
         for index in 0..=count {
             points.push([0.0, 0.0, centre(index) / unit]);
@@ -286,18 +288,22 @@ impl Stock {
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };
         let mut evaluations = Evaluations::default();
         tool.evaluate(Level::new(), outputs, &points, unit, &mut evaluations);
-        // From the tip to the first ball, then from each to the next.
-        let mut thickness: Option<f64> = None;
-        let mut below = reach.low * unit - missed;
+        let mut thickness = self.found_layer(tolerance);
+        let mut last = None;
         for index in evaluations.inside_indices() {
-            if evaluations.depth[index] * unit / lipschitz >= needed {
-                let layer = centre(index) - below + 2.0 * missed;
-                let layer = if thickness.is_none() { layer - missed } else { layer };
-                thickness = Some(thickness.map_or(layer, |thickness| thickness.max(layer)));
-                below = centre(index);
+            if evaluations.depth[index] * unit / lipschitz < needed {
+                continue;
             }
+            let centre = centre(index);
+            // The thickest layer without a ball ends at the top of the first, or lies about two in a row.
+            let layer = match last {
+                None => centre - low + missed,
+                Some(last) => centre - last + 2.0 * missed,
+            };
+            thickness = thickness.max(layer);
+            last = Some(centre);
         }
-        thickness.map(|thickness| thickness.max(self.found_layer(tolerance)))
+        last.map(|_| thickness)
     }
 
     /// Returns the step: no point of a tool travels farther between two samples of a motion.

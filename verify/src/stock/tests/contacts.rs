@@ -250,3 +250,35 @@ fn a_layer_of_the_stated_thickness_is_found() {
     }
     assert!(below > 0, "thinner layers can be missed");
 }
+
+/// A wide tool finds the layer of the stock; a neck leaves one as thick as its length and the balls beside it.
+#[test]
+fn a_neck_makes_the_layer_that_is_found_thicker() {
+    touchoff::tool! {
+        tool Necked "a neck of 1 mm" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (6, 0), (6, 5) as disc cutting;
+                line to (0.5, 5), (0.5, 20) as neck;
+                line to (6, 20), (6, 40), (0, 40) as shank;
+            }
+        }
+    }
+    touchoff::tool! {
+        tool Pin "1 mm" {
+            units mm;
+            profile { start (0, 0); line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting; }
+        }
+    }
+    let stock = block([-10.0, -10.0, -8.0], [10.0, 10.0, 0.0], 1.0);
+    let tolerance = stock.step();
+    let layer = stock.found_layer(tolerance);
+    let needed = stock.missed_ball_radius() + tolerance + 0.5 * stock.step();
+    let of = |tool: &dyn touchoff::Tool| stock.found_layer_of(tool, tolerance);
+    assert!((of(&Mill).expect("a wide tool") - layer).abs() < 1e-6);
+    let necked = of(&Necked).expect("a wide tool with a neck");
+    let expected = 15.0 + 2.0 * needed + 2.0 * stock.missed_ball_radius();
+    assert!((expected..expected + 0.25 * needed).contains(&necked), "{necked}, not {expected}");
+    assert_eq!(of(&Pin), None);
+}
