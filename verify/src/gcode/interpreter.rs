@@ -295,12 +295,13 @@ fn after_semicolon(text: &str) -> Option<&str> {
 
 /// Returns whether a text begins as a block does, and not as prose: with a word, an assignment or a statement.
 fn could_be_block(text: &str) -> bool {
-    let mut rest = text.trim_start();
+    let begin = |c: char| c == '/' || c.is_ascii_digit() || c.is_whitespace();
+    let mut rest = text.trim_start_matches(begin);
     while let Some(comment) = rest.strip_prefix('(') {
-        rest = comment.split_once(')').map_or("", |(_, rest)| rest).trim_start();
+        // A comment without an end is refused as on a line of its own.
+        let Some((_, after)) = comment.split_once(')') else { return true };
+        rest = after.trim_start_matches(begin);
     }
-    let rest =
-        rest.trim_start_matches(|c: char| c == '/' || c.is_ascii_digit() || c.is_whitespace());
     let mut letters = rest.chars().filter(|c| !c.is_whitespace());
     let is_word = match letters.next() {
         Some('#') => true,

@@ -7,6 +7,7 @@
 
 use super::Plane;
 use super::interpreter::{End, Interpreter};
+use super::modal::Motion;
 use super::motion::Control;
 use super::note::{NoteKind, ProgramNote};
 use super::rules::{Choice, Rule};
@@ -37,9 +38,11 @@ enum Mode {
     Tcp,
     /// The tool of the last T.
     Staged,
+    /// A series of canned cycles, with its initial level.
+    Series,
 }
 
-const MODES: [Mode; 13] = [
+const MODES: [Mode; 14] = [
     Mode::Unit,
     Mode::Plane,
     Mode::Distance,
@@ -53,6 +56,7 @@ const MODES: [Mode; 13] = [
     Mode::Register,
     Mode::Tcp,
     Mode::Staged,
+    Mode::Series,
 ];
 
 /// Notes the first block that the next run of a program executes otherwise, because the control keeps what it `left`.
@@ -177,6 +181,12 @@ impl Mode {
             Mode::Register => first.last_register != second.last_register,
             Mode::Tcp => (state.tcp, first.transformed) != (others.tcp, second.transformed),
             Mode::Staged => first.staged != second.staged,
+            Mode::Series => {
+                let cycle = |motion: Option<Motion>| {
+                    motion.filter(|motion| matches!(motion, Motion::Cycle(_)))
+                };
+                (&first.cycle, cycle(modal.motion)) != (&second.cycle, cycle(other.motion))
+            }
         }
     }
 
@@ -208,6 +218,10 @@ impl Mode {
             },
             Mode::Register => return format!("H{}", left.last_register.unwrap_or_default()),
             Mode::Staged => return format!("T{}", left.staged.unwrap_or_default()),
+            Mode::Series => match modal.motion {
+                Some(Motion::Cycle(number)) => return format!("G{number} without G80"),
+                _ => "a canned cycle without G80",
+            },
             Mode::Tcp => match state.tcp {
                 Tcp::Transformation => "TRAORI",
                 Tcp::Vector => "G43.5",
@@ -255,6 +269,12 @@ impl Control {
                 }
                 Mode::Register => self.last_register = left.last_register,
                 Mode::Staged => self.staged = left.staged,
+                Mode::Series => {
+                    // M2 and M30 select G1 on LinuxCNC, and keep the level of the series until another motion word
+                    // (`convert_stop`).
+                    self.cycle.clone_from(&left.cycle);
+                    self.modal.motion = left.modal.motion;
+                }
                 Mode::Tcp => {
                     (state.tcp, self.transformed) = (left.state.tcp, left.transformed);
                 }
@@ -275,7 +295,6 @@ impl Control {
         MODES.iter().all(|mode| !mode.differs(self, next))
             && self.state == next.state
             && self.position == next.position
-            && self.cycle == next.cycle
             && self.vector == next.vector
             && self.returned == next.returned
             && (self.tcp_position_needed || !next.tcp_position_needed)

@@ -307,3 +307,18 @@ fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
         scene.gives(&LINUXCNC, status, &[word]);
     }
 }
+
+/// LinuxCNC keeps the initial level of a series of cycles that no word has ended; others may keep the cycle.
+#[test]
+fn a_series_of_cycles_is_left_to_the_next_run() {
+    let blocks = |end: &str| {
+        format!(
+            "G91 G28 Z0.\nG90 G43 H1\nG98 G81 X-2. Y0. Z0.5 R3.\nX2.\nG0 X10. Y0. Z20.\n\
+             G81 X10. Y0. Z12. R15.\nX14.\n{end}"
+        )
+    };
+    let left = "the program ends with G81 without G80";
+    Scene::new(&blocks("")).placed().gives(&LINUXCNC, 2, &[left]);
+    let ended = Scene::new(&blocks("G80")).placed().run(&LINUXCNC);
+    assert!(!stderr(&ended).contains("without G80"), "{}", stderr(&ended));
+}

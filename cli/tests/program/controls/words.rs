@@ -315,3 +315,19 @@ fn that_corners_are_rounded_is_said() {
     let exact = Scene::new(&format!("G61\n{blocks}")).run(&LINUXCNC);
     assert!(!stderr(&exact).contains(word), "{}", stderr(&exact));
 }
+
+/// An optional block, or a comment without an end, after the end of a block.
+#[test]
+fn a_block_after_a_semicolon_can_begin_with_a_comment() {
+    let scene = |after: &str| {
+        let blocks = format!("G0 X-6. Y0. Z1.\nG61\nG1 X-5.;{after}\nX4. Y0.");
+        Scene::new(&blocks).obstacle([-6.0, 7.0, -1.0], [-4.0, 9.0, 9.0]).with("anyway = true")
+    };
+    for after in ["/(AROUND)Y10.", "/9 (AROUND) Y10."] {
+        scene(after).gives(&FANUC, 1, &["the clamp"]);
+        scene(after).gives(&[], 1, &["the clamp"]);
+        scene(after).gives(&LINUXCNC, 0, &[]);
+    }
+    scene("(A)/(B)Y10.").gives(&FANUC, 2, &["`/` begins no word"]);
+    scene("(NOTE").gives(&FANUC, 2, &["comment"]);
+}
