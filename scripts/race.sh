@@ -26,7 +26,5 @@ this = { package = "touchoff", path = "$here/runtime" }
 this-tools = { package = "tools-library", path = "$here/tools-library" }
 other = { package = "touchoff", path = "../other/runtime", version = "0.0.9" }
 other-tools = { package = "tools-library", path = "../other/tools-library", version = "0.0.9" }
-[profile.release]
-lto = "thin"
 END
 cargo run --release --quiet --manifest-path "$race/Cargo.toml" --target-dir target/race
