@@ -1,7 +1,7 @@
 //! Proofs that no point has given signs: by elimination where curves are linear, otherwise by boxes that
 //! cover the domain.
 
-use crate::bound::Prover;
+use crate::bound::{Extent, Prover};
 use crate::domain::Domain;
 use crate::elimination::Linear;
 use crate::expr::interval::halves;
@@ -12,19 +12,26 @@ use crate::model::Model;
 const MAX_BOXES_IN_HALF_PLANE: usize = 96;
 const MAX_BOXES_IN_SPACE: usize = 400;
 
+/// The size of a box, relative to the tool's, at which a proof is given up: it mostly has a point with the signs. Boxes are divided
+/// depth first, so such a box is reached soon.
+const SMALLEST_BOX: f64 = 1.0 / 4096.0;
+
 /// A prover that combinations of signs are impossible.
 pub(crate) struct EmptinessProver<'m> {
     linear: Linear,
     domain: Domain,
     prover: Prover<'m>,
+    /// The size of boxes that are not divided further.
+    smallest: f64,
 }
 
 impl<'m> EmptinessProver<'m> {
-    pub(crate) fn new(model: &'m Model) -> EmptinessProver<'m> {
+    pub(crate) fn new(model: &'m Model, extent: &Extent) -> EmptinessProver<'m> {
         EmptinessProver {
             linear: Linear::new(model),
             domain: model.domain,
             prover: Prover::new(model),
+            smallest: SMALLEST_BOX * extent.scale(),
         }
     }
 
@@ -47,7 +54,9 @@ impl<'m> EmptinessProver<'m> {
             if constrained.any(|(curve, allowed)| self.prover.signs(curve) & allowed == 0) {
                 continue;
             }
-            if boxes_left == 0 {
+            let size =
+                cell.sides.iter().fold(0.0, |size: f64, side| size.max(side.high - side.low));
+            if boxes_left == 0 || size < self.smallest {
                 return false;
             }
             boxes_left -= 1;

@@ -20,7 +20,7 @@ pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usi
         model,
         samples: &samples,
         costs: &costs,
-        emptiness: EmptinessProver::new(model),
+        emptiness: EmptinessProver::new(model, extent),
         tests: 0,
     };
     planner.tree(vec![ANY_SIGN; model.curves.len()], &all_samples)
