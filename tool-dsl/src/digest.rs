@@ -26,7 +26,7 @@ fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
     needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
-    leaves(&tool.plan.clearance, &mut needed);
+    needed.extend(tool.plan.clearance.leaves());
     let needed = model.graph.dependencies(needed);
     let indices: HashMap<Id, usize> =
         needed.iter().enumerate().map(|(index, id)| (*id, index)).collect();
@@ -100,16 +100,6 @@ fn tests<L>(tree: &Tree<L>, leaf: &dyn Fn(&L) -> String) -> String {
         Tree::Leaf(value) => leaf(value),
         Tree::Split { curve, strict, below, above } => {
             format!("({curve} {strict} {} {})", tests(below, leaf), tests(above, leaf))
-        }
-    }
-}
-
-fn leaves(tree: &Tree<Id>, all: &mut Vec<Id>) {
-    match tree {
-        Tree::Leaf(id) => all.push(*id),
-        Tree::Split { below, above, .. } => {
-            leaves(below, all);
-            leaves(above, all);
         }
     }
 }

@@ -10,7 +10,6 @@ use super::tokens::Tokens;
 use super::{OUTPUTS, Output};
 use crate::checked::CheckedTool;
 use crate::expr::Id;
-use crate::plan::Tree;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,8 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let tree = &tool.plan.owner;
-    let mut owners = BTreeSet::new();
-    regions(tree, &mut owners);
+    let owners: BTreeSet<usize> = tree.leaves().into_iter().copied().flatten().collect();
     let outputs = |region: usize| {
         OUTPUTS.iter().flat_map(move |output| (output.of)(&model.regions[region].outputs))
     };
@@ -58,16 +56,6 @@ pub(super) fn evaluator(tool: &CheckedTool) -> TokenStream {
 /// Returns the name of the mask of the lanes in a region.
 fn of(region: usize) -> String {
     format!("of{region}")
-}
-
-fn regions(tree: &Tree<Option<usize>>, owners: &mut BTreeSet<usize>) {
-    match tree {
-        Tree::Leaf(owner) => owners.extend(*owner),
-        Tree::Split { below, above, .. } => {
-            regions(below, owners);
-            regions(above, owners);
-        }
-    }
 }
 
 /// The code of one region's outputs.

@@ -19,7 +19,6 @@ use crate::digest;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::model::RegionOutputs;
-use crate::plan::Tree;
 use code::{Form, Writer};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
@@ -226,9 +225,8 @@ const OUTPUTS: [Output; 5] = [
 /// Emits the distance from a point outside, a tree of nested `if`s.
 fn clearance(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
-    let mut roots = Vec::new();
-    leaves(&tool.plan.clearance, &mut roots);
     let tree = &tool.plan.clearance;
+    let roots: Vec<Id> = tree.leaves().into_iter().copied().collect();
     let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &roots, tree);
     let mut code = Tokens::default();
     writer.nested(&mut code, tree);
@@ -236,16 +234,6 @@ fn clearance(tool: &CheckedTool) -> TokenStream {
     quote! {
         #[inline]
         fn clearance([x, y, z]: [f64; 3]) -> f64 { #given #code }
-    }
-}
-
-fn leaves(tree: &Tree<Id>, roots: &mut Vec<Id>) {
-    match tree {
-        Tree::Leaf(id) => roots.push(*id),
-        Tree::Split { below, above, .. } => {
-            leaves(below, roots);
-            leaves(above, roots);
-        }
     }
 }
 

@@ -95,6 +95,14 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
+    /// Returns the leaves, those below a test first.
+    pub fn leaves(&self) -> Vec<&L> {
+        match self {
+            Tree::Leaf(leaf) => vec![leaf],
+            Tree::Split { below, above, .. } => [below, above].map(|side| side.leaves()).concat(),
+        }
+    }
+
     /// Returns the number of tests.
     pub fn test_count(&self) -> usize {
         match self {

@@ -99,23 +99,21 @@ impl Job<'_> {
         for reading in 0..self.program.reading_count() {
             let result = self.check_reading(reading, progress)?;
             pairs.extend(result.pairs);
-            for (line, reason) in result.cut.iter().flat_map(|cut| &cut.too_thin) {
-                let gap = Gap::open(*line, reason.clone());
-                if !gaps.contains(&gap) {
-                    gaps.push(gap);
-                }
-            }
-            cuts.extend(result.cut);
-            for (offset, line) in result.far_offsets {
+            let far = result.far_offsets.into_iter().map(|(offset, line)| {
                 let reason = format!(
                     "under {offset} the tool never comes within its diameter of the part: check {offset} in `work_offsets`, \
                      or give a job per part"
                 );
+                (line, reason)
+            });
+            let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
+            for (line, reason) in far.chain(thin) {
                 let gap = Gap::open(line, reason);
                 if !gaps.contains(&gap) {
                     gaps.push(gap);
                 }
             }
+            cuts.extend(result.cut);
         }
         gaps.sort_by_key(|gap| (!gap.is_open, gap.line));
         let machine = MachineFinding::all(self);

@@ -1,8 +1,8 @@
 //! APT-CL: the cutter location files that CAM systems write before a machine is chosen.
 //!
-//! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and the unit vector from the tip to
-//! the spindle; without one, `0,0,1`, or the last given in NX's files), `RAPID` (for the next `GOTO`),
-//! `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
+//! These statements are read: `GOTO/x,y,z[,i,j,k]` and, as the first position of a tool, `FROM/` (the tip, and
+//! the unit vector from the tip to the spindle; without one, `0,0,1`, or the last given in NX's files), `RAPID`
+//! (for the next `GOTO`), `MULTAX`, `UNITS`, `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
 //! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter.
@@ -19,6 +19,9 @@ use super::{CutterLocation, Located, ProgramFault, Tape, Tapes, axis_pose, lines
 use std::collections::BTreeMap;
 use std::mem;
 use touchoff::Unit;
+
+/// The axis of a tool along +Z.
+const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tapes, Located> {
@@ -204,7 +207,7 @@ impl Reader {
         let values = rest.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>()?;
         let (tip, axis) = match values[..] {
             [_, _, _] if self.is_axis_open => return Err(ProgramFault::OpenAxis),
-            [x, y, z] => ([x, y, z], self.axis.unwrap_or([0.0, 0.0, 1.0])),
+            [x, y, z] => ([x, y, z], self.axis.unwrap_or(UPRIGHT)),
             [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
             _ => {
                 return Err(ProgramFault::Count { word, found: values.len() });
@@ -212,7 +215,7 @@ impl Reader {
         };
         let pose = axis_pose(tip, axis)?;
         // NX leaves an axis out that stays, Creo one that is +Z.
-        self.is_axis_open = !self.is_nx && axis != [0.0, 0.0, 1.0];
+        self.is_axis_open = !self.is_nx && axis != UPRIGHT;
         self.axis = Some(axis);
         self.tape.locations.push(CutterLocation { line, pose, rapid });
         Ok(())
@@ -223,7 +226,7 @@ impl Reader {
             "" | "ON" => {}
             // CATIA locks the last axis then.
             "OFF" => {
-                self.is_axis_open |= self.axis.is_some_and(|axis| axis != [0.0, 0.0, 1.0]);
+                self.is_axis_open |= self.axis.is_some_and(|axis| axis != UPRIGHT);
                 self.axis = None;
             }
             _ => {

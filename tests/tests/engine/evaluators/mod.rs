@@ -70,7 +70,7 @@ fn batch(points: &[[f64; 3]]) -> PointBatch {
 /// Runs a check on every tool of the library, each in a thread that has the tool's name, as its messages then do.
 fn for_each_tool(check: fn(&'static dyn Tool, &dyn Oracle, &Source)) {
     let files = library::files();
-    assert_eq!(files.len(), TOOLS.len());
+    assert_eq!([files.len(), oracle::all().len()], [TOOLS.len(); 2]);
     let threads = TOOLS.iter().zip(files).map(|(tool, file)| {
         let name = tool.info().name.to_string();
         let oracle = move || {
