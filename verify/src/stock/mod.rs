@@ -263,8 +263,8 @@ impl Stock {
     ///
     /// A layer is found if a ball about the tool's axis lies in it that is not missed, and whose points are deeper in the tool
     /// than the tolerance and the error of sampling. It is thicker than [`Stock::found_layer`] by the thin parts of the tool: a
-    /// pointed end, or a neck, which the layer may surround. The balls that are tried have centres an eighth of their radius
-    /// apart.
+    /// pointed or a thin end, or a neck, which the layer may surround. The balls that are tried have centres an eighth of their
+    /// radius apart, or farther on a tool of more than 100,000 of them.
     pub fn found_layer_of(&self, tool: &dyn Tool, tolerance: f64) -> Option<f64> {
         let info = tool.info();
         let DepthBounds { lower_slope: Some(slope), lipschitz: Some(lipschitz), .. } = info.depth
@@ -277,12 +277,16 @@ impl Stock {
         let needed = missed + (tolerance + 0.5 * lipschitz * self.step()) / slope;
         let Interval { low, high } = info.reach();
         let (low, high) = (low * unit, high * unit);
-        let step = needed / 8.0;
-        let count = ((high - low) / step).min(100_000.0) as usize;
-        // No ball that fits has its centre nearer to the tip; the excess is above rounding.
-        let centre = |index: usize| low + (1.0 + 1e-9) * needed + step * index as f64;
+        // No ball that fits has its centre nearer to an end; the excess is above rounding.
+        let end = (1.0 + 1e-9) * needed;
+        let (first, travel) = (low + end, high - low - 2.0 * end);
+        if travel < 0.0 {
+            return None;
+        }
+        let count = (8.0 * travel / needed).ceil().clamp(1.0, 100_000.0);
+        let centre = |index: usize| first + travel * (index as f64 / count);
         let mut points = PointBatch::default();
-        for index in 0..=count {
+        for index in 0..=count as usize {
             points.push([0.0, 0.0, centre(index) / unit]);
         }
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };
@@ -295,7 +299,8 @@ impl Stock {
                 continue;
             }
             let centre = centre(index);
-            // The thickest layer without a ball ends at the top of the first, or lies about two in a row.
+            // The thickest layer without a ball ends at the top of the first, lies about two in a row, or begins at the
+            // bottom of the last.
             let layer = match last {
                 None => centre - low + missed,
                 Some(last) => centre - last + 2.0 * missed,
@@ -303,7 +308,7 @@ impl Stock {
             thickness = thickness.max(layer);
             last = Some(centre);
         }
-        last.map(|_| thickness)
+        last.map(|last| thickness.max(high - last + missed))
     }
 
     /// Returns the step: no point of a tool travels farther between two samples of a motion.

@@ -281,4 +281,17 @@ fn a_neck_makes_the_layer_that_is_found_thicker() {
     let expected = 15.0 + 2.0 * needed + 2.0 * stock.missed_ball_radius();
     assert!((expected..expected + 0.25 * needed).contains(&necked), "{necked}, not {expected}");
     assert_eq!(of(&Pin), None);
+    touchoff::tool! {
+        tool Drawn "a shank of 1 mm, without a holder" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (6, 0), (6, 5) as disc cutting;
+                line to (0.5, 5), (0.5, 20), (0, 20) as shank;
+            }
+        }
+    }
+    let drawn = of(&Drawn).expect("a wide tool with a thin end");
+    let expected = 15.0 + needed + stock.missed_ball_radius();
+    assert!((expected..expected + 0.25 * needed).contains(&drawn), "{drawn}, not {expected}");
 }
