@@ -8,7 +8,7 @@ use super::motion::{AXES, Control};
 use super::note::Subject;
 use super::rules::{Choice, Rule};
 use super::state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset, about};
-use super::{GcodeFault, StepPath};
+use super::{GcodeFault, Plane, StepPath};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -286,6 +286,12 @@ impl Control {
         if code.tenths == 430 && is_tcp && !self.transformed {
             let condition = "tool centre point control is on, which it ends on some controls";
             return Err(combination(code, condition, "write G49 before"));
+        }
+        let is_across = code.tenths == 430 && self.modal.plane != Plane::Xy;
+        if is_across && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+            let condition =
+                "G18 or G19 is in force, across which Fanuc can count the length (TLB, TLC)";
+            return Err(combination(code, condition, "write it while G17 is in force"));
         }
         if code.tenths == 2340 && !block.has('H') {
             let needed = "H in its block, since Haas cancels the one before";

@@ -323,7 +323,7 @@ impl Control {
         self.check_words(block)?;
         self.feed(block)?;
         self.tool(block)?;
-        dwell(block)?;
+        self.dwell(block)?;
         let turned = self.spindle_words(block);
         self.motion_mode(block);
         if let Some(word) = turned.filter(|_| is_programmed(block) && self.modal.is_feed()) {
@@ -352,6 +352,26 @@ impl Control {
         }
         self.check_offset(block)?;
         self.motion(block)
+    }
+
+    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.
+    fn dwell(&self, block: &mut Block) -> Result<(), GcodeFault> {
+        if block.code_of(Group::Dwell).is_none() {
+            return Ok(());
+        }
+        if block.has('S') {
+            return Err(GcodeFault::Combination {
+                word: "S".to_owned(),
+                condition: "its block has G4, of which it is the time in turns of the spindle",
+                remedy: "write it in a block before",
+            });
+        }
+        let dialect = self.stated(Rule::Dialect);
+        let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
+        if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
+            block.take('X');
+        }
+        Ok(())
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
@@ -506,22 +526,4 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
             Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy })
         }
     }
-}
-
-/// Takes the word with the time of G4: P or X, or F, which is no feed rate then.
-fn dwell(block: &mut Block) -> Result<(), GcodeFault> {
-    if block.code_of(Group::Dwell).is_none() {
-        return Ok(());
-    }
-    if block.has('S') {
-        return Err(GcodeFault::Combination {
-            word: "S".to_owned(),
-            condition: "its block has G4, of which it is the time in turns of the spindle",
-            remedy: "write it in a block before",
-        });
-    }
-    if block.take('P').is_none() && block.code_of(Group::Motion).is_none() {
-        block.take('X');
-    }
-    Ok(())
 }

@@ -140,6 +140,8 @@ pub(super) fn check_cycle(block: &Block, number: u32) -> Result<(), GcodeFault> 
     let unused = match number {
         73 | 83 => "KP",
         81 | 85 => "KPQ",
+        // `check_items` of LinuxCNC lets G73, G76 and G81 to G89 repeat.
+        74 => "KLQ",
         _ => "KQ",
     };
     if let Some(word) = unused.chars().find(|letter| block.has(*letter)) {

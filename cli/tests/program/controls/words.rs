@@ -190,6 +190,7 @@ fn words_at_which_a_control_stops_are_refused() {
         ("G4 X1.", "G4 needs P with a time"),
         ("G82 X4. Z1. R2.", "G82 needs P with the time"),
         ("G81 X4. Z1. R2. K2", "K is used by no G or M word"),
+        ("M4 S100\nG74 X4. Z1. R2. L2", "L is used by no G or M word"),
         ("D1", "D is used by no G or M word"),
         ("S-100", "S-100"),
         ("G0 G28 Z0.", "G28 and G0"),
@@ -227,6 +228,8 @@ fn words_at_which_a_control_stops_are_refused() {
         (&HAAS, "G81 X4. Z1. R2.\nX5. L0", "to whose place Haas moves"),
         (&HAAS, "G81 X4. Z1. R2.\nG98 Z1.5", "has no place of a hole, and is executed or not"),
         (&HAAS, "M30 M9", "M30 while its block has another M word"),
+        (&SIEMENS, "G4 X5.", "X is used by no G or M word"),
+        (&FANUC, "G18\nG43 H1 Z20.", "G43 while G18 or G19 is in force"),
         (&SIEMENS, "G20\nG91 G1 X.0001", "no multiple of the least increment"),
         (&FANUC, "S900 M4\nG86 X4. Z1. R2. P0\nG80", "which it does not do after it on Fanuc"),
     ] {
