@@ -1,9 +1,9 @@
 //! Files that are written completely or not at all.
 
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::hash::{BuildHasher, RandomState};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// A file that replaces its target only when it is complete.
 ///
@@ -40,21 +40,35 @@ pub struct AtomicFile {
 
 #[derive(Debug)]
 enum Sink {
-    Temporary(NamedTempFile),
+    Temporary(Temporary),
     Direct(File),
+}
+
+/// A temporary file, which is removed when it is dropped.
+#[derive(Debug)]
+struct Temporary {
+    file: File,
+    path: PathBuf,
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // After a rename there is no file of that name.
+        let _ = fs::remove_file(&self.path);
+    }
 }
 
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Sink::Temporary(file) => file.write(bytes),
+            Sink::Temporary(temporary) => temporary.file.write(bytes),
             Sink::Direct(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
-            Sink::Temporary(file) => file.flush(),
+            Sink::Temporary(temporary) => temporary.file.flush(),
             Sink::Direct(file) => file.flush(),
         }
     }
@@ -102,7 +116,7 @@ impl AtomicFile {
         remove_abandoned(folder);
         let temporary = create_temporary(folder)?;
         if let Some(old) = old {
-            copy_permissions(temporary.as_file(), &old)?;
+            copy_permissions(&temporary.file, &old)?;
         }
         Ok(AtomicFile { out: BufWriter::new(Sink::Temporary(temporary)), target })
     }
@@ -122,7 +136,7 @@ impl AtomicFile {
     /// # Errors
     /// Returns the errors of the file system, above all for lack of space; the target is then unchanged.
     pub fn commit(self) -> io::Result<()> {
-        self.finish(|temporary, target| temporary.persist(target).map_err(|failed| failed.error))
+        self.finish(|temporary, target| fs::rename(temporary, target))
     }
 
     /// Commits a file like [`AtomicFile::commit`], if its target does not exist.
@@ -130,21 +144,17 @@ impl AtomicFile {
     /// # Errors
     /// `AlreadyExists` if there is a file of that name by now; that file is unchanged.
     pub fn commit_new(self) -> io::Result<()> {
-        let persist = |temporary: NamedTempFile, target: &Path| {
-            temporary.persist_noclobber(target).map_err(|failed| failed.error)
-        };
-        self.finish(persist)
+        // Unlike a rename, a link never replaces a file; its other name is removed with the temporary file.
+        self.finish(|temporary, target| fs::hard_link(temporary, target))
     }
 
-    fn finish(
-        self,
-        persist: impl FnOnce(NamedTempFile, &Path) -> io::Result<File>,
-    ) -> io::Result<()> {
+    /// Synchronises the file and gives it its name: `publish` takes the temporary path and the target.
+    fn finish(self, publish: impl FnOnce(&Path, &Path) -> io::Result<()>) -> io::Result<()> {
         match self.out.into_inner().map_err(io::IntoInnerError::into_error)? {
             Sink::Direct(mut file) => file.flush(),
             Sink::Temporary(temporary) => {
-                temporary.as_file().sync_all()?;
-                persist(temporary, &self.target)?;
+                temporary.file.sync_all()?;
+                publish(&temporary.path, &self.target)?;
                 // Synchronise the folder entry too. Where folders cannot be synchronised, the system
                 // writes it in its own time.
                 #[cfg(unix)]
@@ -199,26 +209,25 @@ fn standard_stream(_: &Path) -> Option<io::Result<File>> {
 }
 
 /// Creates a temporary file in a folder, locked so that no process treats it as abandoned.
-fn create_temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
-    #[cfg(unix)]
-    {
-        // As for any new file: the umask removes the permissions that the user excludes.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
+fn create_temporary(folder: &Path) -> io::Result<Temporary> {
     /// Number of attempts, more than chance and a few other processes require.
     const MAX_ATTEMPTS: usize = 16;
     for _ in 0..MAX_ATTEMPTS {
-        // Omit the name of the temporary file from the error: it means nothing to the user.
-        let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
-        match file.as_file().try_lock() {
+        // Each `RandomState` has keys of its own, so that an empty hash is a random number.
+        let random = RandomState::new().hash_one(());
+        let path = folder.join(format!("{PREFIX}{random:016x}{SUFFIX}"));
+        let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            Err(error) => return Err(error),
+        };
+        let temporary = Temporary { file, path };
+        match temporary.file.try_lock() {
             // Another process took the file for abandoned before it was locked, and removes it.
             Err(TryLockError::WouldBlock) => {}
-            Ok(()) if !file.path().exists() => {}
+            Ok(()) if !temporary.path.exists() => {}
             // Not every file system supports locks; without them no file is treated as abandoned.
-            Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok(temporary),
         }
     }
     Err(io::Error::other("temporary files there are removed as soon as they are made"))

@@ -3,7 +3,8 @@
 use std::fmt;
 
 /// A triangle of a mesh: its position in the mesh's list, which is the order of the file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TriangleId(pub u32);
 
 impl TriangleId {

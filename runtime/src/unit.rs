@@ -5,7 +5,8 @@ use std::fmt;
 use std::str::FromStr;
 
 /// A unit of length, with the symbol that `.tool` files and the program use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Unit {
     /// `mm`
     Millimetre,
