@@ -1,7 +1,7 @@
 //! Import of tool libraries: CAM systems' tools become `.tool` files.
 //!
-//! [`Library::read`] reads a library of Fusion 360, FreeCAD, HSM or LinuxCNC, or the cutters of an APT or NX program,
-//! and [`ImportedTool::write_to`] writes a `.tool` file for each tool, with the holder in a file of its own that is mounted.
+//! [`Library::read`] reads a library of Fusion 360, FreeCAD, HSM, Kiri:Moto, CAMotics or LinuxCNC, or the cutters of an APT
+//! or NX program, and [`ImportedTool::write_to`] writes a `.tool` file for each tool, with the holder in a file of its own that is mounted.
 //! A [`Note`] names each thing that a format leaves open; statements that contradict each other are
 //! reported with the one that was taken. A tool without a shape that can be derived is [`Skipped`], with the reason.
 //! The same file gives the same bytes each time.

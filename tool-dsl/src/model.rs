@@ -342,11 +342,11 @@ pub struct RegionOutputs {
 }
 
 impl RegionOutputs {
-    /// Returns the expressions in the order of a tape's outputs after the owner.
-    pub(crate) fn roots(&self) -> Vec<Id> {
-        let mut roots = vec![self.depth, self.magnitude, self.niceness];
-        roots.extend(self.direction);
-        roots.extend(self.gradient);
-        roots
+    /// Returns the expressions in the order of a tape's outputs after the owner, which the documentation of
+    /// [`OUTPUT_COUNT`](crate::interpret::OUTPUT_COUNT) states.
+    pub(crate) fn roots(&self) -> [Id; 9] {
+        let [ux, uy, uz] = self.direction;
+        let [gx, gy, gz] = self.gradient;
+        [self.depth, self.magnitude, self.niceness, ux, uy, uz, gx, gy, gz]
     }
 }

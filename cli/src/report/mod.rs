@@ -152,6 +152,7 @@ impl<'a> Content<'a> {
                 Shown::new(&body.name, &body.mesh, [index > 0, body.has_own_frame()])
             })
             .collect();
+        // A body's depths come first: close-ups and the viewer show a finding by the first layer of its body.
         let mut layers = Vec::new();
         for (index, body) in shown.iter().enumerate() {
             let layer = colouring::depths(checked, index, body)?;

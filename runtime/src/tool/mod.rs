@@ -69,7 +69,9 @@ pub trait Tool: Send + Sync {
     /// Returns the distance from a point of the tool's frame to the tool, in the file's unit.
     ///
     /// It is 0 inside, and a lower bound unless [`ToolInfo::is_exact`]. Farther away than 48 sizes of the tool it
-    /// is the distance to a cylinder around the tool, and therefore too small by less than one size.
+    /// is the distance to a cylinder around the tool, and therefore too small by less than one size. Of the
+    /// library's tools no rounding error was found above 2^-52 times the power of two above the tool's largest
+    /// coordinate and the point's distance from the origin.
     fn clearance(&self, point: [f64; 3]) -> f64;
 
     /// Evaluates the requested outputs at points of the tool's frame.

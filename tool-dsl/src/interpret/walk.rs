@@ -136,10 +136,7 @@ impl PlanEvaluator {
                 .model
                 .regions
                 .iter()
-                .map(|region| {
-                    let roots = region.outputs.roots();
-                    std::array::from_fn(|part| list(roots[part]))
-                })
+                .map(|region| region.outputs.roots().map(list))
                 .collect(),
             forks,
         }

@@ -1,5 +1,5 @@
-//! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and LinuxCNC, with the words of Haas
-//! and Sinumerik for tool centre point control.
+//! G-code: an interpreter of ISO 6983 programs in the dialects of Fanuc and Haas, LinuxCNC, Sinumerik and
+//! Heidenhain (DIN/ISO).
 //!
 //! An [`Interpreter`] executes a program as a control does, and returns its motions one by one. Each [`Step`]
 //! is a line or an arc between two positions in program coordinates, with the [state of the

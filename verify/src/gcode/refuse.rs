@@ -23,7 +23,7 @@ impl Control {
             let remedy = "write G20 or G21";
             return Err(GcodeFault::NotRead { word: code.to_string(), meaning, remedy });
         }
-        let other = block.codes().find(|code| is_other_word(*code));
+        let other = block.codes().find(|code| is_other_on_heidenhain(*code));
         if let Some(code) = other
             && self.choice(Rule::Dialect) == Choice::Heidenhain
         {
@@ -316,12 +316,12 @@ fn takes(code: Code, letter: char) -> bool {
 }
 
 /// Returns whether a word means something else in DIN/ISO programs of Heidenhain.
-fn is_other_word(code: Code) -> bool {
+fn is_other_on_heidenhain(code: Code) -> bool {
     match (code.letter, code.tenths) {
         ('G', tenths) => matches!(
             tenths,
             90 | 100 | 150 | 200 | 210 | 230 | 280 | 300 | 430..=449 | 490 | 520..=599 | 610..=649 | 670..=699 | 730 | 740
-                | 810..=869 | 890 | 920..=979 | 980 | 990
+                | 810..=890 | 920..=979 | 980 | 990
         ),
         ('M', tenths) => matches!(tenths, 890 | 980 | 990),
         _ => false,

@@ -133,9 +133,9 @@ pub(crate) struct Displacement {
 
 impl Displacement {
     /// Returns a bound on how far paths are from straight, for points at a distance `far` from the axis of the
-    /// rotation.
+    /// rotation: `MotionInterval::deviation_bound` in `f32`. The margin of a sweep covers its rounding.
     #[inline(always)]
-    pub(crate) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
+    pub(crate) fn deviation_bound<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
         let reach = f32x16::splat(simd, self.reach).min(far + self.length);
         (reach * (0.5 * self.turn) + self.length) * self.turn
     }
@@ -162,7 +162,7 @@ pub(crate) fn rings<S: Simd>(
         // Upper bounds of the components of `axis × p`.
         let [u, v, w] = shift.axis.map(f32::abs);
         let across = [far[2] * v + far[1] * w, far[2] * u + far[0] * w, far[0] * v + far[1] * u];
-        let curve = shift.curve(simd, across[0] + across[1] + across[2]);
+        let curve = shift.deviation_bound(simd, across[0] + across[1] + across[2]);
         for axis in 0..3 {
             let turned = reach.min(across[axis]) * shift.turn;
             wide[axis] = wide[axis] + turned + shift.straight[axis] + curve;

@@ -105,16 +105,16 @@ impl MotionInterval {
     }
 
     /// Returns a bound on how far a path is from straight, for a point whose distance from the axis of the rotation
-    /// is at most `reach` in the middle of the interval.
-    pub(crate) fn deviation_bound(&self, reach: f64) -> f64 {
+    /// is at most `radius` in the middle of the interval. [`Displacement::deviation_bound`] is the same in `f32`.
+    pub(crate) fn deviation_bound(&self, radius: f64) -> f64 {
         let MotionBounds { length, turn, .. } = self.bounds;
-        turn * (length + 0.5 * turn * self.bounds.reach.min(reach + length))
+        turn * (length + 0.5 * turn * self.bounds.reach.min(radius + length))
     }
 
     /// Returns a bound on the displacement of such a point from the middle of the interval.
-    pub(crate) fn displacement_bound(&self, reach: f64) -> f64 {
+    pub(crate) fn displacement_bound(&self, radius: f64) -> f64 {
         let MotionBounds { length, turn, .. } = self.bounds;
-        length + turn * reach.min(self.bounds.reach) + self.deviation_bound(reach)
+        length + turn * radius.min(self.bounds.reach) + self.deviation_bound(radius)
     }
 
     /// Returns the displacement in `f32`, rounded up, with `required_clearance` added to its translation.

@@ -123,7 +123,8 @@ impl Sweeper {
         setting.setup.set_pose(frame, first, &mut self.ends[0]);
         setting.setup.set_pose(frame, middle, &mut self.view);
         setting.setup.set_pose(frame, last, &mut self.ends[1]);
-        // The tips of poses are rounded relative to their world coordinates.
+        // 2^-18 of the displacement covers the rounding of `Displacement`'s bounds in `f32`, whose terms are no
+        // larger. The tips of poses are rounded relative to their world coordinates.
         let tip = task.motion.start().coords.norm() + task.motion.displacement().norm();
         let margin = setting.margin()
             + (interval.displacement_bound(f64::INFINITY) + task.required_clearance())

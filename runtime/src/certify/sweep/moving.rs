@@ -56,7 +56,7 @@ fn of_leaf_on<S: Simd>(
     };
     let [p, q, r] = middle.each_ref().map(square);
     let far = p.max(q).max(r).sqrt();
-    let grow = moving.shift.curve(simd, far) + moving.required_clearance;
+    let grow = moving.shift.deviation_bound(simd, far) + moving.required_clearance;
     let ends = [a, b, c, d, e, f];
     above(moving.hull.swept(simd, (&ends, &middle), grow, threshold), threshold)
 }
