@@ -7,4 +7,3 @@ pub mod haptics;
 pub mod libraries;
 pub mod library;
 pub mod oracle;
-pub mod points;

@@ -1,7 +1,7 @@
-//! The page `compile.md`: size of each tool's code, compile time, cost of loading a tool at run time instead, and
-//! import of tool libraries.
+//! The page `compile.md`: size of each tool's code, compile time, bounds proved, cost of loading a tool at run time
+//! instead, and import of tool libraries.
 
-use super::{imported, interpreter};
+use super::{imported, interpreter, proofs};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -46,7 +46,7 @@ impl Compile {
         }
         Ok(Some(Page {
             name: "compile",
-            title: "What compiling a tool costs, and what loading it costs",
+            title: "What it costs to compile, prove, load and import tools",
             covers: &[
                 "tool-dsl/src",
                 "tool-macros/src",
@@ -55,7 +55,8 @@ impl Compile {
                 "import/src",
             ],
             sections: vec![
-                Section { title: "Compiled", body: body(&rows), missed_limits: Vec::new() },
+                Section { title: "Compiled", body: body(&rows) },
+                proofs::section()?,
                 interpreter::section()?,
                 imported::section()?,
             ],

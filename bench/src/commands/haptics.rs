@@ -59,11 +59,7 @@ impl Haptics {
                 "runtime/src/probe",
                 "runtime/src/tool",
             ],
-            sections: vec![Section {
-                title: "",
-                body: page(&measured)?,
-                missed_limits: Vec::new(),
-            }],
+            sections: vec![Section { title: "", body: page(&measured)? }],
             figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
         }))
     }

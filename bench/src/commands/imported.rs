@@ -10,9 +10,8 @@ use touchoff_bench::page::Section;
 use touchoff_import::{ImportedTool, Library};
 use touchoff_tests::libraries::fusion_library;
 
-/// Number of tools of the library, and the limit on the time of their import, in s.
+/// Number of tools of the library.
 const TOOLS: usize = 1_000;
-const LIMIT: f64 = 10.0;
 
 /// Returns the section about one large library.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {
@@ -28,18 +27,13 @@ pub(super) fn section() -> Result<Section, Box<dyn Error>> {
     let body = format!(
         "A library of Fusion 360 with {TOOLS} tools: {} are imported, {} left out. All are read in {read:.2} s, and written, \
          compiled and proved on {} threads in {all:.2} s. Depth is proved to be the distance for {proved} of them, {} do not \
-         compile. Limit: {LIMIT} s.\n",
+         compile.\n",
         library.tools().len(),
         library.skipped().len(),
         rayon::current_num_threads(),
         proofs.iter().filter(|proof| proof.is_none()).count(),
     );
-    let missed_limits = if all > LIMIT {
-        vec![format!("the import of {TOOLS} tools takes {all:.1} s")]
-    } else {
-        Vec::new()
-    };
-    Ok(Section { title: "Imported", body, missed_limits })
+    Ok(Section { title: "Imported", body })
 }
 
 /// Writes, compiles and proves a tool: true if depth is the distance, `None` if it does not compile.

@@ -45,7 +45,7 @@ The forces are equal to the bit.
     ratios.sort_by(f64::total_cmp);
     let worst = ratios.last().ok_or("the library has no tool")?;
     writeln!(body, "\nMedian ratio {:.1}, worst {worst:.1}.", ratios[ratios.len() / 2])?;
-    Ok(Section { title: "Loaded at run time", body, missed_limits: Vec::new() })
+    Ok(Section { title: "Loaded at run time", body })
 }
 
 /// Returns the mean number of contacts, and the median time per query of each tool, ns.

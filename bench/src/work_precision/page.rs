@@ -48,7 +48,7 @@ pub fn page(measured: &Measurements, plan: &Plan) -> Result<Page, Error> {
             GENERATED_CODE,
             "tools-library/tools",
         ],
-        sections: vec![Section { title: "", body, missed_limits: Vec::new() }],
+        sections: vec![Section { title: "", body }],
         figures: figures(measured),
     })
 }

@@ -9,5 +9,6 @@ mod expressions;
 mod generated;
 mod language;
 mod mounts;
+mod mutants;
 mod profiles;
 mod refused;

@@ -1,0 +1,219 @@
+//! Allowances of surfaces and depths per surface, checked against known geometry and against the oracle's owners.
+
+mod sampled;
+
+use crate::{UP, block, motion, plate, pose, tool};
+use touchoff::certify::{AllowanceError, Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
+use touchoff::{Mesh, Motion, Tool};
+
+fn names(tool: &dyn Tool) -> Vec<String> {
+    tool.info().surfaces.iter().map(|surface| surface.name.to_string()).collect()
+}
+
+/// Returns a certifier with allowances by name; those of all other surfaces are 0.
+fn certifier_with<'a>(bvh: &'a TriangleBvh, name: &str, allowed: &[(&str, f64)]) -> Certifier<'a> {
+    let certifier = Certifier::new(bvh, tool(name)).expect("a profile");
+    allowed.iter().fold(certifier, |certifier, (surface, allowed)| {
+        certifier.with_allowance(surface, *allowed).expect("a surface")
+    })
+}
+
+#[test]
+fn a_flute_may_cut_and_a_shank_may_not() {
+    // The flute extends from z = 0 to 26 and has a radius of 6; the shank above is as thick.
+    let upright = pose([0.0; 3], UP);
+    for (top, clear) in [(25.0, true), (25.5, true), (26.0 + 1e-3, false), (40.0, false)] {
+        let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, top]);
+        let bvh = TriangleBvh::new(&wall);
+        let mut certifier = certifier_with(&bvh, "Flat", &[("flute", f64::INFINITY)]);
+        let verdict = certifier.check_pose(&upright);
+        let verdict_at_rest = certifier.check_motion(&motion(&upright, &upright), 0.0);
+        if clear {
+            assert_eq!(
+                (verdict, verdict_at_rest),
+                (PoseVerdict::Clear, MotionVerdict::Clear),
+                "{top}"
+            );
+        } else {
+            let PoseVerdict::Touching(witness) = verdict else { panic!("{top}: {verdict:?}") };
+            assert_eq!(names(tool("Flat"))[witness.surface.0], "shank", "{top}");
+            assert!(
+                matches!(verdict_at_rest, MotionVerdict::Touching(..)),
+                "{top}: {verdict_at_rest:?}"
+            );
+        }
+    }
+    let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, 20.0]);
+    let bvh = TriangleBvh::new(&wall);
+    for (allowed, clear) in [(2.0 + 1e-9, true), (2.0 - 1e-9, false), (0.0, false)] {
+        let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
+        assert_eq!(certifier.check_pose(&upright) == PoseVerdict::Clear, clear, "{allowed}");
+        // Along the wall the depth is constant.
+        let verdict = certifier.check_motion(&motion_along_wall(), 0.02);
+        assert_eq!(verdict == MotionVerdict::Clear, allowed > 1.0, "{allowed}: {verdict:?}");
+    }
+}
+
+/// Returns a motion on which the flute stays 2 mm deep in a wall at x = 4.
+fn motion_along_wall() -> Motion {
+    motion(&pose([0.0, -10.0, 0.0], UP), &pose([0.0, 10.0, 0.0], UP))
+}
+
+#[test]
+fn a_flute_cuts_along_a_wall() {
+    let wall = block([4.0, -30.0, 5.0], [40.0, 30.0, 20.0]);
+    let bvh = TriangleBvh::new(&wall);
+    for allowed in [2.01, 3.0, f64::INFINITY] {
+        for tolerance in [0.0, 1e-6, 1e-3] {
+            let mut certifier = certifier_with(&bvh, "Flat", &[("flute", allowed)]);
+            let verdict = certifier.check_motion(&motion_along_wall(), tolerance);
+            assert_eq!(verdict, MotionVerdict::Clear, "{allowed} {tolerance:e}");
+        }
+    }
+}
+
+/// A part at a given distance from the nut.
+type Case = (&'static str, fn(f64) -> Mesh);
+
+#[test]
+fn a_nut_keeps_its_margin_from_all_sides() {
+    // The nut's ring is at z = 30, its cone has radii 12.9 to 14, its side has radius 14 up to z = 47.5.
+    let diagonal = std::f64::consts::FRAC_1_SQRT_2;
+    let cases: [Case; 4] = [
+        ("ring", |gap| block([7.0, -1.0, 20.0], [9.0, 1.0, 30.0 - gap])),
+        ("side", |gap| block([14.0 + gap, -9.0, 35.0], [30.0, 9.0, 40.0])),
+        ("end", |gap| block([-9.0, -9.0, 47.5 + gap], [9.0, 9.0, 60.0])),
+        ("past the ring", |gap| block([7.0, -1.0, 20.0], [40.0, 1.0, 30.0 - gap])),
+    ];
+    for (case, part) in cases {
+        for (gap, clear) in [(0.4, false), (0.5 - 1e-9, false), (0.5 + 1e-9, true), (0.6, true)] {
+            let bvh = TriangleBvh::new(&part(gap));
+            let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
+            let end_pose = pose([0.0; 3], UP);
+            let verdict = certifier.check_pose(&end_pose);
+            let rest = motion(&pose([0.0; 3], UP), &end_pose);
+            let verdict_at_rest = certifier.check_motion(&rest, 0.0);
+            if clear {
+                assert_eq!(
+                    (verdict, verdict_at_rest),
+                    (PoseVerdict::Clear, MotionVerdict::Clear),
+                    "{case} {gap}"
+                );
+            } else {
+                let PoseVerdict::Touching(witness) = verdict else {
+                    panic!("{case} {gap}: {verdict:?}")
+                };
+                assert_eq!(names(tool("BallEr16"))[witness.surface.0], "nut.nut");
+                assert!(
+                    matches!(verdict_at_rest, MotionVerdict::Touching(..)),
+                    "{case} {gap}: {verdict_at_rest:?}"
+                );
+            }
+            // Approach from far away along the axis.
+            let lift = if case == "end" { -30.0 } else { 3.0 };
+            let approach = motion(&pose([0.0, 0.0, lift], UP), &end_pose);
+            let approach = certifier.check_motion(&approach, 0.0);
+            if case != "side" {
+                assert_eq!(approach == MotionVerdict::Clear, clear, "{case} {gap}: {approach:?}");
+            }
+        }
+    }
+    // A corner of a part beside the cone, at a distance along the diagonal.
+    for (gap, clear) in [(0.4, false), (0.6, true)] {
+        let at = [13.45 + gap * diagonal, 0.0, 30.55 - gap * diagonal];
+        let bvh = TriangleBvh::new(&block([at[0], -1.0, 20.0], [at[0] + 5.0, 1.0, at[2]]));
+        let mut certifier = certifier_with(&bvh, "BallEr16", &[("nut.nut", -0.5)]);
+        assert_eq!(certifier.check_pose(&pose([0.0; 3], UP)) == PoseVerdict::Clear, clear, "{gap}");
+    }
+}
+
+#[test]
+fn a_level_face_alone_keeps_its_margin() {
+    let bvh = TriangleBvh::new(&plate());
+    for (tip, clear) in [(0.4, false), (0.6, true), (0.5 + 1e-9, true), (0.5 - 1e-9, false)] {
+        let mut certifier = certifier_with(&bvh, "Flat", &[("face", -0.5)]);
+        let end_pose = pose([1.0, 2.0, tip], UP);
+        let verdict = certifier.check_pose(&end_pose);
+        assert_eq!(verdict == PoseVerdict::Clear, clear, "{tip}: {verdict:?}");
+        for from in [[-60.0, 2.0, tip], [1.0, 2.0, 30.0]] {
+            let path = motion(&pose(from, UP), &end_pose);
+            let verdict = certifier.check_motion(&path, 0.0);
+            assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
+        }
+        // A part inside the middle of the tool, with depth allowed for the flute.
+        let inside = TriangleBvh::new(&block([-1.0, -1.0, tip], [1.0, 1.0, 5.0]));
+        let allowed = [("face", -0.5), ("flute", f64::INFINITY), ("shank", f64::INFINITY)];
+        let mut certifier = certifier_with(&inside, "Flat", &allowed);
+        // The face is the nearest surface here, and it must not be in the part at all.
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
+        assert!(matches!(verdict, PoseVerdict::Touching(_)), "{tip}: {verdict:?}");
+        let above = TriangleBvh::new(&block([5.8, -0.1, tip], [5.9, 0.1, 5.0]));
+        let mut certifier = certifier_with(&above, "Flat", &allowed);
+        let verdict = certifier.check_pose(&pose([0.0; 3], UP));
+        assert_eq!(
+            matches!(verdict, PoseVerdict::Clear | PoseVerdict::SurfaceOnly),
+            clear,
+            "{tip}: {verdict:?}"
+        );
+        let path = motion(&pose([0.0; 3], UP), &pose([0.0; 3], UP));
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(verdict == MotionVerdict::Clear, clear, "{tip}: {verdict:?}");
+    }
+}
+
+#[test]
+fn allowances_of_all_surfaces_permit_depth_or_require_a_margin() {
+    let bvh = TriangleBvh::new(&plate());
+    let deep = pose([0.0, 0.0, -5.0], UP);
+    let same_for_all =
+        |allowed: f64| names(tool("Flat")).into_iter().map(move |name| (name, allowed));
+    for (allowed, clear) in [(f64::INFINITY, true), (5.1, true), (4.9, false), (-1.0, false)] {
+        let allowances: Vec<_> = same_for_all(allowed).collect();
+        let allowances: Vec<_> =
+            allowances.iter().map(|(name, allowed)| (name.as_str(), *allowed)).collect();
+        let mut certifier = certifier_with(&bvh, "Flat", &allowances);
+        let verdict = certifier.check_pose(&deep);
+        assert_eq!(matches!(verdict, PoseVerdict::Touching(_)), !clear, "{allowed}: {verdict:?}");
+        let high = certifier.check_pose(&pose([0.0, 0.0, 1.0 + 1e-6], UP));
+        assert_eq!(high, PoseVerdict::Clear, "{allowed}");
+        let path = motion(&deep, &pose([3.0, 0.0, -5.0], UP));
+        let verdict = certifier.check_motion(&path, 0.0);
+        assert_eq!(
+            matches!(verdict, MotionVerdict::Touching(..)),
+            !clear,
+            "{allowed}: {verdict:?}"
+        );
+    }
+}
+
+#[test]
+fn rejects_unknown_surfaces_and_allowances_without_length() {
+    let bvh = TriangleBvh::new(&plate());
+    let error_of = |surface: &str, allowed: f64| {
+        let certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
+        certifier.with_allowance(surface, allowed).expect_err("no allowance")
+    };
+    let known = "`face`, `flute`, `shank`".to_owned();
+    let expected =
+        AllowanceError::NoSurface { tool: "Flat".into(), surface: "flank".into(), known };
+    assert_eq!(error_of("flank", 1.0), expected);
+    let text = "Flat has no surface `flank`; it has `face`, `flute`, `shank`";
+    assert_eq!(expected.to_string(), text);
+    let text = error_of("flute", f64::NAN).to_string();
+    assert!(text.starts_with("an allowance of NaN for `flute` is not a length"), "{text}");
+    let text = error_of("flute", f64::NEG_INFINITY).to_string();
+    assert!(text.starts_with("an allowance of -inf for `flute` is not a length"), "{text}");
+}
+
+/// The corner that the neck shares with the surface below owns points at the flute's heights, but not points of the
+/// flute: a part that touches the flute does not touch the neck.
+#[test]
+fn contact_with_the_flute_does_not_touch_the_neck() {
+    for step in -40..=40 {
+        let wall = block([8.25 + f64::from(step) * 1e-13, -20.0, 0.5], [30.0, 20.0, 2.5]);
+        let bvh = TriangleBvh::new(&wall);
+        let mut certifier = certifier_with(&bvh, "Woodruff", &[("flute", 0.01)]);
+        let clear = certifier.check_pose(&pose([0.0; 3], UP));
+        assert!(matches!(clear, PoseVerdict::Clear), "{step}: {clear:?}");
+    }
+}

@@ -1,0 +1,405 @@
+//! Certified depths of surfaces, and verdicts with allowances, compared with samples.
+//!
+//! The oracle knows the distance of a point from each surface, so it knows which surface owns the point: the nearest one.
+//! It samples triangles and climbs from the best samples, toward greater depth below one surface or toward a greater excess
+//! over the allowances.
+
+use super::names;
+use crate::brute::{BruteForce, Point, distance, nearest};
+use crate::motions::MotionKind;
+use crate::pair::{Part, generated_parts};
+use crate::{motion, oracle, overhang, tool};
+use std::fmt::{Display, Formatter};
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, Witness};
+use touchoff::{Interval, Pose, SurfaceId};
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::rng::Rng;
+
+const TOOLS: [&str; 10] = [
+    "Fig73Exact",
+    "BullNose",
+    "TSlot",
+    "BallEr16",
+    "Lollipop",
+    "Barrel",
+    "FaceMill",
+    "Dished",
+    "Bell",
+    "Skirt",
+];
+
+/// Number of poses and of motions per part and tool.
+const POSES: usize = 7;
+const MOTIONS: usize = 5;
+/// Number of times sampled per motion.
+const TIME_SAMPLES: u32 = 12;
+
+/// Maximum number of triangles sampled per pose, and number of samples per triangle.
+const MAX_TRIANGLES: usize = 300;
+const SAMPLES_PER_TRIANGLE: usize = 8;
+/// Number of samples from which the search climbs, and number of steps.
+const CLIMBS: usize = 3;
+const STEPS_PER_CLIMB: usize = 250;
+
+/// A sample of a triangle, in the tool's frame and unit.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    /// The index of the triangle.
+    triangle: usize,
+    /// The point.
+    point: Point,
+    /// The depth, or its excess over the allowance, in the part's unit.
+    value: f64,
+}
+
+/// A tool's surfaces with their allowances, and a part.
+struct SurfaceAllowances<'a> {
+    /// The tool's name.
+    tool: &'a str,
+    part: &'a Part,
+    /// The part's triangles and the tool's oracle.
+    brute: &'a BruteForce<'a>,
+    /// The surfaces' names, in the tool's order.
+    surface_names: Vec<String>,
+    /// The allowances of the surfaces, in the part's unit. A negative one is a distance to keep.
+    allowances: Vec<f64>,
+}
+
+impl<'a> SurfaceAllowances<'a> {
+    /// Sets random allowances of the order of the depths that occur.
+    fn set_random_allowances(&mut self, rng: &mut Rng) {
+        for allowed in &mut self.allowances {
+            let size = 10f64.powf(rng.between(-3.0, 0.7));
+            *allowed = match rng.bits() % 5 {
+                0 => 0.0,
+                1 => f64::INFINITY,
+                2 => -size,
+                _ => size,
+            };
+        }
+    }
+
+    /// Returns a certifier with these allowances.
+    fn certifier(&self) -> Certifier<'a> {
+        let certifier = Certifier::new(&self.part.bvh, tool(self.tool)).expect("a profile");
+        let allowed = self.surface_names.iter().zip(&self.allowances);
+        allowed.fold(certifier, |certifier, (surface, allowed)| {
+            certifier.with_allowance(surface, *allowed).expect("a surface")
+        })
+    }
+
+    /// Returns the error bound of a depth.
+    fn rounding(&self) -> f64 {
+        64.0 * f64::EPSILON * self.brute.size
+    }
+
+    fn random_pose(&self, rng: &mut Rng) -> Pose {
+        self.brute.random_motion(MotionKind::Still, rng).from
+    }
+
+    /// Returns the largest excess over an allowance that is found at a pose, or 0 if no point is near.
+    fn max_excess_at(&self, pose: &Pose, rng: &mut Rng) -> f64 {
+        let samples = self.samples(pose, rng);
+        let best = self.max_sample(pose, &samples, |p| self.max_excess(p), rng);
+        best.map_or(0.0, |best| best.value)
+    }
+
+    /// Returns the distance of a point from a surface, in the part's unit.
+    fn distance_to_surface(&self, surface: usize, p: Point) -> f64 {
+        self.brute.oracle.distance_to_surface(&self.surface_names[surface], p) * self.brute.length
+    }
+
+    /// Returns the depth of a point, in the part's unit, if the point is inside and the surface is the nearest by more
+    /// than rounding. Returns negative infinity otherwise. At 2e-9 from a tangent joint, two distances differ by only
+    /// 1e-18.
+    fn depth(&self, surface: usize, p: Point) -> f64 {
+        let depth = self.brute.depth(p) * self.brute.length;
+        let own_distance =
+            self.distance_to_surface(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
+        let other_surfaces = (0..self.surface_names.len()).filter(|other| *other != surface);
+        let is_nearest = other_surfaces
+            .into_iter()
+            .all(|other| own_distance <= self.distance_to_surface(other, p));
+        if depth >= 0.0 && is_nearest { depth } else { f64::NEG_INFINITY }
+    }
+
+    /// Returns the largest excess of a point's depth over an allowance, or of a distance to keep over the point's
+    /// distance.
+    fn max_excess(&self, p: Point) -> f64 {
+        let excess = |surface: usize| {
+            let allowed = self.allowances[surface];
+            let excess_depth = self.depth(surface, p) - allowed.max(0.0);
+            if allowed < 0.0 {
+                excess_depth.max(-self.distance_to_surface(surface, p) - allowed)
+            } else {
+                excess_depth
+            }
+        };
+        let excesses = (0..self.surface_names.len()).map(excess).filter(|over| !over.is_nan());
+        excesses.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Checks that a witness is deeper than its surface's allowance, or nearer than the distance to keep.
+    fn assert_violates_allowance(&self, witness: &Witness, pose: &Pose, text: &str) {
+        let p = self.brute.point_in_tool_frame(pose, witness.point);
+        let (slack, allowed) = (4.0 * self.rounding(), self.allowances[witness.surface.0]);
+        let depth = self.brute.depth(p) * self.brute.length;
+        let distance = self.distance_to_surface(witness.surface.0, p);
+        let is_deeper = distance <= depth + slack && depth >= allowed.max(0.0) - slack;
+        assert!(is_deeper || distance <= -allowed + slack, "{text}: {depth} deep, {distance} away");
+    }
+
+    /// Returns samples of the triangles near a pose, with the value NaN.
+    fn samples(&self, pose: &Pose, rng: &mut Rng) -> Vec<Sample> {
+        let (brute, frame) = (self.brute, self.brute.tool_frame(pose));
+        let [radius, height] = brute.oracle.extent();
+        let max_margin =
+            self.allowances.iter().fold(0.0, |max_margin: f64, allowed| max_margin.max(-allowed));
+        let near = |id: &usize| {
+            let ball = &brute.bounding_balls[*id];
+            let p = brute.to_tool_frame(&frame, ball.centre);
+            let reach = (ball.radius + max_margin) / brute.length;
+            p[2] + reach >= 0.0 && p[2] - reach <= height && p[0].hypot(p[1]) <= radius + reach
+        };
+        let mut near: Vec<usize> = (0..brute.bounding_balls.len()).filter(near).collect();
+        while near.len() > MAX_TRIANGLES {
+            near.swap_remove(rng.bits() as usize % near.len());
+        }
+        let count = SAMPLES_PER_TRIANGLE * (MAX_TRIANGLES / near.len().max(1)).clamp(1, 8);
+        let mut samples = Vec::new();
+        for triangle in near {
+            let corners = brute.triangle(&frame, triangle);
+            let mut add = |point| samples.push(Sample { triangle, point, value: f64::NAN });
+            corners.into_iter().for_each(&mut add);
+            for _ in 0..count {
+                let max_height = if rng.bits().is_multiple_of(2) { height } else { 2.0 * radius };
+                let mut offset = || rng.between(-1.0, 1.0) * radius;
+                let tool_point = [offset(), offset(), rng.between(0.0, max_height)];
+                add(nearest(tool_point, &corners));
+            }
+        }
+        samples
+    }
+
+    /// Returns the largest value over the samples and a search from the best of them.
+    fn max_sample(
+        &self,
+        pose: &Pose,
+        samples: &[Sample],
+        value: impl Fn(Point) -> f64,
+        rng: &mut Rng,
+    ) -> Option<Sample> {
+        let evaluated =
+            samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
+        let mut evaluated: Vec<Sample> =
+            evaluated.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
+        evaluated.sort_by(|a, b| b.value.total_cmp(&a.value));
+        evaluated.truncate(CLIMBS);
+        let climbed = evaluated.into_iter().map(|from| self.climb(pose, from, &value, rng));
+        climbed.max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    fn climb(
+        &self,
+        pose: &Pose,
+        start: Sample,
+        value: impl Fn(Point) -> f64,
+        rng: &mut Rng,
+    ) -> Sample {
+        let triangle = self.brute.triangle(&self.brute.tool_frame(pose), start.triangle);
+        let [a, b, c] = triangle;
+        let longest_edge = distance(a, b).max(distance(b, c)).max(distance(c, a));
+        let (mut step, mut best, mut failed) =
+            (longest_edge.min(self.brute.oracle.extent()[0]), start, 0);
+        for _ in 0..STEPS_PER_CLIMB {
+            let direction = rng.direction();
+            let next = [0, 1, 2].map(|axis| best.point[axis] + step * direction[axis]);
+            let point = nearest(next, &triangle);
+            let new_value = value(point);
+            if new_value > best.value {
+                (best, failed) = (Sample { point, value: new_value, ..best }, 0);
+                step *= 1.5;
+            } else {
+                failed += 1;
+                if failed % 4 == 0 {
+                    step *= 0.6;
+                }
+            }
+        }
+        best
+    }
+}
+
+impl Display for SurfaceAllowances<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let allowed: Vec<_> = self.surface_names.iter().zip(&self.allowances).collect();
+        write!(f, "{} in {} with {allowed:?}", self.tool, self.part.name)
+    }
+}
+
+/// Runs a check for all parts and tools; the allowances are 0.
+fn for_all_parts_and_tools(
+    tools: &[&str],
+    mut check: impl FnMut(&mut SurfaceAllowances<'_>, &mut Rng),
+) {
+    let mut rng = Rng::new(5);
+    for part in generated_parts() {
+        for name in tools {
+            let oracle = oracle(name);
+            let length = tool(name).info().unit.factor_to(part.mesh.unit());
+            let surface_names = names(tool(name));
+            let mut owned = SurfaceAllowances {
+                tool: name,
+                part: &part,
+                brute: &BruteForce::new(&part.mesh, &oracle, length),
+                allowances: vec![0.0; surface_names.len()],
+                surface_names,
+            };
+            check(&mut owned, &mut rng);
+        }
+    }
+}
+
+#[test]
+fn samples_are_within_the_certified_depth_of_their_surface() {
+    let owners = check_surface_depths(&["Fig73Exact", "TSlot", "BallEr16", "Lollipop"]);
+    assert!(owners > 80, "{owners}");
+}
+
+#[test]
+fn samples_are_within_the_certified_depth_of_corners() {
+    let owners = check_surface_depths(&["BullNose", "Barrel", "CornerRounding"]);
+    assert!(owners > 60, "{owners}");
+}
+
+#[test]
+fn samples_are_within_the_certified_depth_of_overhanging_profiles() {
+    let owners = check_surface_depths(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat());
+    assert!(owners > 100, "{owners}");
+}
+
+/// Checks the certified depth of each surface against samples. Returns the number of surfaces and poses with samples.
+fn check_surface_depths(tools: &[&str]) -> usize {
+    let mut owners = 0;
+    for_all_parts_and_tools(tools, |owned, rng| {
+        let mut certifier = Certifier::new(&owned.part.bvh, tool(owned.tool)).expect("a profile");
+        let rounding = owned.rounding();
+        for k in 0..POSES {
+            let (pose, tolerance) = (owned.random_pose(rng), [0.0, 1e-6, 1e-3][k % 3]);
+            let samples = owned.samples(&pose, rng);
+            let mut max_depths = [0.0f64; 2];
+            for surface in 0..owned.surface_names.len() {
+                let penetration =
+                    certifier.deepest_on(SurfaceId(surface), &pose, tolerance).expect("a surface");
+                let text =
+                    format!("{owned}, {surface} at {pose:?}, {tolerance:e}: {penetration:?}");
+                let Interval { low, high } = penetration.depth;
+                assert!(0.0 <= low && low <= high, "{text}");
+                let best = owned.max_sample(&pose, &samples, |p| owned.depth(surface, p), rng);
+                if let Some(best) = best {
+                    assert!(best.value <= high + rounding, "{text}, {best:?}");
+                    owners += 1;
+                }
+                if let Some(witness) = penetration.witness {
+                    let p = owned.brute.point_in_tool_frame(&pose, witness.point);
+                    let depth = owned.brute.depth(p) * owned.brute.length;
+                    assert!(depth >= low - rounding, "{text}: {depth}");
+                    assert!(
+                        owned.distance_to_surface(surface, p) <= depth.abs() + 4.0 * rounding,
+                        "{text}"
+                    );
+                    assert_eq!(witness.surface, SurfaceId(surface), "{text}");
+                } else {
+                    assert_eq!(low, 0.0, "{text}");
+                }
+                max_depths = [max_depths[0].max(low), max_depths[1].max(high)];
+            }
+            let tool_depth = certifier.deepest(&pose, tolerance).depth;
+            let consistent = max_depths[0] <= tool_depth.high + rounding
+                && tool_depth.low <= max_depths[1] + rounding;
+            assert!(
+                consistent,
+                "{owned} at {pose:?}: {max_depths:?} of each, {tool_depth:?} of all"
+            );
+        }
+    });
+    eprintln!("depths of surfaces: {owners} surfaces and poses with samples");
+    owners
+}
+
+#[test]
+fn pose_verdicts_respect_allowances() {
+    let (mut clear, mut touching, mut undecided) = (0, 0, 0);
+    for_all_parts_and_tools(&TOOLS, |owned, rng| {
+        for _ in 0..POSES {
+            owned.set_random_allowances(rng);
+            let pose = owned.random_pose(rng);
+            let verdict = owned.certifier().check_pose(&pose);
+            let text = format!("{owned} at {pose:?}: {verdict:?}");
+            let max_excess = match verdict {
+                PoseVerdict::Clear | PoseVerdict::Inside(_) | PoseVerdict::SurfaceOnly => {
+                    clear += 1;
+                    0.0
+                }
+                PoseVerdict::Touching(witness) => {
+                    touching += 1;
+                    owned.assert_violates_allowance(&witness, &pose, &text);
+                    continue;
+                }
+                PoseVerdict::Undecided(high) => {
+                    undecided += 1;
+                    high
+                }
+            };
+            let excess = owned.max_excess_at(&pose, rng);
+            assert!(excess <= max_excess + 4.0 * owned.rounding(), "{text}: {excess}");
+        }
+    });
+    eprintln!("poses with allowances: {clear} clear, {touching} in contact, {undecided} undecided");
+    assert!(clear > 20 && touching > 20, "{clear} clear, {touching} in contact");
+}
+
+#[test]
+fn motion_verdicts_respect_allowances() {
+    let (mut clear, mut touching, mut undecided) = (0, 0, 0);
+    for_all_parts_and_tools(&TOOLS, |owned, rng| {
+        for k in 0..MOTIONS {
+            owned.set_random_allowances(rng);
+            let mut certifier = owned.certifier().with_budget(1 << 17);
+            let kind = MotionKind::ALL[(5 * k) % MotionKind::ALL.len()];
+            let path = owned.brute.random_motion(kind, rng);
+            let motion = motion(&path.from, &path.to);
+            let tolerance = [0.0, 1e-3][k % 2];
+            let verdict = certifier.check_motion(&motion, tolerance);
+            let text = format!("{owned} on {path:?}, {tolerance:e}: {verdict:?}");
+            let end = match verdict {
+                MotionVerdict::Touching(at, witness) => {
+                    touching += 1;
+                    owned.assert_violates_allowance(&witness, &motion.pose(at), &text);
+                    continue;
+                }
+                MotionVerdict::Undecided(at) => {
+                    undecided += 1;
+                    at
+                }
+                MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
+                    clear += 1;
+                    1.0
+                }
+            };
+            let rounding = owned.rounding() + 64.0 * f64::EPSILON * motion.displacement().norm();
+            for time in 0..TIME_SAMPLES {
+                let t = end * f64::from(time) / f64::from(TIME_SAMPLES - 1);
+                let excess = owned.max_excess_at(&path.pose(t), rng);
+                assert!(
+                    excess <= tolerance.max(16.0 * rounding) + 4.0 * rounding,
+                    "{text}: {excess} at {t}"
+                );
+            }
+        }
+    });
+    eprintln!(
+        "motions with allowances: {clear} clear, {touching} in contact, {undecided} undecided"
+    );
+    assert!(clear > 10 && touching > 20, "{clear} clear, {touching} in contact");
+}

@@ -1,0 +1,214 @@
+//! The greatest depth of a tool during a motion, by sampling many times and points.
+//!
+//! Each time is sampled as a pose. A triangle whose centre is shallower than the best sample by more than the
+//! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
+//! once.
+
+use crate::brute::{Ball, BruteForce, Point, TRIANGLES_PER_GROUP, ToolFrame, nearest};
+use nalgebra::Point3;
+use touchoff::{Pose, TriangleId};
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::rng::Rng;
+
+/// Maximum number of triangles sampled per pose, and number of samples per triangle.
+const MAX_TRIANGLES: usize = 40;
+const SAMPLES_PER_TRIANGLE: usize = 6;
+/// Number of times that are refined, number of refinements of each, number of searches, and number of steps per
+/// search.
+const REFINED_TIMES: usize = 5;
+const REFINEMENTS_PER_TIME: usize = 6;
+const CLIMBS: usize = 6;
+const STEPS_PER_CLIMB: usize = 700;
+
+/// A tool's motion, as it is specified.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReferenceMotion {
+    /// The first pose.
+    pub(crate) from: Pose,
+    /// The last pose.
+    pub(crate) to: Pose,
+}
+
+impl ReferenceMotion {
+    /// Returns the pose at parameter `t` in 0 to 1, with the axis by Shoemake's formula.
+    pub(crate) fn pose(&self, t: f64) -> Pose {
+        let (a, b) = (self.from.axis(), self.to.axis());
+        let angle = self.angle();
+        let axis = if angle > 0.0 {
+            (((1.0 - t) * angle).sin() * a + (t * angle).sin() * b) / angle.sin()
+        } else {
+            a
+        };
+        let tip = (1.0 - t) * self.from.tip().coords + t * self.to.tip().coords;
+        Pose::from_axis(Point3::from(tip), axis).expect("axes that are not opposite")
+    }
+
+    /// Returns the angle between the first and the last axis, rad.
+    pub(crate) fn angle(&self) -> f64 {
+        let (a, b) = (self.from.axis(), self.to.axis());
+        2.0 * (b - a).norm().atan2((b + a).norm())
+    }
+}
+
+/// A sample of a motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotionSample {
+    /// The time, 0 to 1.
+    pub(crate) t: f64,
+    /// The index of the triangle.
+    pub(crate) triangle: usize,
+    /// The point, in the part's frame.
+    pub(crate) point: Point,
+    /// The depth in the part's unit; minus the distance if the point is outside.
+    pub(crate) depth: f64,
+}
+
+fn point(p: Point3<f64>) -> Point {
+    [p.x, p.y, p.z]
+}
+
+impl BruteForce<'_> {
+    fn evaluation(&self, frame: &ToolFrame, p: Point) -> f64 {
+        self.depth(self.to_tool_frame(frame, Point3::from(p))) * self.length
+    }
+
+    /// Returns the deepest sample at a time.
+    pub(crate) fn deepest_at(
+        &self,
+        motion: &ReferenceMotion,
+        t: f64,
+        rng: &mut Rng,
+    ) -> MotionSample {
+        let frame = self.tool_frame(&motion.pose(t));
+        let [radius, height] = self.oracle.extent();
+        let mut best =
+            MotionSample { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
+        // Upper bound of the depth in a ball, from its distance to the tool's bounding cylinder.
+        let depth_bound = |ball: &Ball| {
+            let p = self.to_tool_frame(&frame, ball.centre);
+            let radial_gap = (p[0].hypot(p[1]) - radius).max(0.0);
+            let axial_gap = (p[2] - height).max(-p[2]).max(0.0);
+            ball.radius - (radial_gap * radial_gap + axial_gap * axial_gap).sqrt() * self.length
+        };
+        let bounds = self.group_balls.iter().map(depth_bound).enumerate();
+        let mut groups: Vec<(usize, f64)> = bounds.collect();
+        groups.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut candidates = Vec::new();
+        for (group, bound) in groups {
+            if bound < best.depth {
+                break;
+            }
+            for id in TRIANGLES_PER_GROUP * group
+                ..(TRIANGLES_PER_GROUP * (group + 1)).min(self.bounding_balls.len())
+            {
+                let ball = &self.bounding_balls[id];
+                if depth_bound(ball) < best.depth {
+                    continue;
+                }
+                let depth = self.evaluation(&frame, point(ball.centre));
+                candidates.push((depth + ball.radius, id));
+                if depth > best.depth {
+                    best = MotionSample { t, triangle: id, point: point(ball.centre), depth };
+                }
+            }
+        }
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
+            if bound < best.depth {
+                break;
+            }
+            let corners = self.mesh.triangle(TriangleId(id as u32)).map(point);
+            let (tip, rotation) = (motion.pose(t).tip(), *motion.pose(t).rotation());
+            let mut points = corners.to_vec();
+            for _ in 0..SAMPLES_PER_TRIANGLE {
+                let mut offset = || rng.between(-1.0, 1.0) * radius;
+                let (x, y) = (offset(), offset());
+                let z = rng.between(0.0, 1.0) * if rng.bits() & 1 == 0 { height } else { radius };
+                let inside = tip + rotation * nalgebra::Vector3::new(x, y, z) * self.length;
+                points.push(nearest(point(inside), &corners));
+            }
+            for p in points {
+                let depth = self.evaluation(&frame, p);
+                if depth > best.depth {
+                    best = MotionSample { t, triangle: id, point: p, depth };
+                }
+            }
+        }
+        best
+    }
+
+    /// Returns the deepest sample of a whole motion, at `times` random times and at both ends. If `closely`, also
+    /// refines around the best of them.
+    pub(crate) fn deepest_in_motion(
+        &self,
+        motion: &ReferenceMotion,
+        times: u32,
+        closely: bool,
+        rng: &mut Rng,
+    ) -> MotionSample {
+        let step = 1.0 / f64::from(times);
+        let random_time = |k| (f64::from(k) + rng.between(0.0, 1.0)) * step;
+        let mut sampled_times: Vec<f64> = (0..times).map(random_time).collect();
+        sampled_times.extend([0.0, 1.0]);
+        let mut samples: Vec<MotionSample> =
+            sampled_times.into_iter().map(|t| self.deepest_at(motion, t, rng)).collect();
+        let sort_deepest_first =
+            |samples: &mut Vec<MotionSample>| samples.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        sort_deepest_first(&mut samples);
+        for k in 0..if closely { REFINED_TIMES.min(samples.len()) } else { 0 } {
+            for _ in 0..REFINEMENTS_PER_TIME {
+                let t = (samples[k].t + rng.between(-step, step)).clamp(0.0, 1.0);
+                samples.push(self.deepest_at(motion, t, rng));
+            }
+        }
+        sort_deepest_first(&mut samples);
+        let starts = samples.iter().take(if closely { CLIMBS } else { 1 });
+        let climbed = starts.map(|from| self.climb_in_time(motion, *from, step, rng));
+        climbed.fold(
+            samples[0],
+            |best, candidate| if candidate.depth > best.depth { candidate } else { best },
+        )
+    }
+
+    /// Climbs in time and position from a sample, and returns the deepest sample reached.
+    fn climb_in_time(
+        &self,
+        motion: &ReferenceMotion,
+        start: MotionSample,
+        step: f64,
+        rng: &mut Rng,
+    ) -> MotionSample {
+        let corners = self.mesh.triangle(TriangleId(start.triangle as u32)).map(point);
+        let mut best = start;
+        let (mut time_step, mut distance) = (
+            step,
+            self.bounding_balls[start.triangle].radius.min(self.length * self.oracle.extent()[0]),
+        );
+        let mut failed = 0;
+        for k in 0..STEPS_PER_CLIMB {
+            if time_step < 1e-17 && distance < 1e-14 {
+                break;
+            }
+            let time_change = if k % 3 == 0 { 0.0 } else { time_step * rng.between(-1.0, 1.0) };
+            let t = (best.t + time_change).clamp(0.0, 1.0);
+            let offset = if k % 3 == 1 { 0.0 } else { distance };
+            let direction = rng.direction();
+            let p = nearest(
+                [0, 1, 2].map(|axis| best.point[axis] + offset * direction[axis]),
+                &corners,
+            );
+            let depth = self.evaluation(&self.tool_frame(&motion.pose(t)), p);
+            if depth > best.depth {
+                best = MotionSample { t, point: p, depth, ..best };
+                failed = 0;
+                (time_step, distance) = ((1.3 * time_step).min(step), 1.3 * distance);
+            } else {
+                failed += 1;
+                if failed % 5 == 0 {
+                    (time_step, distance) = (0.6 * time_step, 0.6 * distance);
+                }
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,269 @@
+//! The deepest point of triangles in a tool, by brute force.
+//!
+//! A signed distance is 1-Lipschitz, so a triangle whose centre is shallower than the best sample by more than the
+//! triangle's radius is skipped. The others are sampled at their corners, at random points and at the feet of random
+//! points of the tool. From the best samples a search climbs by decreasing random steps.
+
+use nalgebra::{Point3, Vector3};
+use std::cell::Cell;
+use touchoff::{Mesh, Pose, TriangleId};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
+
+/// A point or vector in the tool's frame and unit.
+pub(crate) type Point = [f64; 3];
+
+/// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
+const SAMPLE_LIMITS: [usize; 2] = [8, 150];
+/// Number of samples of each kind over all triangles nearby, within the limits per triangle.
+const TOTAL_SAMPLES: usize = 600;
+/// Maximum number of triangles that are sampled.
+const MAX_TRIANGLES: usize = 1000;
+/// Number of samples from which the search climbs, maximum number of them per triangle, and number of steps.
+const CLIMBS: usize = 6;
+const MAX_CLIMBS_PER_TRIANGLE: usize = 3;
+const STEPS_PER_CLIMB: usize = 500;
+
+/// A ball in the part's frame and unit.
+#[derive(Clone, Copy)]
+pub(crate) struct Ball {
+    pub(crate) centre: Point3<f64>,
+    pub(crate) radius: f64,
+}
+
+/// A part's triangles and a tool.
+pub(crate) struct BruteForce<'a> {
+    pub(crate) mesh: &'a Mesh,
+    pub(crate) oracle: &'a Nearest,
+    /// The tool's unit of length, in the part's unit.
+    pub(crate) length: f64,
+    /// The sum of the tool's size, the part's size and the part's distance from the origin, in the part's unit.
+    pub(crate) size: f64,
+    /// Bounding ball of each triangle, about its centroid.
+    pub(crate) bounding_balls: Vec<Ball>,
+    /// Bounding balls of groups of consecutive triangles.
+    pub(crate) group_balls: Vec<Ball>,
+    /// Number of depths that were evaluated.
+    pub(crate) evaluations: Cell<u64>,
+}
+
+/// Number of triangles per group.
+pub(crate) const TRIANGLES_PER_GROUP: usize = 32;
+
+/// A pose: its tip, and the tool's axes in the world frame.
+pub(crate) struct ToolFrame {
+    tip: Point3<f64>,
+    axes: [[f64; 3]; 3],
+}
+
+fn subtract(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn advance(a: Point, t: f64, direction: Point) -> Point {
+    [a[0] + t * direction[0], a[1] + t * direction[1], a[2] + t * direction[2]]
+}
+
+/// Returns the distance between two points.
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
+    let difference = subtract(a, b);
+    dot(difference, difference).sqrt()
+}
+
+/// Returns the point of a triangle nearest to `p`: the foot on its plane, or else a point on an edge.
+pub(crate) fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
+    // The two shortest edges determine the plane of a sliver best.
+    let mut sorted_edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
+    sorted_edges.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
+    let normal = cross(sorted_edges[0], sorted_edges[1]);
+    let squared_norm = dot(normal, normal);
+    if squared_norm > 0.0 {
+        let foot = advance(p, -dot(normal, subtract(p, a)) / squared_norm, normal);
+        let side =
+            |from: Point, to: Point| dot(cross(subtract(to, from), subtract(foot, from)), normal);
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        if sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0) {
+            return foot;
+        }
+    }
+    let edges = [[a, b], [b, c], [c, a]].map(|[from, to]| {
+        let edge = subtract(to, from);
+        let t = dot(subtract(p, from), edge) / dot(edge, edge);
+        advance(from, if t > 0.0 { t.min(1.0) } else { 0.0 }, edge)
+    });
+    edges.into_iter().min_by(|e, f| distance(p, *e).total_cmp(&distance(p, *f))).unwrap_or(a)
+}
+
+/// Returns a ball that contains several balls.
+fn bounding_ball(balls: &[Ball]) -> Ball {
+    let centres = balls.iter().map(|ball| ball.centre.coords);
+    let centre = Point3::from(centres.sum::<Vector3<f64>>() / balls.len() as f64);
+    let radii = balls.iter().map(|ball| (ball.centre - centre).norm() + ball.radius);
+    Ball { centre, radius: radii.fold(0.0, f64::max) * (1.0 + 1e-12) }
+}
+
+impl<'a> BruteForce<'a> {
+    /// Prepares the triangles of a mesh. `length` is the tool's unit of length in the mesh's unit.
+    pub(crate) fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> BruteForce<'a> {
+        let [low, high] = mesh.bounds();
+        let [radius, height] = oracle.extent();
+        let max_coordinate = low.coords.amax().max(high.coords.amax());
+        let ids = 0..mesh.triangles().len() as u32;
+        let balls = ids.map(|id| {
+            let corners = mesh.triangle(TriangleId(id));
+            let centre =
+                Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
+            let radii = corners.map(|corner| (corner - centre).norm());
+            Ball { centre, radius: radii[0].max(radii[1]).max(radii[2]) }
+        });
+        let balls: Vec<_> = balls.collect();
+        BruteForce {
+            length,
+            group_balls: balls.chunks(TRIANGLES_PER_GROUP).map(bounding_ball).collect(),
+            size: (high - low).norm() + max_coordinate + (radius + height) * length,
+            bounding_balls: balls,
+            evaluations: Cell::new(0),
+            mesh,
+            oracle,
+        }
+    }
+
+    /// Converts a pose.
+    pub(crate) fn tool_frame(&self, pose: &Pose) -> ToolFrame {
+        let rotation = pose.rotation();
+        ToolFrame {
+            tip: pose.tip(),
+            axes: [0, 1, 2].map(|k| [rotation[(0, k)], rotation[(1, k)], rotation[(2, k)]]),
+        }
+    }
+
+    pub(crate) fn to_tool_frame(&self, frame: &ToolFrame, point: Point3<f64>) -> Point {
+        let offset = point - frame.tip;
+        frame.axes.map(|axis| dot(axis, [offset.x, offset.y, offset.z]) / self.length)
+    }
+
+    /// Returns a point of the world in the tool's frame and unit.
+    pub(crate) fn point_in_tool_frame(&self, pose: &Pose, point: Point3<f64>) -> Point {
+        self.to_tool_frame(&self.tool_frame(pose), point)
+    }
+
+    /// Returns a triangle in the tool's frame and unit.
+    pub(crate) fn triangle(&self, frame: &ToolFrame, id: usize) -> [Point; 3] {
+        self.mesh.triangle(TriangleId(id as u32)).map(|corner| self.to_tool_frame(frame, corner))
+    }
+
+    /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
+    pub(crate) fn depth(&self, p: Point) -> f64 {
+        self.evaluations.set(self.evaluations.get() + 1);
+        -self.oracle.profile().signed_distance(Meridian::of(p).dz)
+    }
+
+    /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
+    /// infinity if no triangle is near.
+    pub(crate) fn deepest(&self, frame: &ToolFrame, rng: &mut Rng) -> f64 {
+        let [radius, height] = self.oracle.extent();
+        let mut candidates = Vec::new();
+        for (id, ball) in self.bounding_balls.iter().enumerate() {
+            let p = self.to_tool_frame(frame, ball.centre);
+            let reach = ball.radius / self.length * (1.0 + 1e-9);
+            if p[2] + reach < 0.0 || p[2] - reach > height || p[0].hypot(p[1]) > radius + reach {
+                continue;
+            }
+            candidates.push((self.depth(p) + reach, id));
+        }
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let count =
+            (TOTAL_SAMPLES / candidates.len().max(1)).clamp(SAMPLE_LIMITS[0], SAMPLE_LIMITS[1]);
+        let mut best = f64::NEG_INFINITY;
+        let mut starts: Vec<(f64, usize, Point)> = Vec::new();
+        for (bound, id) in candidates.into_iter().take(MAX_TRIANGLES) {
+            if bound <= best {
+                break;
+            }
+            let triangle_samples = self.sample(&self.triangle(frame, id), count, rng);
+            best = best.max(triangle_samples[0].0);
+            starts.extend(
+                triangle_samples
+                    .into_iter()
+                    .take(MAX_CLIMBS_PER_TRIANGLE)
+                    .map(|(depth, point)| (depth, id, point)),
+            );
+        }
+        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let climbs = starts.into_iter().take(CLIMBS);
+        let reached = climbs.map(|(_, id, point)| self.climb(frame, id, point, rng));
+        reached.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Returns samples of a triangle, the deepest first.
+    fn sample(&self, triangle: &[Point; 3], count: usize, rng: &mut Rng) -> Vec<(f64, Point)> {
+        let [radius, height] = self.oracle.extent();
+        let [a, b, c] = *triangle;
+        let mut points = vec![a, b, c];
+        for _ in 0..count {
+            let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
+            let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
+            points.push(advance(advance(a, v, subtract(b, a)), w, subtract(c, a)));
+            // Half of the points are near the tip.
+            let max_height =
+                if rng.bits().is_multiple_of(2) { height } else { height.min(2.0 * radius) };
+            let mut offset = || rng.between(-0.5, 0.5) * radius;
+            points.push(nearest([offset(), offset(), rng.between(0.0, max_height)], triangle));
+        }
+        let mut samples: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
+        samples.sort_by(|a, b| b.0.total_cmp(&a.0));
+        samples
+    }
+
+    /// Climbs from a point of a triangle and returns the greatest depth reached, in the part's unit.
+    pub(crate) fn climb(
+        &self,
+        frame: &ToolFrame,
+        triangle: usize,
+        start: Point,
+        rng: &mut Rng,
+    ) -> f64 {
+        let triangle = self.triangle(frame, triangle);
+        let [a, b, c] = triangle;
+        let mut current = nearest(start, &triangle);
+        let mut best = self.depth(current);
+        let mut last_direction = [0.0; 3];
+        let mut step =
+            distance(a, b).max(distance(b, c)).max(distance(c, a)).min(self.oracle.extent()[0]);
+        let mut failed = 0;
+        for k in 0..STEPS_PER_CLIMB {
+            if step < 1e-11 {
+                break;
+            }
+            // Few directions lead up along a ridge, so the last successful direction is tried again.
+            let direction = if k % 4 == 0 && last_direction != [0.0; 3] {
+                last_direction
+            } else {
+                rng.direction()
+            };
+            let next = nearest(advance(current, step, direction), &triangle);
+            let depth = self.depth(next);
+            if depth > best {
+                let moved = subtract(next, current);
+                let norm = dot(moved, moved).sqrt();
+                last_direction = moved.map(|component| component / norm);
+                (best, current, failed) = (depth, next, 0);
+                step *= 1.5;
+            } else {
+                failed += 1;
+                if failed % 4 == 0 {
+                    step *= 0.6;
+                }
+            }
+        }
+        best * self.length
+    }
+}

@@ -1,0 +1,218 @@
+//! Certified penetrations compared with brute force, pose by pose.
+//!
+//! The certified quantity is the depth of triangles in a tool. Brute force ([`crate::brute`]) knows the tool from its
+//! restatement, samples triangles and climbs from the deepest samples, and from the witness. No depth that it finds may
+//! exceed the upper bound. The lower bound is proved by the witness, whose depth is evaluated by the same oracle.
+
+use crate::brute::{BruteForce, ToolFrame, distance, nearest};
+use crate::pair::{Pair, Pairs, parts};
+use crate::{oracle, overhang};
+use touchoff::certify::{Certifier, PoseVerdict, Witness};
+use touchoff::{Interval, Pose, SurfaceId};
+use touchoff_tests::count::case_count;
+use touchoff_tests::oracle::rng::Rng;
+
+/// Number of poses per part and tool, unless `POSES` is set.
+const POSES: usize = 24;
+
+/// The tolerances used, in the part's unit.
+const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
+
+/// The results of comparisons.
+#[derive(Clone, Debug, Default)]
+struct Results {
+    /// Number of poses queried.
+    poses: usize,
+    /// Number of poses at which brute force finds a point inside the tool.
+    touching: usize,
+    /// Number of poses at which brute force, without the witness, comes within 1e-6 of the lower bound.
+    reached: usize,
+    /// Number of verdicts of [`Certifier::check_pose`] that are undecided.
+    undecided: usize,
+    /// Number of intervals wider than tolerance and rounding together.
+    too_wide: usize,
+    /// Number of depths that brute force evaluated.
+    samples: u64,
+    /// Wrong answers, with tool, part and pose.
+    violations: Vec<String>,
+}
+
+impl Results {
+    fn add(mut self, other: Results) -> Results {
+        self.poses += other.poses;
+        self.touching += other.touching;
+        self.reached += other.reached;
+        self.undecided += other.undecided;
+        self.too_wide += other.too_wide;
+        self.samples += other.samples;
+        self.violations.extend(other.violations);
+        self
+    }
+}
+
+impl Pair<'_> {
+    /// Compares certified depths with brute force at random poses.
+    fn compare_depths(&self, poses: usize) -> Results {
+        let mut rng = Rng::new(self.seed);
+        let brute = BruteForce::new(&self.part.mesh, &self.oracle, self.length());
+        let mut certifier =
+            Certifier::new(&self.part.bvh, self.tool).expect("a tool with a profile");
+        let mut results = Results { poses, ..Results::default() };
+        for k in 0..poses {
+            let pose = brute.random_pose(&mut rng);
+            let mut validation = Validation {
+                pair: self,
+                brute: &brute,
+                frame: brute.tool_frame(&pose),
+                // Error bound of the oracle and of the coordinates of a sample.
+                rounding: 64.0 * f64::EPSILON * brute.size,
+                pose,
+                tolerance: TOLERANCES[k % TOLERANCES.len()],
+                results: &mut results,
+            };
+            validation.validate(&mut certifier, &mut rng);
+        }
+        results.samples = brute.evaluations.get();
+        results
+    }
+}
+
+/// A pose under validation.
+struct Validation<'a> {
+    pair: &'a Pair<'a>,
+    brute: &'a BruteForce<'a>,
+    frame: ToolFrame,
+    rounding: f64,
+    pose: Pose,
+    tolerance: f64,
+    results: &'a mut Results,
+}
+
+impl Validation<'_> {
+    fn validate(&mut self, certifier: &mut Certifier<'_>, rng: &mut Rng) {
+        let penetration = certifier.deepest(&self.pose, self.tolerance);
+        let Interval { low, high } = penetration.depth;
+        let sampled_depth = self.brute.deepest(&self.frame, rng);
+        let case = format!(
+            "{} at tip {:?} axis {:?}, tolerance {:e}: {penetration:?}, brute force {sampled_depth:?}",
+            self.pair,
+            self.pose.tip().coords.as_slice(),
+            self.pose.axis().as_slice(),
+            self.tolerance,
+        );
+        self.results.touching += usize::from(sampled_depth > 0.0);
+        self.results.reached += usize::from(low - sampled_depth.max(0.0) <= 1e-6);
+        let mut max_depth = sampled_depth;
+        match penetration.witness {
+            Some(witness) => {
+                if low - self.witness_depth(&witness, &case) > self.rounding {
+                    self.add_violation("the witness is not as deep as the lower bound", &case);
+                }
+                let start = self.brute.point_in_tool_frame(&self.pose, witness.point);
+                let triangle = witness.triangle.index();
+                max_depth = max_depth.max(self.brute.climb(&self.frame, triangle, start, rng));
+            }
+            None if low > 0.0 => self.add_violation("a lower bound without a witness", &case),
+            None => (),
+        }
+        if max_depth > high + self.rounding {
+            self.add_violation(
+                &format!("a sample is {max_depth:e} deep, above the upper bound"),
+                &case,
+            );
+        }
+        // Written without `low > high`, which is false for NaN.
+        if !(0.0 <= low && low <= high && high.is_finite()) {
+            self.add_violation("no interval", &case);
+        }
+        // The rounding error counts twice at either end and four times in the tolerance.
+        self.results.too_wide += usize::from(high - low - self.tolerance > 8.0 * self.rounding);
+        let verdict = certifier.check_pose(&self.pose);
+        self.validate_verdict(verdict, max_depth, low, &format!("{case}, {verdict:?}"));
+    }
+
+    fn validate_verdict(&mut self, verdict: PoseVerdict, max_depth: f64, low: f64, case: &str) {
+        match verdict {
+            PoseVerdict::Clear | PoseVerdict::SurfaceOnly | PoseVerdict::Inside(_) => {
+                if max_depth > self.rounding || low > 0.0 {
+                    self.add_violation("said not to touch", case);
+                }
+            }
+            PoseVerdict::Touching(witness) => {
+                if self.witness_depth(&witness, case) < -self.rounding {
+                    self.add_violation("the witness of a touch is outside", case);
+                }
+            }
+            PoseVerdict::Undecided(high) => {
+                self.results.undecided += 1;
+                if max_depth > high + self.rounding {
+                    self.add_violation("deeper than what is undecided", case);
+                }
+            }
+        }
+    }
+
+    /// Returns the depth of a witness, and checks that it lies on its triangle.
+    fn witness_depth(&mut self, witness: &Witness, case: &str) -> f64 {
+        let triangle = self.brute.triangle(&self.frame, witness.triangle.index());
+        let point = self.brute.point_in_tool_frame(&self.pose, witness.point);
+        let triangle_distance = distance(point, nearest(point, &triangle)) * self.brute.length;
+        if triangle_distance > self.rounding {
+            self.add_violation(
+                &format!("the witness is {triangle_distance:e} from its triangle"),
+                case,
+            );
+        }
+        if witness.surface >= SurfaceId(self.pair.tool.info().surfaces.len()) {
+            self.add_violation("the witness is at no surface", case);
+        }
+        self.brute.depth(point) * self.brute.length
+    }
+
+    fn add_violation(&mut self, message: &str, case: &str) {
+        self.results.violations.push(format!("{message}: {case}"));
+    }
+}
+
+/// Compares tools with all parts, from the seed on.
+fn check(tools: &[&str], poses: usize, seed: u64) {
+    let parts = parts("POSES");
+    let results = Pairs { parts: &parts, tools, seed }.compare(oracle, |pair| {
+        let results = pair.compare_depths(poses);
+        assert!(results.touching > poses / 3, "{pair}: {results:?}");
+        // The slivers of real parts widen intervals by their skew.
+        assert!(results.too_wide == 0 || pair.part.is_real, "{pair}: {results:?}");
+        results
+    });
+    let total = results.into_iter().fold(Results::default(), Results::add);
+    eprintln!(
+        "brute force: {} poses, {} in contact, {} reached, {} undecided, {} wider, {} samples, {} violations",
+        total.poses,
+        total.touching,
+        total.reached,
+        total.undecided,
+        total.too_wide,
+        total.samples,
+        total.violations.len()
+    );
+    assert!(total.violations.is_empty(), "{:#?}", total.violations);
+    // Brute force that seldom comes near the lower bound would not contradict an upper bound either.
+    assert!(2 * total.reached > total.poses, "{} of {} reached", total.reached, total.poses);
+}
+
+#[test]
+fn brute_force_stays_within_the_intervals() {
+    let tools = ["Fig73Exact", "BullNose", "TSlot", "BallEr16", "TaperedBall"];
+    check(&tools, case_count("POSES", POSES), 2);
+}
+
+#[test]
+fn brute_force_stays_within_the_intervals_of_overhanging_profiles() {
+    let tools = [&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat();
+    check(&tools, case_count("POSES", POSES), 7);
+}
+
+#[test]
+fn brute_force_stays_within_the_intervals_on_a_neck() {
+    check(&["Lollipop"], case_count("POSES", 4 * POSES), 2);
+}

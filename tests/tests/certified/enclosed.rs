@@ -1,0 +1,254 @@
+//! Tools in a block of material, where no triangle shows a violation.
+//!
+//! The tool's extents are known from the dimensions of its drawing, so the correct verdict on a whole tool is known: it is
+//! inside a block unless a face of the block cuts it. Some surfaces of a tool may be in the material and others not. Which
+//! of them are there is known from samples of the tool's section, whose depth and nearest surface the oracle evaluates.
+
+use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
+use crate::{block, pose, tool};
+use nalgebra::{Point3, Vector3};
+use tools_library::TOOLS;
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Motion, Pose, SurfaceId, Tool, Unit};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Nearest, Oracle};
+
+/// The verdicts on poses of one kind.
+#[derive(Clone, Copy, Debug, Default)]
+struct Verdicts {
+    poses: usize,
+    /// Number of poses with the correct verdict.
+    correct: usize,
+}
+
+/// The verdicts on a tool in blocks.
+#[derive(Clone, Debug, Default)]
+struct BlockVerdicts {
+    /// Poses at which the tool is entirely inside.
+    inside: Verdicts,
+    /// Poses at which a face cuts the tool.
+    cut: Verdicts,
+    /// Verdicts that are neither correct nor undecided.
+    violations: Vec<String>,
+}
+
+/// Checks the verdicts on random blocks around a tool. One face of each is a small distance inside or outside the tool's
+/// extent, and the others are farther away.
+fn check_blocks(name: &str, blocks: usize) -> BlockVerdicts {
+    let (tool, subject) = (tool(name), DepthOracle::of(name));
+    let mut rng = Rng::new(5);
+    let info = tool.info();
+    let mut verdicts = BlockVerdicts::default();
+    let [radius, height] = subject.oracle().extent();
+    let size = radius.max(height);
+    for _ in 0..blocks {
+        let gap = size * 10f64.powf(rng.between(subject.min_gap().log10(), -1.0));
+        let inside = rng.bits().is_multiple_of(2);
+        let near_face = rng.bits() as usize % 6;
+        let extent = [radius, radius, 0.0, radius, radius, height];
+        let faces: [f64; 6] = std::array::from_fn(|face| {
+            let margin = if face == near_face && inside {
+                gap
+            } else if face == near_face {
+                -gap.min(0.1 * radius)
+            } else {
+                size * rng.between(0.2, 1.0)
+            };
+            let coordinate = extent[face] + margin;
+            if face < 3 { -coordinate } else { coordinate }
+        });
+        let [low, high] = [Point3::from_slice(&faces[..3]), Point3::from_slice(&faces[3..])];
+        let cuboid = shapes::cuboid(low, high, info.unit).expect("a cuboid");
+        let tip = Point3::from(rng.direction()) * size;
+        let pose = Pose::from_axis(tip, Vector3::from(rng.direction())).expect("an axis");
+        let bvh = TriangleBvh::new(&to_world(&cuboid, &pose));
+        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+        let verdict = certifier.check_pose(&pose);
+        let same_kind = if inside { &mut verdicts.inside } else { &mut verdicts.cut };
+        same_kind.poses += 1;
+        match (inside, verdict) {
+            (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => {
+                same_kind.correct += 1;
+            }
+            (_, PoseVerdict::Undecided(_)) => {}
+            _ => verdicts
+                .violations
+                .push(format!("{name} in {faces:?}, inside {inside}: {verdict:?} at {pose:?}")),
+        }
+    }
+    verdicts
+}
+
+/// Transforms a mesh from the tool's frame to the world frame.
+fn to_world(mesh: &Mesh, pose: &Pose) -> Mesh {
+    let transform = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
+    let vertices = mesh.vertices().iter().map(transform).collect();
+    Mesh::new(vertices, mesh.triangles().to_vec(), mesh.unit()).expect("a mesh as before")
+}
+
+#[test]
+fn a_tool_in_a_block_is_inside_unless_a_face_cuts_it() {
+    // The extents of a solid are not distances from an axis.
+    let fields: Vec<&str> =
+        FIELDS.into_iter().filter(|name| !["Block", "LBracket"].contains(name)).collect();
+    let (mut poses, mut violations) = (0, Vec::new());
+    for (tools, blocks) in [(&PROFILES[..], 1000), (&fields, 20)] {
+        for name in tools {
+            let verdicts = check_blocks(name, blocks);
+            let BlockVerdicts { inside, cut, .. } = verdicts;
+            assert!(
+                4 * inside.correct > blocks && 4 * cut.correct > blocks,
+                "{name}: {verdicts:?}"
+            );
+            poses += inside.poses + cut.poses;
+            violations.extend(verdicts.violations);
+        }
+    }
+    eprintln!("blocks: {poses} poses, {} violations", violations.len());
+    assert!(violations.is_empty(), "{violations:#?}");
+}
+
+/// Returns a cube around the origin that contains any library tool.
+fn large_cube() -> TriangleBvh {
+    TriangleBvh::new(&block([-2000.0; 3], [2000.0; 3]))
+}
+
+/// Returns a certifier that restricts only some surfaces; the others may have any depth.
+fn restricted<'a>(
+    bvh: &'a TriangleBvh,
+    tool: &'static dyn Tool,
+    limit: impl Fn(usize) -> Option<f64>,
+) -> Option<Certifier<'a>> {
+    let mut certifier = Certifier::new(bvh, tool).ok()?;
+    for (index, surface) in tool.info().surfaces.iter().enumerate() {
+        let allowed = limit(index).unwrap_or(f64::INFINITY);
+        certifier = certifier.with_allowance(&surface.name, allowed).ok()?;
+    }
+    Some(certifier)
+}
+
+/// Each surface of each tool alone, inside a solid, at a pose and on a motion.
+#[test]
+fn each_restricted_surface_is_found_inside() {
+    let bvh = large_cube();
+    let pose_from = |tip: [f64; 3], quaternion| {
+        Pose::from_quaternion(tip.into(), quaternion).expect("a quaternion")
+    };
+    let start = pose_from([1.3, -2.7, 5.1], [0.36, 0.48, 0.0, 0.8]);
+    let motion = Motion::with_spin(&start, &pose_from([9.0, 4.0, -3.0], [0.6, 0.0, 0.0, 0.8]));
+    let motion = motion.expect("less than half a turn");
+    let mut checked = 0;
+    for tool in TOOLS {
+        for (index, surface) in tool.info().surfaces.iter().enumerate() {
+            let limit = |other: usize| (other == index).then_some(0.0);
+            let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
+            let (name, surface) = (&tool.info().name, &surface.name);
+            assert_eq!(
+                certifier.check_pose(&start),
+                PoseVerdict::Inside(SurfaceId(index)),
+                "{name}/{surface}"
+            );
+            checked += 1;
+            let verdict = certifier.check_motion(&motion, 1e-6);
+            assert_eq!(verdict, MotionVerdict::Inside(SurfaceId(index)), "{name}/{surface}");
+        }
+    }
+    assert!(checked > 100, "{checked}");
+}
+
+#[test]
+fn random_sets_of_restricted_surfaces_are_found_inside() {
+    let bvh = large_cube();
+    let mut rng = Rng::new(7);
+    for tool in TOOLS {
+        let count = tool.info().surfaces.len();
+        for _ in 0..8 {
+            let bits = rng.bits();
+            let limit = |other: usize| (bits >> (other % 64) & 1 == 1).then_some(0.0);
+            let Some(mut certifier) = restricted(&bvh, *tool, limit) else { continue };
+            let is_restricted = (0..count).any(|index| limit(index).is_some());
+            let pose = Pose::from_axis(Point3::from([3.0; 3]), Vector3::from(rng.direction()));
+            let verdict = certifier.check_pose(&pose.expect("an axis"));
+            match verdict {
+                PoseVerdict::Inside(surface) => {
+                    assert!(limit(surface.0).is_some(), "{}", tool.info().name);
+                }
+                other => {
+                    assert!(
+                        !is_restricted && other == PoseVerdict::Clear,
+                        "{}: {other:?}",
+                        tool.info().name
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Random limits at random heights. If a restricted sample of the tool's section is in the part beyond its limit, the
+/// tool is not clear.
+#[test]
+fn inside_verdicts_agree_with_samples_of_the_section() {
+    const SAMPLES: usize = 20_000;
+    let bvh = TriangleBvh::new(&block([-2000.0; 3], [2000.0, 2000.0, 0.0]));
+    let (mut inside, mut clear) = (0, 0);
+    for name in ["Barrel", "BullNose", "TSlot", "BallEr16", "Lollipop", "TaperedBall"] {
+        let (tool, oracle) = (tool(name), Nearest::of(name));
+        let length = tool.info().unit.factor_to(Unit::Millimetre);
+        let surfaces: Vec<&str> = tool.info().surfaces.iter().map(|s| &*s.name).collect();
+        let [radius, height] = oracle.extent();
+        let mut rng = Rng::new(11);
+        // Each sample has the point, its depth, and the index of the nearest surface.
+        let samples: Vec<([f64; 2], f64, usize)> = (0..SAMPLES)
+            .filter_map(|_| {
+                let point = [rng.between(0.0, radius), rng.between(0.0, height)];
+                let evaluation = oracle.evaluate([point[0], 0.0, point[1]])?;
+                let distance_to =
+                    |surface: &str| oracle.distance_to_surface(surface, [point[0], 0.0, point[1]]);
+                let nearest = (0..surfaces.len()).min_by(|a, b| {
+                    distance_to(surfaces[*a]).total_cmp(&distance_to(surfaces[*b]))
+                })?;
+                Some((point, evaluation.depth, nearest))
+            })
+            .collect();
+        for _ in 0..60 {
+            let limits: Vec<Option<f64>> = surfaces
+                .iter()
+                .map(|_| match rng.bits() % 3 {
+                    0 => None,
+                    1 => Some(0.0),
+                    _ => Some(radius * length * rng.between(0.0, 0.9)),
+                })
+                .collect();
+            let Some(mut certifier) = restricted(&bvh, tool, |index| limits[index]) else {
+                panic!("{name} has a profile");
+            };
+            // Upright or upside down: the material is below a height of the tool, or above it.
+            let (up, cut) = (rng.bits().is_multiple_of(2), rng.between(-0.1, 1.1) * height);
+            let axis = [0.0, 0.0, if up { 1.0 } else { -1.0 }];
+            let tip = [0.1, 0.2, if up { -cut } else { cut } * length];
+            let verdict = certifier.check_pose(&pose(tip, axis));
+            let margin = 1e-6 * radius;
+            let forbidden = samples.iter().filter(|([_, z], depth, surface)| {
+                let below = if up { cut - z } else { z - cut };
+                limits[*surface].is_some_and(|limit| *depth > limit / length + margin)
+                    && below > margin
+            });
+            let forbidden = forbidden.count();
+            match verdict {
+                PoseVerdict::Clear => {
+                    clear += 1;
+                    assert_eq!(forbidden, 0, "{name} {limits:?} {cut} {up}");
+                }
+                PoseVerdict::Inside(surface) => {
+                    inside += 1;
+                    assert!(limits[surface.0].is_some(), "{name}");
+                }
+                PoseVerdict::Touching(_) => {}
+                other => panic!("{name}: {other:?} {limits:?} {cut} {up}"),
+            }
+        }
+    }
+    assert!(inside > 30 && clear > 60, "{inside} inside, {clear} clear");
+}

@@ -1,0 +1,70 @@
+//! A tool whose end is in a part within its tolerance or allowance is beside the part, not inside it.
+
+use crate::{UP, block, motion, plate, pose, tool};
+use tool_dsl::source::Source;
+use touchoff::Pose;
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
+use touchoff::tool::Interpreted;
+
+/// Returns a pose upside down, with the tool's upper end (z = 40) at this depth below the plate's face.
+fn upside_down(depth: f64) -> Pose {
+    pose([0.3, 0.1, 40.0 - depth], [0.0, 0.0, -1.0])
+}
+
+#[test]
+fn an_end_within_the_tolerance_is_not_inside() {
+    let bvh = TriangleBvh::new(&plate());
+    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+    let at_rest = motion(&upside_down(1e-4), &upside_down(1e-4));
+    assert_eq!(certifier.check_motion(&at_rest, 1e-3), MotionVerdict::Clear);
+}
+
+#[test]
+fn an_end_within_its_allowance_is_not_inside() {
+    let bvh = TriangleBvh::new(&plate());
+    let certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+    let mut certifier = certifier.with_allowance("shank", 1.0).expect("a surface");
+    assert_eq!(certifier.check_pose(&upside_down(0.5)), PoseVerdict::Clear);
+}
+
+#[test]
+fn a_tool_entirely_inside_is_inside_with_any_allowance() {
+    let bvh = TriangleBvh::new(&block([-100.0; 3], [100.0; 3]));
+    let pose = pose([0.0; 3], UP);
+    let at_rest = motion(&pose, &pose);
+    let mut certifier = Certifier::new(&bvh, tool("Flat")).expect("a profile");
+    for surface in &*tool("Flat").info().surfaces {
+        certifier = certifier.with_allowance(&surface.name, 3.0).expect("a surface");
+    }
+    assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Inside(_)));
+    assert!(matches!(certifier.check_motion(&at_rest, 0.2), MotionVerdict::Inside(_)));
+}
+
+#[test]
+fn the_margin_of_a_surface_smaller_than_the_tolerance_is_kept() {
+    let text = "tool Made { units mm; profile { start (0, 0); line to (4.98, 0) as face;
+        line to (5, 0.02) as chamfer; line to (5, 50), (0, 50) as flute; } niceness cutting: 1; }";
+    let text = text.replace("as flute", "as flute cutting");
+    let made = Interpreted::parse(&Source::new("made.tool", text.as_str())).expect("a tool");
+    let bvh = TriangleBvh::new(&plate());
+    let allow = |name: &str, allowed: f64, certifier: Certifier<'static>| {
+        certifier.with_allowance(name, allowed).expect("a surface")
+    };
+    let (bvh, made) = (Box::leak(Box::new(bvh)), Box::leak(Box::new(made)));
+    let certifier = Certifier::new(bvh, made).expect("a profile");
+    let certifier = allow("face", f64::INFINITY, certifier);
+    let certifier = allow("flute", f64::INFINITY, certifier);
+    let mut certifier = allow("chamfer", -1.0, certifier);
+    let at_rest = |z: f64| {
+        let pose = pose([0.0, 0.0, z], UP);
+        motion(&pose, &pose)
+    };
+    for (z, clear) in [(1.1, true), (0.97, true), (0.9, false), (0.3, false)] {
+        let verdict = certifier.check_motion(&at_rest(z), 0.05);
+        assert_eq!(
+            verdict == MotionVerdict::Clear || verdict == MotionVerdict::SurfaceOnly,
+            clear,
+            "{z}: {verdict:?}"
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! Degenerate parts, tolerances and budgets.
+
+use crate::brute::BruteForce;
+use crate::pair::{Part, generated_parts};
+use crate::poses::bumpy;
+use crate::{UP, plate, pose, soup, tool};
+use nalgebra::Point3;
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
+use touchoff::{Interval, Level, Mesh, Pose, TriangleId, Unit};
+use touchoff_tests::oracle::Nearest;
+use touchoff_tests::oracle::rng::Rng;
+
+fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
+    let bvh = TriangleBvh::new(mesh);
+    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+    certifier.deepest(pose, tolerance).depth.into()
+}
+
+/// Returns all SIMD levels of this machine.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![best, Level::baseline()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+        levels.extend(best.as_avx512().map(Level::Avx512));
+    }
+    levels
+}
+
+#[test]
+fn invalid_tolerances_are_treated_as_rounding() {
+    for tolerance in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY, 5e-324] {
+        let [low, high] = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), tolerance);
+        assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-11, "{tolerance}: {low} to {high}");
+    }
+    let [low, high] = depth(&plate(), "D2Ball", &pose([0.3, 0.1, -0.5], UP), f64::INFINITY);
+    assert!(0.0 < low && low <= 0.5 && 0.5 <= high, "{low} to {high}");
+}
+
+#[test]
+fn slivers_and_degenerate_triangles_are_as_deep_as_their_points() {
+    // Half a square millimetre far from the tool, so that the mesh has an area.
+    let far = [[50.0, 50.0, 0.0], [51.0, 50.0, 0.0], [50.0, 51.0, 0.0]];
+    for width in [0.0, 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3] {
+        let sliver = [[-10.0, 0.0, -0.5], [10.0, 0.0, -0.5], [0.0, width, -0.5]];
+        let mesh = soup(&[sliver, far]);
+        // The line lies half a millimetre deep in the ball and passes through the tool's axis.
+        let [low, high] = depth(&mesh, "D2Ball", &pose([0.0, 0.0, -1.0], UP), 1e-9);
+        assert!(low <= 0.5 && 0.5 <= high, "{width:e}: {low} to {high}");
+        assert!(high - low < 1e-6, "{width:e}: {low} to {high}");
+    }
+    let point = [[0.0, 0.0, -0.5]; 3];
+    let [low, high] = depth(&soup(&[point, far]), "D2Ball", &pose([0.0, 0.0, -1.0], UP), 0.0);
+    assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-11, "{low} to {high}");
+}
+
+#[test]
+fn duplicate_and_inverted_triangles_do_not_change_depth() {
+    let once = plate();
+    let mut twice = once.triangles().to_vec();
+    twice.extend(once.triangles().iter().map(|[a, b, c]| [*c, *b, *a]));
+    twice.extend(once.triangles());
+    let twice = Mesh::new(once.vertices().to_vec(), twice, Unit::Millimetre).expect("a mesh");
+    let oracle = Nearest::of("Fig73Exact");
+    let brute = BruteForce::new(&once, &oracle, 1.0);
+    let mut rng = Rng::new(4);
+    for _ in 0..200 {
+        let pose = brute.random_pose(&mut rng);
+        let [a, b] = [&once, &twice].map(|mesh| depth(mesh, "Fig73Exact", &pose, 1e-9));
+        assert!(a[0] <= b[1] && b[0] <= a[1], "{a:?} {b:?} {pose:?}");
+        assert!((a[0] - b[0]).abs() <= 2e-9, "{a:?} {b:?} {pose:?}");
+    }
+}
+
+#[test]
+fn an_exhausted_budget_leaves_a_valid_interval() {
+    for Part { name, mesh, bvh, .. } in generated_parts() {
+        let oracle = Nearest::of("Fig73Exact");
+        let brute = BruteForce::new(&mesh, &oracle, 1.0);
+        let certifier = || Certifier::new(&bvh, tool("Fig73Exact")).expect("a profile");
+        let mut exact = certifier();
+        let mut rng = Rng::new(5);
+        let mut wide_count = 0;
+        for _ in 0..40 {
+            let pose = brute.random_pose(&mut rng);
+            let truth = exact.deepest(&pose, 0.0).depth;
+            let clear = exact.check_pose(&pose);
+            for budget in [0, 1, 2, 3, 10, 30, 100, 1000] {
+                let mut limited = certifier().with_budget(budget);
+                let Interval { low, high } = limited.deepest(&pose, 0.0).depth;
+                let text = format!("{name}, {budget}: {truth:?} in {low} to {high} at {pose:?}");
+                assert!(low <= truth.high && truth.low <= high, "{text}");
+                wide_count += usize::from(high - low > 1e-6);
+                let verdict = limited.check_pose(&pose);
+                let same = std::mem::discriminant(&verdict) == std::mem::discriminant(&clear);
+                assert!(
+                    same || matches!(verdict, PoseVerdict::Undecided(_)),
+                    "{text}: {verdict:?}"
+                );
+            }
+        }
+        assert!(wide_count > 0, "no budget was too small for {name}");
+    }
+}
+
+#[test]
+fn every_simd_level_gives_a_valid_interval() {
+    let levels = levels();
+    for Part { name, mesh, bvh, .. } in generated_parts() {
+        for tool_name in ["Fig73Exact", "BallEr16"] {
+            let oracle = Nearest::of(tool_name);
+            let brute = BruteForce::new(&mesh, &oracle, 1.0);
+            let mut certifiers: Vec<_> = levels
+                .iter()
+                .map(|level| {
+                    Certifier::new(&bvh, tool(tool_name)).expect("a profile").with_level(*level)
+                })
+                .collect();
+            let mut rng = Rng::new(6);
+            for _ in 0..20 {
+                let pose = brute.random_pose(&mut rng);
+                let penetrations: Vec<_> =
+                    certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
+                for (penetration, level) in penetrations.iter().zip(&levels) {
+                    let Interval { low, high } = penetration.depth;
+                    let text =
+                        format!("{tool_name} in {name}, {level:?}, {pose:?}: {penetrations:?}");
+                    assert!(high - low < 2e-6, "{text}");
+                    assert!(
+                        penetrations
+                            .iter()
+                            .all(|other| low <= other.depth.high && other.depth.low <= high),
+                        "{text}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_face_pressed_slightly_into_a_part_is_not_clear() {
+    let mesh = touchoff::mesh::shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere");
+    let bvh = TriangleBvh::new(&mesh);
+    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
+    let mut missed = Vec::new();
+    for id in 0..mesh.triangles().len() as u32 {
+        let normal = mesh.normal(TriangleId(id)).expect("it has an area");
+        let corners = mesh.triangle(TriangleId(id));
+        let centroid =
+            Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
+        let pose = Pose::from_axis(centroid - 1e-8 * normal, normal).expect("an axis");
+        let penetration = certifier.deepest(&pose, 1e-9);
+        let verdict = certifier.check_pose(&pose);
+        if penetration.depth.high < 0.99e-8 || !matches!(verdict, PoseVerdict::Touching(_)) {
+            missed.push((pose, penetration, verdict));
+        }
+    }
+    assert!(missed.is_empty(), "{} missed, the first: {:?}", missed.len(), missed[0]);
+}
+
+#[test]
+fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
+    let mesh = bumpy(20.0, 32);
+    let above = pose([12.5, -19.173505112635194, -0.5], [0.0, 0.0, -1.0]);
+    let [_, high] = depth(&mesh, "BullNose", &above, 1e-6);
+    let oracle = Nearest::of("BullNose");
+    let mut rng = Rng::new(1);
+    let mut deeper = Vec::new();
+    for id in 0..mesh.triangles().len() as u32 {
+        let corners = mesh.triangle(TriangleId(id)).map(|p| [p.x, p.y, p.z]);
+        let single = soup(&[corners]);
+        let brute = BruteForce::new(&single, &oracle, 1.0);
+        let sampled_depth = brute.deepest(&brute.tool_frame(&above), &mut rng);
+        if sampled_depth > high + 1e-9 {
+            deeper.push((id, corners, sampled_depth, depth(&single, "BullNose", &above, 1e-6)));
+        }
+    }
+    assert!(deeper.is_empty(), "{high}, but {deeper:?}");
+}
+
+#[test]
+fn coordinates_beyond_f32_give_valid_intervals() {
+    // Rounding is about ten times the tool's size, so the interval is wide; it must still be valid.
+    for size in [1e14, 1e20, 1e30] {
+        let mesh = soup(&[
+            [[-size, -size, 0.0], [size, -size, 0.0], [0.0, size, 0.0]],
+            [[0.0, 0.0, 5.0], [size, 1.0, 5.0], [size, 2.0, 5.0]],
+        ]);
+        let ball = pose([0.0, 0.0, -0.5], [0.0, 0.0, 1.0]);
+        let [low, high] = depth(&mesh, "D2Ball", &ball, 1e-6);
+        assert!(low <= 0.5 && 0.5 <= high, "{size:e}: {low:e} to {high:e}");
+        let bvh = TriangleBvh::new(&plate());
+        let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
+        let clearance = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
+        let Interval { low, high } = clearance.distance;
+        assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
+    }
+}

@@ -1,0 +1,79 @@
+//! Certified answers compared with oracles that share no code with the certifier, and with known geometry.
+//!
+//! An oracle knows a tool from the dimensions of its drawing ([`touchoff_tests::oracle`]) and a motion from another
+//! formula. It samples triangles, so no depth that it finds may exceed an upper bound. Lower bounds are proved by their
+//! witnesses, which it evaluates. Four suites also run in full, the first three on real parts too if there are any, and
+//! print their counts:
+//!
+//! ```text
+//! POSES=2083 cargo test --release -p touchoff-tests --test certified depths:: -- --nocapture
+//! ZOOMED=20 cargo test --release -p touchoff-tests --test certified zoomed:: -- --nocapture
+//! MOTIONS=125 cargo test --release -p touchoff-tests --test certified sweeps:: -- --nocapture
+//! CASES=1000000 cargo test --release -p touchoff-tests --test certified rounding:: -- --nocapture
+//! ```
+//!
+//! `POSES`, `ZOOMED` and `MOTIONS` are numbers of poses, and of motions proved clear, per tool and part; `CASES` is the
+//! number of all cases together.
+
+mod allowances;
+mod approach;
+mod brute;
+mod clearance;
+mod closed_forms;
+mod depth_oracle;
+mod depths;
+mod enclosed;
+mod end_in_part;
+mod fields;
+mod hard_cases;
+mod motions;
+mod overhang;
+mod pair;
+mod poses;
+mod ring_of_ties;
+mod rounding;
+mod spinning;
+mod sweeps;
+mod zoomed;
+
+use nalgebra::{Point3, Vector3};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff_tests::oracle::Nearest;
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// Returns a tool of the library, or one of [`overhang`].
+fn tool(name: &str) -> &'static dyn Tool {
+    tools_library::find(name).or_else(|| overhang::tool(name)).expect("a tool")
+}
+
+/// Returns the oracle of the tool, from the dimensions of its drawing.
+fn oracle(name: &str) -> Nearest {
+    overhang::oracle(name).unwrap_or_else(|| Nearest::of(name))
+}
+
+fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+    Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
+}
+
+fn motion(from: &Pose, to: &Pose) -> Motion {
+    Motion::new(from, to).expect("an unambiguous rotation")
+}
+
+/// Returns a cuboid with edges along the coordinate axes, in mm.
+fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
+/// Returns a plate of 40 by 30 mm whose upper face is at z = 0.
+fn plate() -> Mesh {
+    block([-20.0, -15.0, -10.0], [20.0, 15.0, 0.0])
+}
+
+/// Returns a mesh of these triangles, which share no vertices.
+fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
+    let vertices = triangles.iter().flatten().map(|corner| Point3::from(*corner)).collect();
+    let ids = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    Mesh::new(vertices, ids, Unit::Millimetre).expect("a mesh")
+}

@@ -1,0 +1,134 @@
+//! Random poses at which a tool is likely to touch a part, and a part with many ridges.
+
+use crate::brute::BruteForce;
+use nalgebra::{Point3, Vector3};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Pose, TriangleId, Unit};
+use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::oracle::{Nearest, Oracle};
+
+/// Returns a wavy sheet `2 half` mm wide, with `divisions` squares per side and ridges between its triangles.
+pub(crate) fn bumpy(half: f64, divisions: u32) -> Mesh {
+    let flat = shapes::plane(half, divisions, Unit::Millimetre).expect("a sheet");
+    let mut rng = Rng::new(7);
+    let raise = |p: &Point3<f64>| {
+        let wave = 1.5 * (0.4 * p.x).sin() * (0.3 * p.y).cos();
+        Point3::new(p.x, p.y, wave + rng.between(-0.3, 0.3))
+    };
+    let vertices = flat.vertices().iter().map(raise).collect();
+    Mesh::new(vertices, flat.triangles().to_vec(), Unit::Millimetre).expect("a sheet")
+}
+
+fn random_direction(rng: &mut Rng) -> Vector3<f64> {
+    Vector3::from(rng.direction())
+}
+
+/// Returns a random unit vector perpendicular to `direction`.
+fn perpendicular(direction: &Vector3<f64>, rng: &mut Rng) -> Vector3<f64> {
+    loop {
+        let candidate = random_direction(rng);
+        let orthogonal = candidate - direction * direction.dot(&candidate);
+        if orthogonal.norm() > 0.1 {
+            return orthogonal.normalize();
+        }
+    }
+}
+
+fn pose_at(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
+    Pose::from_axis(tip, axis).expect("an axis")
+}
+
+/// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.
+fn random_surface_point(oracle: &Nearest, rng: &mut Rng) -> ([f64; 2], [f64; 2]) {
+    loop {
+        let segments = oracle.profile().surface();
+        let segment = &segments[rng.bits() as usize % segments.len()];
+        let k = rng.bits() as usize % (segment.len() - 1);
+        let (from, to) = (segment[k], segment[k + 1]);
+        let edge = [to[0] - from[0], to[1] - from[1]];
+        let length = edge[0].hypot(edge[1]);
+        if length > 0.0 {
+            let fraction = rng.between(0.0, 1.0);
+            let point = [from[0] + fraction * edge[0], from[1] + fraction * edge[1]];
+            return (point, [edge[1] / length, -edge[0] / length]);
+        }
+    }
+}
+
+/// Returns a random depth from 1e-9 to about 6 mm, or sometimes minus that, for a gap.
+fn random_press_depth(rng: &mut Rng) -> f64 {
+    let depth = 10f64.powf(rng.between(-9.0, 0.8));
+    if rng.bits().is_multiple_of(8) { -depth } else { depth }
+}
+
+impl BruteForce<'_> {
+    /// Returns a random pose. Most poses press a point of the tool's surface slightly into a triangle, either facing it or
+    /// in any orientation. Some are along the coordinate axes and at round numbers, and some anywhere around the part.
+    pub(crate) fn random_pose(&self, rng: &mut Rng) -> Pose {
+        match rng.bits() % 20 {
+            0..=7 => self.touching_pose(true, rng),
+            8..=14 => self.touching_pose(false, rng),
+            15..=17 => self.aligned_pose(rng),
+            _ => self.pose_anywhere(rng),
+        }
+    }
+
+    fn touching_pose(&self, is_facing: bool, rng: &mut Rng) -> Pose {
+        let (mesh, length) = (self.mesh, self.length);
+        let id = (rng.bits() as usize % mesh.triangles().len()) as u32;
+        let [a, b, c] = mesh.triangle(TriangleId(id));
+        let (v, w) = (rng.between(0.0, 1.0), rng.between(0.0, 1.0));
+        let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
+        let target = a + v * (b - a) + w * (c - a);
+        let ([d, z], [radial_part, axial_part]) = random_surface_point(self.oracle, rng);
+        let inward =
+            mesh.normal(TriangleId(id)).map_or_else(|| random_direction(rng), |normal| -normal);
+        let (axis, radial) = if is_facing {
+            let orthogonal = perpendicular(&inward, rng);
+            (
+                axial_part * inward + radial_part * orthogonal,
+                radial_part * inward - axial_part * orthogonal,
+            )
+        } else {
+            let axis = random_direction(rng);
+            let radial = perpendicular(&axis, rng);
+            (axis, radial)
+        };
+        let outward = radial_part * radial + axial_part * axis;
+        pose_at(target - length * (d * radial + z * axis) + random_press_depth(rng) * outward, axis)
+    }
+
+    /// Returns a pose along a coordinate axis: flush with a corner of the part's box, tangent to its sides, or on a grid.
+    fn aligned_pose(&self, rng: &mut Rng) -> Pose {
+        let length = self.length;
+        let mut axis = Vector3::zeros();
+        let axis_index = rng.bits() as usize % 3;
+        axis[axis_index] = if rng.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
+        let [low, high] = self.mesh.bounds();
+        let corners = self.oracle.corners();
+        let [d, z] = corners[rng.bits() as usize % corners.len()];
+        let mut tip = Point3::origin();
+        for k in 0..3 {
+            let side = if rng.bits().is_multiple_of(2) { low[k] } else { high[k] };
+            let grid = (rng.between(low[k], high[k]) * 2.0).round() / 2.0;
+            tip[k] = match rng.bits() % 4 {
+                0 if k == axis_index => side - z * length * axis[k],
+                0 => side - d * length,
+                1 if k != axis_index => side + d * length,
+                1 => side,
+                2 => grid,
+                _ => rng.between(low[k], high[k]),
+            };
+        }
+        pose_at(tip, axis)
+    }
+
+    /// Returns a pose anywhere in a box twice the part's size, so that the tool may be entirely inside or far away.
+    fn pose_anywhere(&self, rng: &mut Rng) -> Pose {
+        let [low, high] = self.mesh.bounds();
+        let centre = nalgebra::center(&low, &high);
+        let tip = [0, 1, 2].map(|k| centre[k] + (high[k] - low[k]) * rng.between(-1.0, 1.0));
+        let axis = random_direction(rng);
+        pose_at(Point3::from(tip), axis)
+    }
+}

@@ -1,0 +1,305 @@
+//! Certified depths of single triangles compared with a 256-bit reference, in cases where rounding errors are largest.
+//!
+//! The doubles of a mesh and a pose are taken as exact numbers. The pose is taken as the exact map `p = R q + tip` from
+//! the tool's frame, so a point `p` of the part is `R⁻¹ (p - tip)` in that frame. A search in doubles proposes points.
+//! The 256-bit depth of the best of them is a lower bound of the true depth ([`truth`]). An upper bound below it is
+//! certainly violated.
+//!
+//! The lower bound is the depth of the witness, so two findings violate it. One is a witness that is farther from its
+//! triangle than rounding explains. The other is a point of the triangle next to the witness whose depth is below the
+//! lower bound by more than the distance between the two: depth is 1-Lipschitz.
+
+mod cases;
+mod cutters;
+mod truth;
+
+use cases::{Case, Family};
+use cutters::Cutter;
+use nalgebra::Point3;
+use rayon::prelude::*;
+use touchoff::certify::{Certifier, TriangleBvh, Witness};
+use touchoff::{Interval, Mesh, Unit};
+use touchoff_tests::count::case_count;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::rng::Rng;
+use truth::{Point, Scene, TrianglePoint};
+
+/// Number of cases of all families together, unless `CASES` is set.
+const CASES: usize = 33_000;
+const SEED: u64 = 7;
+
+/// The results of a family's cases. A text has the tool, the triangles, the pose and the answer.
+#[derive(Clone, Debug, Default)]
+struct Results {
+    /// Number of cases queried.
+    cases: usize,
+    /// Number of cases in which a point of the triangles is inside the tool.
+    touching: usize,
+    /// Number of cases in which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
+    reached: usize,
+    /// The largest excess of the true depth over the computed depth, as a fraction of what the upper bound adds.
+    above: f64,
+    /// The largest excess of the computed depth over the true depth, as a fraction of what the lower bound subtracts.
+    below: f64,
+    /// Intervals wider than the tolerance plus the promised widening at both ends.
+    too_wide: Vec<String>,
+    /// Upper bounds below a depth in 256 bits, and intervals that are negative or not finite.
+    upper_violations: Vec<String>,
+    /// Witnesses that are off their triangle, or not as deep as the lower bound.
+    lower_violations: Vec<String>,
+}
+
+impl Results {
+    fn add(mut self, other: Results) -> Results {
+        self.cases += other.cases;
+        self.touching += other.touching;
+        self.reached += other.reached;
+        self.above = self.above.max(other.above);
+        self.below = self.below.max(other.below);
+        self.too_wide.extend(other.too_wide);
+        self.upper_violations.extend(other.upper_violations);
+        self.lower_violations.extend(other.lower_violations);
+        self
+    }
+}
+
+/// The tools.
+struct RoundingCheck {
+    cutters: Vec<Cutter>,
+    /// The fraction of the rounding and tolerance added at each end that is removed before the answer is validated. It
+    /// is 0 except in tests that the validation rejects a bound that is too tight.
+    tightening: f64,
+}
+
+impl RoundingCheck {
+    fn new(tightening: f64) -> RoundingCheck {
+        let cutter = |number| cutters::cutter(number).expect("a tool that compiles");
+        RoundingCheck { cutters: (0..cutters::COUNT).map(cutter).collect(), tightening }
+    }
+
+    /// Queries the cases of a family, given by its index, that have numbers below `count`.
+    fn run(&self, family: usize, count: usize) -> Results {
+        let numbers = (family..count).into_par_iter().step_by(Family::ALL.len());
+        numbers.map(|number| self.run_case(number)).reduce(Results::default, Results::add)
+    }
+
+    /// Queries the case with this number.
+    fn run_case(&self, number: usize) -> Results {
+        let mut rng = Rng::new(SEED ^ (number as u64).wrapping_mul(0xa076_1d64_78bd_642f));
+        let cutter = &self.cutters[rng.bits() as usize % self.cutters.len()];
+        let case = cases::case(Family::ALL[number % Family::ALL.len()], cutter, &mut rng);
+        let mut results = Results::default();
+        let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
+        let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+        // A mesh needs a positive area; a sliver may have none.
+        let Ok(mesh) = Mesh::new(vertices.collect(), ids.collect(), Unit::Millimetre) else {
+            return results;
+        };
+        let bvh = TriangleBvh::new(&mesh);
+        let mut certifier = Certifier::new(&bvh, &cutter.tool).expect("a tool with a profile");
+        let penetration = certifier.deepest(&case.pose, case.tolerance);
+        let scene = Scene::new(cutter, &case.pose, &case.triangles);
+        let validation = Validation {
+            number,
+            case: &case,
+            scene: &scene,
+            interval: penetration.depth,
+            tightening: self.tightening,
+        };
+        validation.run(penetration.witness, &mut rng, &mut results);
+        results
+    }
+}
+
+/// An answer to validate.
+struct Validation<'a> {
+    number: usize,
+    case: &'a Case,
+    scene: &'a Scene<'a>,
+    interval: Interval,
+    tightening: f64,
+}
+
+impl Validation<'_> {
+    fn run(&self, witness: Option<Witness>, rng: &mut Rng, results: &mut Results) {
+        let Widening { rounding, skew } = self.promised_widening();
+        let widening = rounding + skew;
+        let tolerance = self.case.tolerance.max(4.0 * rounding);
+        let Interval { mut low, mut high } = self.interval;
+        if self.tightening > 0.0 && low > 0.0 {
+            low += self.tightening * (rounding + widening);
+            high -= self.tightening * (tolerance + widening);
+        }
+        let size = self.scene.cutter.extent[0].max(self.scene.cutter.extent[1]);
+        let unaided_depth = self.scene.exact_depth(&self.scene.deepest(rng));
+        let is_near = &unaided_depth + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
+        let nearest = witness.map(|witness| self.nearest_to(&witness));
+        let true_depth = self.best_depth(unaided_depth, nearest.as_ref(), rng);
+        results.cases = 1;
+        results.touching = usize::from(true_depth > Big::zero());
+        results.reached = usize::from(is_near);
+        let describe = || {
+            let Validation { number, case, scene, .. } = self;
+            format!(
+                "case {number}: {} {case:?}: [{low:?}, {high:?}], {:?} in 256 bits, witness {witness:?}",
+                scene.cutter.name,
+                true_depth.to_f64()
+            )
+        };
+        if high - low - tolerance - rounding - 2.0 * widening > 0.01 * widening {
+            results.too_wide.push(describe());
+        }
+        if !(0.0 <= low && high.is_finite()) || true_depth > Big::exactly(high) {
+            results.upper_violations.push(format!("above it: {}", describe()));
+        }
+        let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
+            if low > 0.0 {
+                results.lower_violations.push(format!("no witness: {}", describe()));
+            }
+            return;
+        };
+        let depth = self.scene.exact_depth(&point_on_triangle);
+        if distance > rounding_distance + widening {
+            let text = format!("the witness is {distance:e} off its triangle: {}", describe());
+            results.lower_violations.push(text);
+        } else if low > 0.0
+            && Big::exactly(low) > &depth + &Big::exactly(distance + rounding_distance)
+        {
+            let text = format!("the witness is {:e} deep: {}", depth.to_f64(), describe());
+            results.lower_violations.push(text);
+        }
+        if low > 0.0 {
+            // The certifier subtracts two roundings and the skew from the depth that it computed. It adds one rounding,
+            // the skew and the tolerance.
+            let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
+            let [subtracted, added] = [2.0, 1.0].map(|factor| factor * rounding + skewed);
+            let error = (&true_depth - &Big::exactly(low + subtracted)).to_f64();
+            results.above = ((error - tolerance) / added).max(0.0);
+            results.below = ((-error - rounding_distance) / subtracted).max(0.0);
+        }
+    }
+
+    /// Returns the largest 256-bit depth of the search result, of the point next to the witness and of a climb from
+    /// there, or 0 if none is inside.
+    fn best_depth(&self, unaided_depth: Big, nearest: Option<&NearestPoint>, rng: &mut Rng) -> Big {
+        let mut true_depth = if unaided_depth.is_negative() { Big::zero() } else { unaided_depth };
+        let Some(NearestPoint { point_on_triangle, distance, rounding_distance }) = nearest else {
+            return true_depth;
+        };
+        let step = 1e-3_f64
+            .min(1e3 * (distance + rounding_distance) / self.scene.cutter.extent[0] + 1e-12);
+        let climbed = self.scene.climb(point_on_triangle, step, 60, rng).point;
+        for point_on_triangle in [*point_on_triangle, climbed] {
+            let depth = self.scene.exact_depth(&point_on_triangle);
+            if depth > true_depth {
+                true_depth = depth;
+            }
+        }
+        true_depth
+    }
+
+    /// Returns the promised widening, from the sizes of tool and part and from the triangles.
+    fn promised_widening(&self) -> Widening {
+        let corners = || self.case.triangles.iter().flatten();
+        let extent = [0, 1, 2].map(|axis| {
+            let coordinates = || corners().map(|corner| corner[axis]);
+            coordinates().fold(f64::NEG_INFINITY, f64::max)
+                - coordinates().fold(f64::INFINITY, f64::min)
+        });
+        let part_size = extent.into_iter().fold(0.0, f64::max);
+        let skew = self.scene.triangles.iter().map(skew).fold(0.0, f64::max);
+        Widening { rounding: 64.0 * f64::EPSILON * (self.scene.cutter.reach + part_size), skew }
+    }
+
+    /// Returns the point of the witness's triangle that is approximately nearest to the witness.
+    fn nearest_to(&self, witness: &Witness) -> NearestPoint {
+        let (tip, rotation) = (self.case.pose.tip(), self.case.pose.rotation());
+        let tool_point: Point = (rotation.transpose() * (witness.point - tip)).into();
+        let point_on_triangle = self.scene.nearest(witness.triangle.index(), tool_point);
+        let point = self.scene.point(&point_on_triangle);
+        let distance = (0..3).map(|k| (tool_point[k] - point[k]).powi(2)).sum::<f64>().sqrt();
+        let max_coordinate =
+            tool_point.iter().fold(0.0f64, |max, coordinate| max.max(coordinate.abs()));
+        NearestPoint {
+            point_on_triangle,
+            distance,
+            rounding_distance: 8.0 * f64::EPSILON * (tip.coords.amax() + max_coordinate),
+        }
+    }
+}
+
+/// What the certifier may add to an interval at either end.
+struct Widening {
+    /// 64 ε of the tool's reach plus the part's size.
+    rounding: f64,
+    /// The largest over the triangles of `12 ε r s/h`, or of the triangle's height `h` if that is less.
+    skew: f64,
+}
+
+/// A point of a triangle next to a witness.
+struct NearestPoint {
+    point_on_triangle: TrianglePoint,
+    /// The distance between the two.
+    distance: f64,
+    /// The distance by which rounding in the world frame may have moved the witness.
+    rounding_distance: f64,
+}
+
+/// Returns the promised error bound of the line of greatest depth in a triangle: `12 ε r s/h`, at most `h`. `r` is the
+/// distance of the farthest corner from the tip, `s` the shortest edge and `h` the height over the longest edge.
+fn skew(corners: &[Point; 3]) -> f64 {
+    let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
+    let norm = |v: Point| v.iter().map(|component| component * component).sum::<f64>().sqrt();
+    let [a, b, c] = *corners;
+    let edges = [edge(a, b), edge(b, c), edge(c, a)];
+    let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
+    let shortest = edges.iter().copied().map(norm).fold(f64::INFINITY, f64::min);
+    let ([x, y, z], [u, v, w]) = (edges[0], edges[1]);
+    let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
+    let height = if longest > 0.0 { area / longest } else { 0.0 };
+    let max_distance = corners.iter().copied().map(norm).fold(0.0, f64::max);
+    // Differences of corners that were rounded once determine the height to within a few units of rounding.
+    let height = height + 8.0 * f64::EPSILON * longest;
+    (12.0 * f64::EPSILON * max_distance * (shortest / height)).min(height)
+}
+
+#[test]
+fn depths_in_256_bits_are_within_the_intervals() {
+    let count = case_count("CASES", CASES);
+    let check = RoundingCheck::new(0.0);
+    let families: Vec<Results> =
+        (0..Family::ALL.len()).map(|family| check.run(family, count)).collect();
+    let total = families.iter().cloned().fold(Results::default(), Results::add);
+    eprintln!(
+        "256 bits: {} cases, {} in contact, {} reached, {} wider, {:.3} above, {:.3} below, {} violations",
+        total.cases,
+        total.touching,
+        total.reached,
+        total.too_wide.len(),
+        total.above,
+        total.below,
+        total.upper_violations.len() + total.lower_violations.len()
+    );
+    assert!(total.upper_violations.is_empty(), "{:#?}", total.upper_violations);
+    assert!(total.lower_violations.is_empty(), "{:#?}", total.lower_violations);
+    for (family, results) in Family::ALL.iter().zip(&families) {
+        let Results { cases, touching, reached, too_wide, .. } = results;
+        assert!(too_wide.is_empty(), "{family:?}: {too_wide:#?}");
+        // A sliver without an area is no mesh.
+        assert!(30 * cases > 29 * (count / Family::ALL.len()), "{family:?}: {cases} cases");
+        assert!(*touching > cases / 3, "{family:?}: {touching} of {cases} in contact");
+        // A search that seldom comes near the lower bound would not contradict an upper bound either.
+        assert!(*reached > cases / 2, "{family:?}: {reached} of {cases} reached");
+    }
+}
+
+/// If the bounds lack what is added for rounding, the validation reports violations in each family.
+#[test]
+fn bounds_without_widening_are_reported_as_violations() {
+    let check = RoundingCheck::new(1.0);
+    for (index, family) in Family::ALL.iter().enumerate() {
+        let results = check.run(index, 2_200);
+        let violations = results.upper_violations.len();
+        assert!(violations > results.cases / 20, "{family:?}: {violations} of {}", results.cases);
+    }
+}

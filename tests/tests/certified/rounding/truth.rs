@@ -1,0 +1,249 @@
+//! Search for the deepest point of triangles in a tool, in doubles, with the depth evaluated in 256 bits.
+//!
+//! A candidate point is a convex combination of a triangle's corners, so it lies on the triangle exactly. Its depth in
+//! 256 bits is a lower bound of the greatest depth, however the point was found.
+
+use super::cutters::Cutter;
+use touchoff::Pose;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::reference::QueryPoint;
+use touchoff_tests::oracle::rng::Rng;
+
+/// A point or vector in space.
+pub(crate) type Point = [f64; 3];
+
+/// Number of starting points of the search, steps per start, and additional steps for the best of them.
+const CLIMBS: usize = 3;
+const STEPS_PER_CLIMB: usize = 60;
+const FINAL_STEPS: usize = 120;
+
+/// A tool at a pose, and triangles.
+pub(crate) struct Scene<'a> {
+    /// The tool.
+    pub(crate) cutter: &'a Cutter,
+    /// The corners of each triangle, in the tool's frame and in doubles.
+    pub(crate) triangles: Vec<[Point; 3]>,
+    /// The same corners in 256 bits.
+    exact: Vec<[[Big; 3]; 3]>,
+}
+
+/// A point on a triangle, by its unnormalised barycentric weights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TrianglePoint {
+    /// The index of the triangle.
+    pub(crate) triangle: usize,
+    /// Weights that are not negative and not all 0.
+    pub(crate) weights: Point,
+}
+
+/// The deepest point that a climb reached.
+pub(crate) struct Climbed {
+    pub(crate) depth: f64,
+    pub(crate) point: TrianglePoint,
+    /// The last step size.
+    pub(crate) step: f64,
+}
+
+/// Returns the inverse of a matrix, computed from cross products of its columns.
+fn inverse(columns: &[[Big; 3]; 3]) -> [[Big; 3]; 3] {
+    let [x, y, z] = columns;
+    let rows = [cross(y, z), cross(z, x), cross(x, y)];
+    let determinant = dot(&rows[0], x);
+    rows.map(|row| row.map(|component| &component / &determinant))
+}
+
+fn dot(a: &[Big; 3], b: &[Big; 3]) -> Big {
+    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
+}
+
+fn cross(a: &[Big; 3], b: &[Big; 3]) -> [Big; 3] {
+    let component = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
+    [component(1, 2), component(2, 0), component(0, 1)]
+}
+
+fn subtract(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn product(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Returns the weighted mean of a triangle's corners.
+fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
+    [0, 1, 2].map(|k| (u * a[k] + v * b[k] + w * c[k]) / (u + v + w))
+}
+
+/// Returns the weights of the point of a triangle that is approximately nearest to `p`. Candidates are the foot on the
+/// plane, if it is inside, and the feet on the edges, since the plane of a sliver is poorly conditioned.
+fn nearest(p: Point, corners: &[Point; 3]) -> Point {
+    let squared_distance = |weights: &Point| {
+        let difference = subtract(p, mean(corners, *weights));
+        product(difference, difference)
+    };
+    let edges = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
+        let edge = subtract(corners[to], corners[from]);
+        let fraction = product(subtract(p, corners[from]), edge) / product(edge, edge);
+        // This form maps NaN to 0, so an edge without length gives its first end.
+        let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
+        let mut weights = [0.0; 3];
+        weights[from] = 1.0 - fraction;
+        weights[to] = fraction;
+        weights
+    });
+    // The edges at the corner opposite the longest one determine the plane of a sliver best.
+    let squared_opposite_edge = |k: &usize| {
+        let edge = subtract(corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        product(edge, edge)
+    };
+    let origin = (0..3)
+        .max_by(|j, k| squared_opposite_edge(j).total_cmp(&squared_opposite_edge(k)))
+        .unwrap_or(0);
+    let others = [(origin + 1) % 3, (origin + 2) % 3];
+    let [e, f] = others.map(|k| subtract(corners[k], corners[origin]));
+    let (ee, ef, ff) = (product(e, e), product(e, f), product(f, f));
+    let area = ee * ff - ef * ef;
+    // Iterative refinement: the first weights of a sliver have few correct digits.
+    let mut weights = [0.0; 3];
+    weights[origin] = 1.0;
+    for _ in 0..3 {
+        let residual = subtract(p, mean(corners, weights));
+        let (of_e, of_f) = (product(e, residual), product(f, residual));
+        weights[others[0]] += (ff * of_e - ef * of_f) / area;
+        weights[others[1]] += (ee * of_f - ef * of_e) / area;
+        weights[origin] = 1.0 - weights[others[0]] - weights[others[1]];
+    }
+    let inside = weights.iter().all(|weight| *weight >= 0.0).then_some(weights);
+    let candidates = edges.into_iter().chain(inside);
+    candidates
+        .min_by(|a, b| squared_distance(a).total_cmp(&squared_distance(b)))
+        .unwrap_or([1.0, 0.0, 0.0])
+}
+
+impl<'a> Scene<'a> {
+    /// Transforms triangles from the world to the tool's frame. The pose maps that frame to the world: `p = R q + tip`.
+    pub(crate) fn new(cutter: &'a Cutter, pose: &Pose, triangles: &[[Point; 3]]) -> Scene<'a> {
+        let rotation = pose.rotation();
+        let columns = [0, 1, 2].map(|k| [0, 1, 2].map(|i| Big::exactly(rotation[(i, k)])));
+        let (rows, tip) = (inverse(&columns), pose.tip().coords);
+        let to_tool = |corner: Point| {
+            let offset = [0, 1, 2].map(|k| &Big::exactly(corner[k]) - &Big::exactly(tip[k]));
+            [0, 1, 2].map(|k| dot(&rows[k], &offset))
+        };
+        let exact: Vec<_> = triangles.iter().map(|corners| corners.map(to_tool)).collect();
+        let double = |corners: &[[Big; 3]; 3]| {
+            let [a, b, c] = corners;
+            [a, b, c].map(|[x, y, z]| [x.to_f64(), y.to_f64(), z.to_f64()])
+        };
+        Scene { cutter, triangles: exact.iter().map(double).collect(), exact }
+    }
+
+    /// Returns the point in the tool's frame, in doubles.
+    pub(crate) fn point(&self, point: &TrianglePoint) -> Point {
+        mean(&self.triangles[point.triangle], point.weights)
+    }
+
+    /// Returns the depth of a point, computed in doubles.
+    pub(crate) fn depth(&self, point: &TrianglePoint) -> f64 {
+        let [x, y, z] = self.point(point);
+        self.cutter.outline.depth([x.hypot(y), z])
+    }
+
+    /// Returns the depth of a point, computed in 256 bits.
+    pub(crate) fn exact_depth(&self, triangle_point: &TrianglePoint) -> Big {
+        let corners = &self.exact[triangle_point.triangle];
+        let weights = triangle_point.weights.map(Big::exactly);
+        let sum = &(&weights[0] + &weights[1]) + &weights[2];
+        let point = [0, 1, 2].map(|axis| {
+            let column = [0, 1, 2].map(|k| corners[k][axis].clone());
+            &dot(&weights, &column) / &sum
+        });
+        self.cutter.reference.depth(&QueryPoint::of(point))
+    }
+
+    /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.
+    pub(crate) fn nearest(&self, triangle: usize, p: Point) -> TrianglePoint {
+        TrianglePoint { triangle, weights: nearest(p, &self.triangles[triangle]) }
+    }
+
+    /// Returns the deepest point found by the random search.
+    pub(crate) fn deepest(&self, rng: &mut Rng) -> TrianglePoint {
+        let mut starts = Vec::new();
+        for triangle in 0..self.triangles.len() {
+            self.starts(triangle, rng, &mut starts);
+        }
+        let mut starts: Vec<_> =
+            starts.into_iter().map(|point| (self.depth(&point), point)).collect();
+        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        starts.truncate(CLIMBS);
+        let climbed = starts.iter().map(|(_, point)| self.climb(point, 0.3, STEPS_PER_CLIMB, rng));
+        let best =
+            climbed.max_by(|a, b| a.depth.total_cmp(&b.depth)).expect("a triangle has starts");
+        self.climb(&best.point, best.step, FINAL_STEPS, rng).point
+    }
+
+    /// Appends starting points: corners, points on edges and inside, and feet of points of the tool.
+    fn starts(&self, triangle: usize, rng: &mut Rng, starts: &mut Vec<TrianglePoint>) {
+        let mut add = |weights: Point| starts.push(TrianglePoint { triangle, weights });
+        for k in 0..3 {
+            let mut corner = [0.0; 3];
+            corner[k] = 1.0;
+            add(corner);
+            for _ in 0..3 {
+                let fraction = rng.between(0.0, 1.0);
+                let mut edge = [0.0; 3];
+                edge[k] = fraction;
+                edge[(k + 1) % 3] = 1.0 - fraction;
+                add(edge);
+            }
+        }
+        for _ in 0..6 {
+            add([0; 3].map(|_| rng.between(0.0, 1.0)));
+        }
+        let corners = &self.triangles[triangle];
+        let height = self.cutter.extent[1];
+        for _ in 0..4 {
+            add(nearest([0.0, 0.0, rng.between(0.0, height)], corners));
+        }
+        for segment in &self.cutter.outline.segments {
+            let [d, z] = segment.centre.unwrap_or(segment.to);
+            let (sin, cos) = rng.between(0.0, std::f64::consts::TAU).sin_cos();
+            add(nearest([d * cos, d * sin, z], corners));
+        }
+    }
+
+    /// Climbs from a point by random steps. The step grows after an improvement and shrinks otherwise.
+    pub(crate) fn climb(
+        &self,
+        start: &TrianglePoint,
+        step: f64,
+        steps: usize,
+        rng: &mut Rng,
+    ) -> Climbed {
+        let (mut best, mut current, mut step) = (self.depth(start), *start, step);
+        let mut last_change = [0.0; 3];
+        for k in 0..steps {
+            if step < 1e-17 {
+                break;
+            }
+            // Few directions lead up along a ridge, so the last successful direction is tried again.
+            let change = if k % 3 == 0 && last_change != [0.0; 3] {
+                last_change
+            } else {
+                let [u, v] = [rng.between(-1.0, 1.0), rng.between(-1.0, 1.0)];
+                [u, v, -u - v]
+            };
+            let moved = [0, 1, 2].map(|k| (current.weights[k] + step * change[k]).max(0.0));
+            let sum = moved[0] + moved[1] + moved[2];
+            let next = TrianglePoint { weights: moved.map(|weight| weight / sum), ..current };
+            let depth = self.depth(&next);
+            if depth > best {
+                (best, current, last_change) = (depth, next, change);
+                step = (step * 1.8).min(0.5);
+            } else {
+                step *= 0.7;
+            }
+        }
+        Climbed { depth: best, point: current, step }
+    }
+}

@@ -1,0 +1,344 @@
+//! Certified depths compared with the largest of millions of samples that zoom in on the deepest points.
+//!
+//! The first half of the samples are centroids of triangles and of their repeated halves. The next piece is always the
+//! one that may have the greatest depth, since depth is Lipschitz. The other samples are drawn around the deepest of
+//! these. Their neighbourhoods shrink from round to round until they are as small as rounding. The greatest depth must
+//! not exceed the upper bound, and should reach the lower bound, which the search does not know.
+
+use crate::brute::BruteForce;
+use crate::depth_oracle::{DepthOracle, FIELDS, PROFILES};
+use crate::pair::{Pair, Pairs, is_full_run, parts};
+use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use touchoff::certify::Certifier;
+use touchoff::{Interval, Pose, TriangleId};
+use touchoff_tests::count::case_count;
+use touchoff_tests::oracle::rng::Rng;
+
+/// A point of the tool's frame.
+type Point = [f64; 3];
+
+/// Number of points that are zoomed in on, at first and at last.
+const POINT_COUNTS: [usize; 2] = [48, 6];
+/// Ratio of the sizes of successive neighbourhoods.
+const SHRINK_FACTOR: f64 = 0.4;
+
+/// The results of comparisons.
+#[derive(Clone, Debug, Default)]
+struct Results {
+    /// Number of poses queried.
+    poses: usize,
+    /// Number of poses at which a sample is inside the tool.
+    touching: usize,
+    /// Number of poses at which the samples come near enough to the lower bound.
+    reached: usize,
+    /// Intervals wider than tolerance and rounding together.
+    too_wide: Vec<String>,
+    /// Poses at which a sample exceeds the upper bound.
+    violations: Vec<String>,
+}
+
+impl Results {
+    fn add(mut self, other: Results) -> Results {
+        self.poses += other.poses;
+        self.touching += other.touching;
+        self.reached += other.reached;
+        self.too_wide.extend(other.too_wide);
+        self.violations.extend(other.violations);
+        self
+    }
+}
+
+/// A sample: its depth, its triangle, and two of its barycentric weights.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    depth: f64,
+    triangle: usize,
+    weights: [f64; 2],
+}
+
+/// A piece of a triangle whose centroid was evaluated.
+struct Piece {
+    /// No point of the piece is deeper.
+    bound: f64,
+    /// The largest distance from the centroid.
+    radius: f64,
+    triangle: usize,
+    /// Two barycentric weights of each corner.
+    corners: [[f64; 2]; 3],
+}
+
+impl Ord for Piece {
+    fn cmp(&self, other: &Piece) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Piece {
+    fn partial_cmp(&self, other: &Piece) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Piece {
+    fn eq(&self, other: &Piece) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Piece {}
+
+/// The samples at a pose.
+struct Search {
+    /// The deepest samples, in the order of their depth.
+    best: Vec<Sample>,
+    /// Number of samples.
+    evaluations: u64,
+}
+
+impl Search {
+    /// Keeps a sample if it is among the deepest.
+    fn insert(&mut self, sample: Sample) {
+        let best = &mut self.best;
+        if best.len() < POINT_COUNTS[0] || sample.depth > best[POINT_COUNTS[0] - 1].depth {
+            let index = best.partition_point(|other| other.depth >= sample.depth);
+            best.insert(index, sample);
+            best.truncate(POINT_COUNTS[0]);
+        }
+    }
+}
+
+impl Pair<'_, DepthOracle> {
+    /// Compares certified depths at random poses, with `samples` samples at each pose where a triangle is near.
+    fn compare_zoomed(&self, poses: usize, samples: u64) -> Results {
+        let mut rng = Rng::new(self.seed);
+        let (mesh, length) = (&self.part.mesh, self.length());
+        let [radius, height] = self.oracle.oracle().extent();
+        let size = radius.max(height) * length;
+        let (tolerance, margin) = (self.oracle.tolerance(size), self.oracle.reach_margin(size));
+        let [low, high] = mesh.bounds();
+        let part_size = (high - low).norm() + low.coords.amax().max(high.coords.amax());
+        let rounding = 64.0 * f64::EPSILON * (size + part_size);
+        let mut certifier =
+            Certifier::new(&self.part.bvh, self.tool).expect("a tool that is proved");
+        let brute = match &self.oracle {
+            DepthOracle::Profile(nearest, _) => Some(BruteForce::new(mesh, nearest, length)),
+            DepthOracle::Field(_) => None,
+        };
+        let mut results = Results { poses, ..Results::default() };
+        for _ in 0..poses {
+            let pose = match &brute {
+                Some(brute) => brute.random_pose(&mut rng),
+                None => self.pose_of_field(&mut rng),
+            };
+            let Interval { low, high } = certifier.deepest(&pose, tolerance).depth;
+            let max_depth = (self.deepest(&pose, samples, &mut rng) * length).max(0.0);
+            results.touching += usize::from(max_depth > 0.0);
+            results.reached += usize::from(max_depth >= low - margin);
+            let case = format!("{self}: [{low:?}, {high:?}], {max_depth:?} at {pose:?}");
+            if high - low > 1.01 * tolerance + 8.0 * rounding {
+                results.too_wide.push(case.clone());
+            }
+            if max_depth > high + rounding {
+                results.violations.push(case);
+            }
+        }
+        results
+    }
+
+    /// Returns a pose, in any orientation, that puts a random point inside the tool's extent at one of the part.
+    fn pose_of_field(&self, rng: &mut Rng) -> Pose {
+        let (mesh, length) = (&self.part.mesh, self.length());
+        let id = (rng.bits() as usize % mesh.triangles().len()) as u32;
+        let [a, b, c] = mesh.triangle(TriangleId(id));
+        let (v, w) = (rng.between(0.0, 0.5), rng.between(0.0, 0.5));
+        let target = a + v * (b - a) + w * (c - a);
+        let [radius, height] = self.oracle.oracle().extent();
+        let (d, direction) = (rng.between(0.0, radius), rng.direction());
+        let inside =
+            Vector3::new(d * direction[0], d * direction[1], rng.between(0.0, height)) * length;
+        let quaternion = loop {
+            let quaternion = [0; 4].map(|_| rng.between(-1.0, 1.0));
+            let norm = quaternion.iter().map(|component| component * component).sum::<f64>().sqrt();
+            if (0.1..=1.0).contains(&norm) {
+                break quaternion.map(|component| component / norm);
+            }
+        };
+        let rotated = Pose::from_quaternion(Point3::origin(), quaternion).expect("a quaternion");
+        rotated
+            .translated(target.coords - rotated.rotation() * inside)
+            .expect("a place near the part")
+    }
+
+    /// Returns the greatest depth of the samples, in the tool's unit, or negative infinity without a triangle nearby.
+    fn deepest(&self, pose: &Pose, samples: u64, rng: &mut Rng) -> f64 {
+        let triangles = self.nearby_triangles(pose);
+        if triangles.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        let mut search = Search { best: Vec::new(), evaluations: 0 };
+        let mut reach = self.bisect(&triangles, samples / 2, &mut search);
+        let Search { mut best, mut evaluations } = search;
+        let [radius, height] = self.oracle.oracle().extent();
+        let size = radius.max(height);
+        let rounds = ((1e-15 * size / reach).ln() / SHRINK_FACTOR.ln()).ceil().max(1.0) as u64;
+        for round in 0..rounds {
+            let count =
+                (samples.saturating_sub(evaluations) / (rounds - round)) / best.len() as u64;
+            for sample in &mut best {
+                for _ in 0..count {
+                    self.sample_nearby(&triangles[sample.triangle], reach, sample, rng);
+                }
+            }
+            evaluations += count * best.len() as u64;
+            best.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+            best.truncate((best.len() * 3 / 4).max(POINT_COUNTS[1]));
+            reach *= SHRINK_FACTOR;
+        }
+        best[0].depth
+    }
+
+    /// Bisects triangles by up to `count` samples. Returns the size of the neighbourhoods to start with.
+    fn bisect(&self, triangles: &[[Point; 3]], count: u64, search: &mut Search) -> f64 {
+        let mut pieces = BinaryHeap::new();
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let corner_weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            for weights in corner_weights {
+                let depth = self.oracle.depth(point(corners, weights));
+                search.insert(Sample { depth, triangle, weights });
+            }
+            pieces.push(self.piece(triangles, triangle, corner_weights, search));
+            search.evaluations += 4;
+        }
+        let mut reach = f64::INFINITY;
+        while let Some(piece) = pieces.pop()
+            && search.evaluations < count
+            && piece.bound > search.best[0].depth
+        {
+            for half in bisect_longest_edge(&triangles[piece.triangle], piece.corners) {
+                let half = self.piece(triangles, piece.triangle, half, search);
+                reach = half.radius;
+                if half.bound > search.best[0].depth {
+                    pieces.push(half);
+                }
+            }
+            search.evaluations += 2;
+        }
+        let extent = self.oracle.oracle().extent();
+        (4.0 * reach).min(extent[0].max(extent[1]))
+    }
+
+    /// Samples a piece's centroid, and returns the piece.
+    fn piece(
+        &self,
+        triangles: &[[Point; 3]],
+        triangle: usize,
+        corners: [[f64; 2]; 3],
+        search: &mut Search,
+    ) -> Piece {
+        let weights = [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
+        let centroid = point(&triangles[triangle], weights);
+        let depth = self.oracle.depth(centroid);
+        search.insert(Sample { depth, triangle, weights });
+        let radii = corners.map(|corner| distance(centroid, point(&triangles[triangle], corner)));
+        let radius = radii[0].max(radii[1]).max(radii[2]);
+        let lipschitz = self.oracle.lipschitz_bound();
+        // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
+        let bound =
+            if depth < 0.0 { lipschitz * (depth + radius) } else { depth + lipschitz * radius };
+        Piece { bound, radius, triangle, corners }
+    }
+
+    /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
+    fn nearby_triangles(&self, pose: &Pose) -> Vec<[Point; 3]> {
+        let (mesh, length) = (&self.part.mesh, self.length());
+        let [radius, height] = self.oracle.oracle().extent();
+        let to_tool = pose.rotation().transpose();
+        let to_tool_frame =
+            |p: Point3<f64>| -> Point { (to_tool * (p - pose.tip()) / length).into() };
+        let overlaps = |corners: &[Point; 3]| {
+            let tool_box = [[-radius, radius], [-radius, radius], [0.0, height]];
+            (0..3).all(|axis| {
+                let coordinates = corners.map(|corner| corner[axis]);
+                let low = coordinates[0].min(coordinates[1]).min(coordinates[2]);
+                let high = coordinates[0].max(coordinates[1]).max(coordinates[2]);
+                low <= tool_box[axis][1] && high >= tool_box[axis][0]
+            })
+        };
+        let ids = 0..mesh.triangles().len() as u32;
+        ids.map(|id| mesh.triangle(TriangleId(id)).map(to_tool_frame)).filter(overlaps).collect()
+    }
+
+    /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.
+    fn sample_nearby(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, rng: &mut Rng) {
+        let [a, b, c] = corners;
+        let step = |to: &Point| {
+            let edge = [0, 1, 2].map(|k| to[k] - a[k]);
+            let length = edge.iter().map(|component| component * component).sum::<f64>().sqrt();
+            if length > reach { reach / length } else { 1.0 }
+        };
+        let [v, w] = best.weights;
+        let mut weights = [
+            (v + step(b) * rng.between(-1.0, 1.0)).max(0.0),
+            (w + step(c) * rng.between(-1.0, 1.0)).max(0.0),
+        ];
+        let sum = weights[0] + weights[1];
+        if sum > 1.0 {
+            weights = weights.map(|component| component / sum);
+        }
+        let depth = self.oracle.depth(point(corners, weights));
+        if depth > best.depth {
+            *best = Sample { depth, weights, ..*best };
+        }
+    }
+}
+
+/// Bisects a piece at its longest edge.
+fn bisect_longest_edge(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
+    let points = corners.map(|corner| point(triangle, corner));
+    let lengths = [0, 1, 2].map(|k| distance(points[k], points[(k + 1) % 3]));
+    let k = (0..3).max_by(|a, b| lengths[*a].total_cmp(&lengths[*b])).unwrap_or(0);
+    let [a, b, c] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
+    let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
+    [[a, middle, c], [middle, b, c]]
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    let difference = [0, 1, 2].map(|k| b[k] - a[k]);
+    difference.iter().map(|component| component * component).sum::<f64>().sqrt()
+}
+
+/// Returns the point of a triangle with two barycentric weights.
+fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
+    [0, 1, 2].map(|k| a[k] + v * (b[k] - a[k]) + w * (c[k] - a[k]))
+}
+
+#[test]
+fn samples_that_zoom_in_are_within_the_interval() {
+    let is_full = is_full_run("ZOOMED");
+    let (poses, samples) = (case_count("ZOOMED", 4), if is_full { 1_000_000 } else { 40_000 });
+    let mut parts = parts("ZOOMED");
+    let mut tools = PROFILES.to_vec();
+    if is_full {
+        tools.extend(FIELDS);
+    } else {
+        // The thousands of slivers in the tube need more samples than a test can afford.
+        parts.retain(|part| part.name != "tube");
+        tools.extend(["Fig73", "UnitSphere", "Block"]);
+    }
+    let pairs = Pairs { parts: &parts, tools: &tools, seed: 3 };
+    let results = pairs.compare(DepthOracle::of, |pair| pair.compare_zoomed(poses, samples));
+    let total = results.into_iter().fold(Results::default(), Results::add);
+    eprintln!(
+        "samples that zoom in: {} poses, {} in contact, {} reached, {} wider, {} violations",
+        total.poses,
+        total.touching,
+        total.reached,
+        total.too_wide.len(),
+        total.violations.len()
+    );
+    assert!(total.violations.is_empty(), "{:#?}", total.violations);
+    assert!(total.too_wide.is_empty(), "{:#?}", total.too_wide);
+    assert!(10 * total.reached > 9 * total.poses, "{} of {}", total.reached, total.poses);
+}

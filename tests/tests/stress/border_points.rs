@@ -1,0 +1,128 @@
+//! Items 1 and 2: points on borders, and one ulp beside them.
+//!
+//! A border is found where the truth in 256 bits goes from one owner to another, or from inside to outside: the two
+//! adjacent doubles between which it does, along z and along d. Vertices and centres are added. On the border, the
+//! contract is kept, the depth agrees with the depth of *each* neighbour, and the step of the depth from one double to
+//! the other agrees with that of the truth.
+
+use crate::borders::{Bracket, brackets, rotated_copies};
+use crate::checks::Checks;
+use crate::truth::{Subject, to_exact};
+use crate::validator::{PointEvaluation, Validator};
+use crate::{check_tools, extent};
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::rng::Rng;
+
+#[test]
+fn points_on_borders_keep_the_contract() {
+    check_tools(1, points_on_borders);
+}
+
+pub(crate) fn points_on_borders(subject: &Subject, rng: &mut Rng, checks: &mut Checks) {
+    let validator = Validator::new(subject.tool, &*subject.truth);
+    for bracket in brackets(subject, extent(1, 16), rng) {
+        let evaluations = validator.validate(&bracket.ends, checks);
+        let side = nearer_end(subject, &bracket);
+        let p = bracket.ends[side];
+        compare_neighbours(subject, p, evaluations[side].as_ref(), &bracket.owners, checks);
+        compare_step(subject, &bracket, &evaluations, checks);
+        validator.validate(&rotated_copies(subject, p, rng)[1..], checks);
+    }
+    for corner in subject.oracle.corner_points() {
+        for p in rotated_copies(subject, corner, rng) {
+            let evaluation = validator.validate(&[p], checks).swap_remove(0);
+            compare_neighbours(subject, p, evaluation.as_ref(), &owners_at(subject, p), checks);
+        }
+    }
+}
+
+/// Returns the index of the bracket's end nearer to the border: there the depths of both sides differ less.
+fn nearer_end(subject: &Subject, bracket: &Bracket) -> usize {
+    let depth_difference = |p: [f64; 3]| {
+        let depths = bracket.owners.map(|owner| region_depth(subject, p, owner));
+        (&depths[0] - &depths[1]).abs()
+    };
+    usize::from(depth_difference(bracket.ends[1]) < depth_difference(bracket.ends[0]))
+}
+
+/// Returns the depth of a region at a point; outside it is 0.
+fn region_depth(subject: &Subject, p: [f64; 3], owner: Option<usize>) -> Big {
+    let values = owner.and_then(|region| subject.truth.region_values(&to_exact(p), region));
+    values.map_or_else(Big::zero, |values| values.depth)
+}
+
+/// Returns all regions that own a point, to half an ulp(S).
+pub(crate) fn owners_at(subject: &Subject, p: [f64; 3]) -> Vec<Option<usize>> {
+    let at = to_exact(p);
+    let owns = |region: &usize| {
+        let values = subject.truth.region_values(&at, *region);
+        values.is_some_and(|values| values.excess_distance <= subject.ulp() / 2.0)
+    };
+    (0..subject.tool.info().regions.len()).filter(owns).map(Some).collect()
+}
+
+/// Compares a depth with the depth of each region that owns the point.
+pub(crate) fn compare_neighbours(
+    subject: &Subject,
+    p: [f64; 3],
+    evaluation: Option<&PointEvaluation>,
+    owners: &[Option<usize>],
+    checks: &mut Checks,
+) {
+    let Some(evaluation) = evaluation else { return };
+    for owner in owners {
+        let exact = region_depth(subject, p, *owner);
+        let error = (&Big::exactly(evaluation.depth) - &exact).abs().to_f64() / subject.ulp();
+        let place = || format!("{p:?} of region {owner:?}");
+        checks.within("depth of each neighbour [ulp(S)]", error, 1.0, place);
+    }
+}
+
+/// Compares the change of the depth across a border with the true one.
+fn compare_step(
+    subject: &Subject,
+    bracket: &Bracket,
+    evaluations: &[Option<PointEvaluation>],
+    checks: &mut Checks,
+) {
+    let [Some(a), Some(b)] = evaluations else { return };
+    let exact = bracket.ends.map(|p| subject.truth.depth(&to_exact(p)));
+    let step = &Big::exactly(a.depth) - &Big::exactly(b.depth);
+    let error = (&step - &(&exact[0] - &exact[1])).abs().to_f64() / subject.ulp();
+    checks.within("step across [ulp(S)]", error, 1.0, || format!("{:?}", bracket.ends));
+}
+
+#[test]
+fn points_one_ulp_beside_borders_keep_the_contract() {
+    check_tools(2, |subject, rng, checks| {
+        let validator = Validator::new(subject.tool, &*subject.truth);
+        let mut centres: Vec<[f64; 3]> = subject.oracle.corner_points();
+        let brackets = brackets(subject, extent(1, 16), rng);
+        centres.extend(brackets.into_iter().flat_map(|bracket| bracket.ends));
+        for centre in centres {
+            let mut points = Vec::new();
+            for [x, y, z] in neighbours(subject, centre) {
+                if subject.oracle.is_revolved() {
+                    let copies = rotated_copies(subject, [x.abs(), 0.0, z], rng);
+                    points.push(copies[rng.bits() as usize % copies.len()]);
+                } else {
+                    points.push([x, y, z]);
+                }
+            }
+            validator.validate(&points, checks);
+        }
+    });
+}
+
+/// Returns a point and those one ulp beside it; of a tool of revolution, those in the half plane y = 0.
+pub(crate) fn neighbours(subject: &Subject, [x, y, z]: [f64; 3]) -> Vec<[f64; 3]> {
+    let beside = |v: f64| [v, v.next_up(), v.next_down()];
+    let ys = if subject.oracle.is_revolved() { vec![y] } else { beside(y).to_vec() };
+    let mut points = Vec::new();
+    for x in beside(x) {
+        for z in beside(z) {
+            points.extend(ys.iter().map(|y| [x, *y, z]));
+        }
+    }
+    points
+}

@@ -1,0 +1,176 @@
+//! Item 10: invalid or minimal input. It is refused with an error, or gives sensible results.
+
+use crate::scene::{PointSet, Scene, random_pose};
+use crate::truth::Subject;
+use crate::{check_tools, extent};
+use nalgebra::{Point3, Vector3};
+use std::error::Error;
+use std::fmt::Display;
+use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe, Sampling, TriangleId, Unit};
+use touchoff_tests::oracle::rng::Rng;
+
+const MM: Unit = Unit::Millimetre;
+/// Spacing of the coordinates' grid.
+const GRID: f64 = 1.0 / (1 << 30) as f64;
+
+#[test]
+fn clouds_of_one_place_and_clouds_inside_keep_the_contract() {
+    check_tools(10, |subject, rng, checks| {
+        let single = PointSet::near_tool(subject, 1, GRID, rng);
+        let same = |count: usize| PointSet {
+            points: vec![single.points[0]; count],
+            normals: vec![single.normals[0]; count],
+            weights: vec![0.5; count],
+            unit: single.unit,
+        };
+        let interior = points_inside(subject, rng);
+        for points in [&single, &same(2), &same(16), &same(17), &same(300), &interior] {
+            for k in 0..extent(1, 8) {
+                let pose =
+                    if k == 0 { Pose::default() } else { random_pose(Point3::origin(), rng) };
+                Scene::new(subject, points.transformed(&pose, GRID), pose).check(checks);
+            }
+        }
+        let count = interior.points.len();
+        let contacts = Scene::new(subject, interior, Pose::default()).query().contacts.len();
+        let place = || format!("{contacts} of {count}");
+        checks.never("point inside without a contact", contacts != count, place);
+    });
+}
+
+/// Returns points that are all inside, by at least a thousandth of the tool's radius.
+fn points_inside(subject: &Subject, rng: &mut Rng) -> PointSet {
+    let mut points = PointSet::near_tool(subject, 40, GRID, rng);
+    let [radius, height] = subject.oracle.extent();
+    let mut attempts = 0;
+    for p in &mut points.points {
+        *p = loop {
+            let [x, y] = [0; 2].map(|_| rng.between(-radius, radius));
+            let candidate = [x, y, rng.between(0.0, height)];
+            attempts += 1;
+            assert!(attempts < 1_000_000, "a tool has an inside");
+            if subject.oracle.signed_distance(candidate) < -1e-3 * radius {
+                break Point3::from(candidate);
+            }
+        };
+    }
+    points
+}
+
+#[test]
+fn invalid_input_is_refused() {
+    let (nan, infinite) = (f64::NAN, f64::INFINITY);
+    refused(cloud(|lists| *lists = Lists::default()));
+    refused(cloud(|lists| lists.normals.truncate(2)));
+    refused(cloud(|lists| lists.points[1].y = nan));
+    refused(cloud(|lists| lists.points[1].y = -infinite));
+    refused(cloud(|lists| lists.points[1].y = 1e61));
+    refused(cloud(|lists| lists.normals[2] = Vector3::zeros()));
+    refused(cloud(|lists| lists.normals[2].x = nan));
+    refused(cloud(|lists| lists.normals[2].x = infinite));
+    refused(cloud(|lists| lists.normals[2] *= 1e-320));
+    refused(cloud(|lists| lists.weights[0] = nan));
+    refused(cloud(|lists| lists.weights[0] = -1.0));
+    refused(cloud(|lists| lists.weights[0] = infinite));
+    refused(mesh(&[], &[]));
+    refused(mesh(&TETRAHEDRON, &[]));
+    // Only triangles without area.
+    let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
+    refused(mesh(&flat, &[[0, 1, 2], [1, 2, 3]]));
+    refused(mesh(&TETRAHEDRON, &with_face([0, 1, 4])));
+    refused(mesh(&with_y(3, nan), &FACES));
+    refused(mesh(&with_y(3, infinite), &FACES));
+    let axis = |tip: [f64; 3], axis: [f64; 3]| Pose::from_axis(tip.into(), axis.into());
+    refused(axis([nan, 0.0, 0.0], [0.0, 0.0, 1.0]));
+    refused(axis([0.0, infinite, 0.0], [0.0, 0.0, 1.0]));
+    refused(axis([0.0; 3], [0.0; 3]));
+    refused(axis([0.0; 3], [0.0, nan, 1.0]));
+    refused(axis([0.0; 3], [0.0, 0.0, 2.0]));
+    let quaternion = |q: [f64; 4]| Pose::from_quaternion(Point3::origin(), q);
+    refused(quaternion([0.0; 4]));
+    refused(quaternion([0.0, 0.0, 0.0, nan]));
+    refused(quaternion([1e-160, 0.0, 0.0, 1e-160]));
+}
+
+#[test]
+fn extreme_input_is_accepted() {
+    accepted(cloud(|lists| lists.points[1].y = 1e60));
+    accepted(cloud(|lists| lists.weights = vec![0.0; 3]));
+    accepted(cloud(|lists| lists.weights = vec![1e308; 3]));
+    accepted(mesh(&TETRAHEDRON, &FACES));
+    // A triangle without area, and a sliver.
+    accepted(mesh(&TETRAHEDRON, &with_face([0, 1, 1])));
+    accepted(mesh(&with_y(2, 1e-300), &FACES));
+
+    // Sums of weights near overflow stay finite.
+    let points = vec![Point3::new(0.0, 0.0, 0.5); 20];
+    let ids = (0..20).map(TriangleId).collect();
+    let cloud = Cloud::new(points, vec![Vector3::z(); 20], ids, vec![1e300; 20], MM);
+    let part = Part::from_cloud(&cloud.expect("finite weights"));
+    let tool = tools_library::find("D2Ball").expect("a tool of the library");
+    let wrench = Probe::new(&part, tool).wrench(&Pose::default());
+    assert!(wrench.colliding == 20, "{wrench:?}");
+    assert!(wrench.force.iter().chain(&wrench.torque).all(|c| c.is_finite()), "{wrench:?}");
+}
+
+#[track_caller]
+fn refused<T, E>(outcome: Result<T, E>) {
+    assert!(outcome.err().is_some(), "this input was accepted");
+}
+
+#[track_caller]
+fn accepted<T, E: Display>(outcome: Result<T, E>) {
+    if let Err(error) = outcome {
+        panic!("this input was refused: {error}");
+    }
+}
+
+/// The lists that make a cloud.
+#[derive(Default)]
+struct Lists {
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
+    ids: Vec<TriangleId>,
+    weights: Vec<f64>,
+}
+
+/// Makes a cloud of three points after `change` has made one thing wrong.
+fn cloud(change: impl Fn(&mut Lists)) -> Result<Cloud, CloudError> {
+    let mut lists = Lists {
+        points: vec![Point3::origin(); 3],
+        normals: vec![Vector3::z(); 3],
+        ids: [0, 1, 2].map(TriangleId).to_vec(),
+        weights: vec![1.0; 3],
+    };
+    change(&mut lists);
+    Cloud::new(lists.points, lists.normals, lists.ids, lists.weights, MM)
+}
+
+const TETRAHEDRON: [[f64; 3]; 4] =
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+/// Returns the tetrahedron's vertices, one of them with another y.
+fn with_y(vertex: usize, y: f64) -> [[f64; 3]; 4] {
+    let mut vertices = TETRAHEDRON;
+    vertices[vertex][1] = y;
+    vertices
+}
+
+/// Returns the tetrahedron's faces and another.
+fn with_face(face: [u32; 3]) -> Vec<[u32; 3]> {
+    [&FACES[..], &[face]].concat()
+}
+
+/// Makes a mesh and samples points on it, whose numbers must be sensible.
+fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), Box<dyn Error>> {
+    let vertices = vertices.iter().copied().map(Point3::from).collect();
+    let mesh = Mesh::new(vertices, triangles.to_vec(), MM)?;
+    for sampling in [Sampling::monte_carlo(50), Sampling::new(50)] {
+        let cloud = Cloud::sample(&mesh, sampling)?;
+        assert!(cloud.points().iter().all(|p| p.iter().all(|c| c.is_finite())), "{cloud:?}");
+        assert!(cloud.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12), "{cloud:?}");
+        assert!(cloud.weights().iter().all(|w| w.is_finite() && *w >= 0.0), "{cloud:?}");
+    }
+    Ok(())
+}

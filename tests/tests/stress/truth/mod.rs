@@ -1,0 +1,151 @@
+//! True values at points in 256 bits, for every library tool: of a profile from its restatement, of the thesis's tool
+//! and the two solids from equations written separately.
+
+mod fig73;
+mod profile;
+mod solids;
+
+pub(crate) use profile::Profiled;
+
+use touchoff::Tool;
+use touchoff_tests::accuracy;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::{Block, Fig73, LBracket, Nearest, Oracle, restated};
+
+/// A point of the tool's frame.
+pub(crate) type ExactPoint = [Big; 3];
+
+/// The values of a region at a point, whether or not the region owns the point.
+pub(crate) struct RegionValues {
+    /// The depth by the region's own formula, or the magnitude if the tool takes that as its depth.
+    pub(crate) depth: Big,
+    /// Distance by which the point misses the region: the excess of the distance to the region's surface over that to
+    /// the nearest surface, or the violation of its conditions.
+    pub(crate) excess_distance: f64,
+    /// The unit vector toward the region's surface.
+    pub(crate) direction: ExactPoint,
+    /// The distance to the nearest point at which the direction is undefined.
+    pub(crate) singularity_distance: f64,
+}
+
+/// The true values of a tool.
+pub(crate) trait Truth: Send + Sync {
+    /// Returns S, the next power of two above the tool's largest coordinate.
+    fn scale(&self) -> f64;
+
+    /// Returns the depth of a point inside, 0 on the surface, and minus the distance from the surface outside.
+    fn depth(&self, p: &ExactPoint) -> Big;
+
+    /// Returns the index of the region that owns a point, in the tool's list. On a border it is one of the neighbours.
+    fn owner(&self, p: &ExactPoint) -> Option<usize>;
+
+    /// Returns the values of a region at a point, or `None` if there is no such region.
+    fn region_values(&self, p: &ExactPoint, region: usize) -> Option<RegionValues>;
+}
+
+/// A library tool, its true values, and an oracle in doubles for finding points.
+pub(crate) struct Subject {
+    /// The compiled tool.
+    pub(crate) tool: &'static dyn Tool,
+    /// The true values.
+    pub(crate) truth: Box<dyn Truth>,
+    /// The oracle in doubles.
+    pub(crate) oracle: Box<dyn Oracle + Send + Sync>,
+}
+
+impl Subject {
+    /// Returns the tool's name.
+    pub(crate) fn name(&self) -> &'static str {
+        self.oracle.name()
+    }
+
+    /// Returns S.
+    pub(crate) fn scale(&self) -> f64 {
+        self.truth.scale()
+    }
+
+    /// Returns 1 ulp(S).
+    pub(crate) fn ulp(&self) -> f64 {
+        f64::EPSILON * self.scale()
+    }
+}
+
+/// Converts a point exactly.
+pub(crate) fn to_exact(p: [f64; 3]) -> ExactPoint {
+    p.map(Big::exactly)
+}
+
+/// Returns every library tool, sorted by name.
+///
+/// # Panics
+/// If the library lacks a tool that is restated.
+pub(crate) fn subjects() -> Vec<Subject> {
+    let find = |name: &str| tools_library::find(name).expect("a tool of the library");
+    let mut subjects: Vec<Subject> = accuracy::tools()
+        .into_iter()
+        .map(|(tool, restated)| Subject {
+            tool,
+            truth: Box::new(Profiled::new(tool, &restated)),
+            oracle: Box::new(Nearest::new(&restated)),
+        })
+        .collect();
+    let exact = restated::of("Fig73Exact").expect("it is restated");
+    subjects.push(Subject {
+        tool: find("Fig73"),
+        truth: Box::new(fig73::Magnitudes::new(find("Fig73"), &exact)),
+        oracle: Box::new(Fig73::default()),
+    });
+    subjects.push(Subject {
+        tool: find("Block"),
+        truth: Box::new(solids::Faces::block(find("Block"))),
+        oracle: Box::new(Block),
+    });
+    subjects.push(Subject {
+        tool: find("LBracket"),
+        truth: Box::new(solids::Faces::bracket(find("LBracket"))),
+        oracle: Box::new(LBracket),
+    });
+    subjects.sort_by_key(Subject::name);
+    subjects
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchoff_tests::oracle::rng::Rng;
+
+    /// The true values agree with the oracles in doubles, which are implemented independently.
+    #[test]
+    fn agrees_with_the_oracles_in_doubles() {
+        let subjects = subjects();
+        assert_eq!(subjects.len(), tools_library::TOOLS.len());
+        for subject in &subjects {
+            let (oracle, scale) = (&subject.oracle, subject.scale());
+            let [radius, height] = oracle.extent();
+            let mut rng = Rng::new(3);
+            for _ in 0..400 {
+                let [x, y] = [0; 2].map(|_| rng.between(-1.1 * radius, 1.1 * radius));
+                let p = [x, y, rng.between(-0.1 * height, 1.1 * height)];
+                let name = subject.name();
+                let depth = subject.truth.depth(&to_exact(p)).to_f64();
+                let evaluation = oracle.evaluate(p);
+                let expected =
+                    evaluation.map_or_else(|| -oracle.signed_distance(p), |s| s.magnitude);
+                assert!((depth - expected).abs() < 1e-13 * scale, "{name} {p:?}");
+                let owner = subject.truth.owner(&to_exact(p));
+                assert_eq!(owner.is_some(), evaluation.is_some(), "{name} {p:?}");
+                let (Some(owner), Some(evaluation)) = (owner, evaluation) else { continue };
+                let values =
+                    subject.truth.region_values(&to_exact(p), owner).expect("it owns the point");
+                assert_eq!(values.excess_distance, 0.0, "{name} {p:?}");
+                assert!((values.depth.to_f64() - expected).abs() < 1e-13 * scale, "{name} {p:?}");
+                let singularity_distance =
+                    oracle.singularity_distance(p).min(values.singularity_distance);
+                for (u, v) in values.direction.iter().zip(evaluation.direction) {
+                    let tolerance = 1e-13 * (1.0 + scale / singularity_distance);
+                    assert!((u.to_f64() - v).abs() < tolerance, "{name} {p:?}");
+                }
+            }
+        }
+    }
+}

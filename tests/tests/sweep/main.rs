@@ -1,0 +1,452 @@
+//! Posture sweeps compared with brute force, on postures drawn from those found accessible and from the others.
+//!
+//! Each posture is rebuilt from the tool's restatement ([`tool_model`]) and validated by subdividing all triangles
+//! ([`brute_force`]). Accessible postures must be free, and the others must be blocked.
+//!
+//! `POSTURES=100000 cargo test --release -p touchoff-tests --test sweep -- --nocapture` draws 100,000 postures of each
+//! kind, also on a real part where there is one, and prints how many were left undecided.
+
+mod brute_force;
+mod parts;
+mod tool_model;
+
+use brute_force::{TrianglePart, Verdict};
+use nalgebra::{Point3, Vector3};
+use parts::relief;
+use rayon::prelude::*;
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use std::path::Path;
+use tool_model::{Posture, ToolModel};
+use touchoff::certify::TriangleBvh;
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Tool, TriangleId, Unit};
+use touchoff_postures::sweep::{PostureSweep, SweepStats};
+use touchoff_postures::{Accessibility, Directions, MapRow, Rules};
+use touchoff_tests::count::case_count;
+use touchoff_tests::oracle::rng::Rng;
+
+/// Number of postures of each kind that are validated per part, unless `POSTURES` is set.
+const DRAWS: usize = 300;
+
+/// The settings of a comparison.
+struct ComparisonSettings<'a> {
+    /// The part.
+    mesh: &'a Mesh,
+    /// Library tools, by name.
+    tools: &'a [&'a str],
+    /// Number of directions per hemisphere.
+    hemisphere: usize,
+    /// Allowed depth of cutting surfaces, in the part's unit.
+    tolerance: f64,
+    /// Niceness that contacts must exceed.
+    niceness: f64,
+    /// Number of postures of each kind that are validated.
+    draws: usize,
+    /// Seed for the choice of postures.
+    seed: u64,
+}
+
+/// What brute force says of a verdict of the sweep. The texts have triangle, tool, direction and the verdicts of brute
+/// force.
+enum Outcome {
+    /// It agrees.
+    Agrees,
+    /// It contradicts.
+    Contradicted(String),
+    /// It cannot tell from rounding.
+    Undecided(String),
+}
+
+/// The validated postures of one kind.
+#[derive(Clone, Debug, Default)]
+struct ValidatedPostures {
+    /// Number of postures.
+    count: usize,
+    /// Postures on which brute force contradicts the sweep.
+    contradicted: Vec<String>,
+    /// Postures that brute force leaves undecided.
+    undecided: Vec<String>,
+}
+
+/// The results of a comparison.
+struct Comparison {
+    /// The sweep's statistics.
+    stats: SweepStats,
+    /// Number of postures in the map.
+    in_map: u64,
+    /// The validated accessible postures.
+    accessible: ValidatedPostures,
+    /// The validated postures that face their triangle but are not accessible.
+    inaccessible: ValidatedPostures,
+}
+
+/// A posture, by indices.
+#[derive(Clone, Copy)]
+struct Choice {
+    triangle: u32,
+    tool: usize,
+    direction: usize,
+}
+
+/// Distances, as shares of the tolerance, at which a refused posture that is free is tested for a near collision.
+const NEAR_COLLISION_SHARES: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// The distance that counts as rounding, as a share of the part's and the tool's size.
+const ROUNDING: f64 = 1e-9;
+
+impl ComparisonSettings<'_> {
+    /// Runs a sweep and validates random postures of it.
+    fn compare(&self) -> Comparison {
+        let mesh = self.mesh;
+        let tools: Vec<&dyn Tool> = self
+            .tools
+            .iter()
+            .map(|name| tools_library::find(name).expect("a tool of the library") as &dyn Tool)
+            .collect();
+        let models = tools.iter().zip(self.tools).map(|(tool, name)| {
+            let length = tool.info().unit.factor_to(mesh.unit());
+            ToolModel::new(name, length, self.tolerance).expect("a restated tool")
+        });
+        let tool_models: Vec<ToolModel> = models.collect();
+        let directions = Directions::spread(self.hemisphere);
+        let bvh = TriangleBvh::new(mesh);
+        let rules =
+            Rules { tolerance: self.tolerance, niceness: self.niceness, allowed: Vec::new() };
+        let sweep = PostureSweep::new(mesh, &bvh, tools, &directions, rules, NonZeroU16::MIN);
+        let sweep = sweep.expect("tools with profiles");
+        let mut rows = vec![MapRow::default(); mesh.triangles().len()];
+        let mut stats = SweepStats::default();
+        let batches: Vec<usize> = (0..sweep.batches()).collect();
+        let _: ControlFlow<()> = sweep.run(&batches, |batch| {
+            stats += batch.stats;
+            batch.rows.into_iter().for_each(|(id, row)| rows[id.index()] = row);
+            ControlFlow::Continue(())
+        });
+        let part = TrianglePart::new(mesh);
+        let size = tool_models.iter().map(|model| model.extent()[0] + model.extent()[1]);
+        let validation = Validation {
+            mesh,
+            part: &part,
+            directions: directions.list(),
+            tool_models: &tool_models,
+            tolerance: self.tolerance,
+            niceness: self.niceness,
+            rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
+        };
+        let mut rng = Rng::new(self.seed);
+        let choices = draw_accessible(&rows, self.draws, &mut rng);
+        let accessible = choices.into_par_iter().map(|choice| validation.check_accessible(&choice));
+        let accessible = ValidatedPostures::collect(accessible.collect());
+        let choices = validation.draw_inaccessible(&rows, self.draws, &mut rng);
+        let inaccessible =
+            choices.into_par_iter().map(|choice| validation.check_inaccessible(&choice));
+        let inaccessible = ValidatedPostures::collect(inaccessible.collect());
+        let in_map = rows.iter().flat_map(|row| &row.access).map(posture_count).sum();
+        Comparison { stats, in_map, accessible, inaccessible }
+    }
+
+    /// Asserts that brute force contradicts no posture and leaves few undecided.
+    fn check(&self) {
+        let Comparison { stats, in_map, accessible, inaccessible } = self.compare();
+        for (kind, drawn) in [("accessible", &accessible), ("inaccessible", &inaccessible)] {
+            assert_eq!(drawn.count, self.draws, "{kind}");
+            assert!(drawn.contradicted.is_empty(), "{kind}: {:#?}", drawn.contradicted);
+            assert!(20 * drawn.undecided.len() <= self.draws, "{kind}: {:#?}", drawn.undecided);
+            let (count, undecided) = (drawn.count, drawn.undecided.len());
+            eprintln!("{kind} with {:?}: {count} postures, {undecided} undecided", self.tools);
+        }
+        let directions = 2 * self.hemisphere as u64;
+        assert_eq!(stats.postures(), stats.triangles * directions);
+        assert!(stats.cached_obstruction > 0 && stats.obstructed > 0);
+        assert!(stats.acceptable > 0 && stats.not_facing > 0);
+        assert_eq!(in_map, stats.acceptable);
+    }
+}
+
+/// Returns the number of postures in which a tool reaches a triangle.
+fn posture_count(access: &Accessibility) -> u64 {
+    access.directions.iter().map(|word| u64::from(word.count_ones())).sum()
+}
+
+fn contains(set: &[u64], direction: usize) -> bool {
+    set[direction / 64] >> (direction % 64) & 1 == 1
+}
+
+/// Draws from the postures that the sweep found accessible, with uniform probability.
+fn draw_accessible(rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
+    let mut cumulative = Vec::new();
+    let mut sum = 0u64;
+    for (triangle, row) in rows.iter().enumerate() {
+        for access in &row.access {
+            sum += access.directions.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            cumulative.push((sum, triangle as u32, access));
+        }
+    }
+    if sum == 0 {
+        return Vec::new();
+    }
+    let choice = |_| {
+        let draw = rng.bits() % sum;
+        let index =
+            cumulative.partition_point(|(cumulative_count, _, _)| *cumulative_count <= draw);
+        let (cumulative_count, triangle, access) = cumulative[index];
+        let members =
+            (0..64 * access.directions.len()).filter(|k| contains(&access.directions, *k));
+        let remaining = (cumulative_count - draw - 1) as usize;
+        let direction = members.rev().nth(remaining)?;
+        Some(Choice { triangle, tool: access.tool.into(), direction })
+    };
+    (0..count).filter_map(choice).collect()
+}
+
+impl ValidatedPostures {
+    fn collect(outcomes: Vec<Outcome>) -> ValidatedPostures {
+        let mut validated =
+            ValidatedPostures { count: outcomes.len(), ..ValidatedPostures::default() };
+        for outcome in outcomes {
+            match outcome {
+                Outcome::Agrees => (),
+                Outcome::Contradicted(finding) => validated.contradicted.push(finding),
+                Outcome::Undecided(finding) => validated.undecided.push(finding),
+            }
+        }
+        validated
+    }
+}
+
+/// The data for the validation of postures.
+struct Validation<'a> {
+    mesh: &'a Mesh,
+    part: &'a TrianglePart<'a>,
+    directions: &'a [[f64; 3]],
+    tool_models: &'a [ToolModel],
+    tolerance: f64,
+    niceness: f64,
+    rounding: f64,
+}
+
+impl Validation<'_> {
+    fn postures(&self, choice: &Choice, tolerance_factor: f64) -> Vec<Posture> {
+        let [a, b, c] = self.mesh.triangle(TriangleId(choice.triangle));
+        let centroid = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
+        let axis = Vector3::from(self.directions[choice.direction]);
+        let mut postures =
+            self.tool_models[choice.tool].postures(centroid, normal, axis, tolerance_factor);
+        postures.retain(|posture| posture.niceness > self.niceness);
+        postures
+    }
+
+    fn describe(&self, choice: &Choice) -> String {
+        let [x, y, z] = self.directions[choice.direction];
+        let name = touchoff_tests::oracle::Oracle::name(&self.tool_models[choice.tool].oracle);
+        format!(
+            "triangle {}, {name}, direction {} ({x:.3}, {y:.3}, {z:.3})",
+            choice.triangle, choice.direction
+        )
+    }
+
+    fn check(&self, choice: &Choice, posture: &Posture, allowance: f64) -> Verdict {
+        self.part.check(&self.tool_models[choice.tool], posture, self.tolerance, allowance)
+    }
+
+    /// Checks that one of the postures of a choice is free.
+    fn check_accessible(&self, choice: &Choice) -> Outcome {
+        let postures = self.postures(choice, 2.0);
+        let verdicts = postures.iter().map(|posture| self.check(choice, posture, self.rounding));
+        let verdicts: Vec<Verdict> = verdicts.collect();
+        if verdicts.contains(&Verdict::Free) {
+            return Outcome::Agrees;
+        }
+        let finding = format!("{}: {verdicts:?}", self.describe(choice));
+        if verdicts.contains(&Verdict::Open) {
+            Outcome::Undecided(finding)
+        } else {
+            Outcome::Contradicted(finding)
+        }
+    }
+
+    /// Draws postures that face a triangle and that the sweep did not find accessible.
+    fn draw_inaccessible(&self, rows: &[MapRow], count: usize, rng: &mut Rng) -> Vec<Choice> {
+        let mut choices = Vec::new();
+        for _ in 0..100 * count {
+            if choices.len() == count {
+                break;
+            }
+            let mut random_below = |limit: usize| (rng.bits() % limit as u64) as usize;
+            let (triangle, tool) = (random_below(rows.len()), random_below(self.tool_models.len()));
+            let direction = random_below(self.directions.len());
+            let tool_access =
+                rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
+            let choice = Choice { triangle: triangle as u32, tool, direction };
+            if tool_access.is_some_and(|access| !contains(&access.directions, direction))
+                && !self.postures(&choice, -1.0).is_empty()
+            {
+                choices.push(choice);
+            }
+        }
+        choices
+    }
+
+    /// Checks that all postures of a choice are blocked.
+    fn check_inaccessible(&self, choice: &Choice) -> Outcome {
+        for posture in self.postures(choice, -1.0) {
+            let verdict = self.check(choice, &posture, 0.0);
+            if matches!(verdict, Verdict::Blocked(_)) {
+                continue;
+            }
+            let near_share = NEAR_COLLISION_SHARES.into_iter().find(|share| {
+                let closer = self.check(choice, &posture, -share * self.tolerance);
+                matches!(closer, Verdict::Blocked(_))
+            });
+            let near = near_share.map_or_else(
+                || "blocked by nothing near".to_owned(),
+                |share| format!("blocked if {share:e} of the tolerance nearer"),
+            );
+            let finding = format!("{}: {verdict:?}, {near}", self.describe(choice));
+            // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
+            let is_open = verdict == Verdict::Open || near_share.is_some_and(|share| share <= 1e-6);
+            return if is_open {
+                Outcome::Undecided(finding)
+            } else {
+                Outcome::Contradicted(finding)
+            };
+        }
+        Outcome::Agrees
+    }
+}
+
+#[test]
+fn accessible_postures_are_free_and_others_are_blocked() {
+    check_relief(&["D2Ball", "BallEr16", "TaperedBall"]);
+}
+
+#[test]
+fn corners_two_contacts_and_inch_tools_agree_with_brute_force() {
+    check_relief(&["BullNose", "Lollipop", "TSlot", "Dovetail", "Woodruff", "HalfInchBallCat40"]);
+}
+
+/// Checks postures on a generated part.
+fn check_relief(tools: &[&str]) {
+    let settings = ComparisonSettings {
+        mesh: &relief(20).expect("a block"),
+        tools,
+        hemisphere: 60,
+        tolerance: 0.01,
+        niceness: 0.15,
+        draws: case_count("POSTURES", DRAWS),
+        seed: 4,
+    };
+    settings.check();
+}
+
+/// A real part is swept only in full runs, since its sweep takes a minute.
+#[test]
+fn postures_on_a_real_part_agree_with_brute_force() {
+    let draws = case_count("POSTURES", DRAWS);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts/impeller.stl");
+    if draws <= DRAWS || !path.exists() {
+        return eprintln!("skipped: {} in a full run", path.display());
+    }
+    let settings = ComparisonSettings {
+        mesh: &Mesh::read_stl(path, Unit::Millimetre).expect("a mesh"),
+        tools: &["D2Ball", "BallEr16", "TaperedBall"],
+        hemisphere: 200,
+        tolerance: 0.01,
+        niceness: 0.5,
+        draws,
+        seed: 1,
+    };
+    settings.check();
+}
+
+/// The validation must be able to reject a posture.
+#[test]
+fn brute_force_rejects_blocked_postures() {
+    let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
+    let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
+    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let part = TrianglePart::new(&block);
+    let stand = ToolModel::new("D2Ball", 1.0, 0.01).expect("a restated tool");
+    let verdict_at = |tip: [f64; 3], allowance: f64| {
+        let posture = Posture { tip: tip.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
+        part.check(&stand, &posture, 0.01, allowance)
+    };
+    assert_eq!(verdict_at([0.0, 0.0, 0.0], 0.0), Verdict::Free);
+    assert_eq!(verdict_at([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([0.0, 0.0, -0.0101], 0.0), Verdict::Blocked(_)));
+    // The flute of 5 mm may cut slightly into the wall beside it; the shank above must not.
+    assert_eq!(verdict_at([20.999, 0.0, -4.9], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([20.999, 0.0, -5.1], 0.0), Verdict::Blocked(_)));
+    assert_eq!(verdict_at([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
+    assert!(matches!(verdict_at([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
+    // A part far larger than the tool contains it.
+    let high = nalgebra::Point3::new(20.0, 20.0, 50.0);
+    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let posture = Posture {
+        tip: nalgebra::Point3::new(0.0, 0.0, -5.0),
+        axis: nalgebra::Vector3::z(),
+        niceness: 1.0,
+    };
+    let verdict = TrianglePart::new(&block).check(&stand, &posture, 0.01, 0.0);
+    assert_eq!(verdict, Verdict::Blocked(f64::INFINITY));
+}
+
+/// From the centre of a plate's top a ball may lean until its flute would touch. That is the whole upper hemisphere,
+/// except where the holder or a shank wider than the ball collides.
+#[test]
+fn a_plate_is_reached_from_the_upper_hemisphere() {
+    let plate = shapes::plane(0.5, 1, Unit::Millimetre).expect("a plate");
+    let bvh = TriangleBvh::new(&plate);
+    let directions = Directions::spread(400);
+    let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
+    let tool = tools_library::find("D2Ball").expect("a tool");
+    let sweep = PostureSweep::new(&plate, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
+        .expect("a sweep");
+    let mut solid_angles = Vec::new();
+    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
+        solid_angles.extend(
+            batch.rows.iter().map(|(_, row)| directions.solid_angle(&row.access[0].directions)),
+        );
+        ControlFlow::Continue(())
+    });
+    assert_eq!(solid_angles.len(), 2);
+    for angle in solid_angles {
+        assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
+    }
+}
+
+/// A plate in the middle of a hollow block. The tool fits in as it is, so no larger stick-out is needed, however far
+/// the holder is assumed to extend above.
+#[test]
+fn required_stick_out_is_at_most_that_of_the_tool() {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
+    };
+    let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
+    let [outer, hollow] = [80.0, 60.0].map(|half| block([-half; 3], [half; 3]));
+    let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
+    let offset_corners = |corners: &[u32; 3], offset: u32| corners.map(|corner| corner + offset);
+    let outside = outer.triangles().iter().map(|corners| offset_corners(corners, 8));
+    // The triangles of the void face inward.
+    let inside = hollow.triangles().iter().map(|corners| {
+        let [a, b, c] = offset_corners(corners, 16);
+        [b, a, c]
+    });
+    let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();
+    let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+    let bvh = TriangleBvh::new(&mesh);
+    let directions = Directions::spread(200);
+    let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
+    let tool = tools_library::find("BallEr16").expect("a tool");
+    let sweep = PostureSweep::new(&mesh, &bvh, vec![tool], &directions, rules, NonZeroU16::MIN)
+        .expect("a sweep");
+    let mut needed = Vec::new();
+    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
+        needed.extend(batch.rows.iter().filter_map(|(_, row)| row.access[0].stickout));
+        ControlFlow::Continue(())
+    });
+    assert!(needed.len() > 2 && needed.iter().all(|needed| *needed <= 30.0), "{needed:?}");
+    assert!(needed.contains(&30.0), "nothing asks for all of it: {needed:?}");
+}
