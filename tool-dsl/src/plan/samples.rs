@@ -11,6 +11,13 @@ const MIN_SIDE_COST: f64 = 8.0;
 /// The penalty, in bits, for each owner that remains on both sides. Without it, trees grow by half.
 const SHARED_OWNER_PENALTY_BITS: f64 = 0.2;
 
+/// A point with its owner, and the weight of its surroundings.
+pub(super) struct Sample {
+    pub(super) point: Point,
+    pub(super) weight: f64,
+    pub(super) owner: Option<usize>,
+}
+
 /// All samples, in words of up to 64 with the same owner.
 pub(super) struct Samples {
     owners: Vec<usize>,
@@ -26,27 +33,27 @@ pub(super) struct Samples {
 pub(super) struct SampleSubset(Vec<(usize, u64, f64)>);
 
 impl Samples {
-    pub(super) fn new(
-        all: &[(Point, f64, Option<usize>)],
-        shapes: &[CurveFunction<'_>],
-    ) -> Samples {
-        let runs: Vec<&[(Point, f64, Option<usize>)]> =
-            all.chunk_by(|a, b| a.2 == b.2).flat_map(|run| run.chunks(64)).collect();
+    pub(super) fn new(all: &[Sample], shapes: &[CurveFunction<'_>]) -> Samples {
+        let runs: Vec<&[Sample]> =
+            all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
         let below = |shape: &CurveFunction<'_>| {
-            let bits = |run: &&[(Point, f64, Option<usize>)]| {
+            let bits = |run: &&[Sample]| {
                 let mut bits = 0;
-                for (k, (p, ..)) in run.iter().enumerate() {
-                    bits |= u64::from(shape.below(*p)) << k;
+                for (k, sample) in run.iter().enumerate() {
+                    bits |= u64::from(shape.below(sample.point)) << k;
                 }
                 bits
             };
             runs.iter().map(bits).collect()
         };
         let owners: Vec<usize> =
-            runs.iter().map(|run| run[0].2.map_or(0, |owner| owner + 1)).collect();
+            runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
         Samples {
             count: owners.iter().max().map_or(1, |largest| largest + 1),
-            weights: runs.iter().map(|run| run.iter().map(|sample| sample.1).collect()).collect(),
+            weights: runs
+                .iter()
+                .map(|run| run.iter().map(|sample| sample.weight).collect())
+                .collect(),
             below: shapes.iter().map(below).collect(),
             owners,
         }
