@@ -43,10 +43,9 @@ impl Survey<'_> {
                 let Some(own) = a.owner else { continue };
                 let pair = (own, b.owner);
                 let depths_differ = self.jump(pair).low > 0.0;
-                let cover_and_cell = (&mut self.cover, cell);
-                if let Some(separation) =
-                    self.border_prover.of(pair, [a, b], cover_and_cell, depths_differ)
-                {
+                let (prover, cover) = (&mut self.border_prover, &mut self.cover);
+                let separation = prover.separation(pair, [a, b], cover, cell, depths_differ);
+                if let Some(separation) = separation {
                     meetings.push(Meeting { pair, separation, jump_point: None });
                 }
             }
