@@ -13,10 +13,9 @@ use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::enclosed::EnclosedPolynomial;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
-
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
@@ -131,8 +130,9 @@ impl ProfileFeet {
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
                 // Where the end's function is negative, the conic has the opposite sign throughout.
-                let clear = curve.clear_of(end)? == (below, true);
-                return clear.then(|| Polynomial::zero().enclosed());
+                let opposite = ClearSide { is_below: true, is_positive: below };
+                let is_clear = curve.clear_side_of(end)? == opposite;
+                return is_clear.then(|| Polynomial::zero().enclosed());
             }
             let sign = Number::int(if below { 1 } else { -1 });
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())

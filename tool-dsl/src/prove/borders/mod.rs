@@ -12,12 +12,13 @@ use super::tangent::{DepthDifference, Tangency};
 use crate::elimination::Linear;
 use crate::expr::Id;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::expr::value::Evaluator;
 use crate::formula::{ANY_SIGN, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
 use order::{ExcessBesideLine, LowerByLinear};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
@@ -71,9 +72,6 @@ enum ContactSearch {
     Found([Signs; 2]),
 }
 
-/// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-type ConicSign = Option<(bool, bool)>;
-
 /// How the depths of a pair agree on each curve, if they do; `None` for a curve that was not asked for.
 type AgreementsByCurve = Vec<Option<Option<Rc<Agreement>>>>;
 
@@ -110,9 +108,9 @@ pub(super) struct BorderProver<'m> {
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
     squares: Vec<Option<Polynomial>>,
-    /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-    /// A row by line, of entries by curve; `None` where that is not known yet.
-    conic_signs: Vec<Vec<Option<ConicSign>>>,
+    /// The sides of lines on which conics have one sign: a row by line, of entries by curve. Rows are empty
+    /// until something is known.
+    clear_sides: Vec<Vec<OnceCell<Option<ClearSide>>>>,
     /// The signs of a curve that linear curves leave possible.
     by_linear: HashMap<(Leaf, CurveIndex), Signs>,
     linear: Linear,
@@ -173,7 +171,7 @@ impl<'m> BorderProver<'m> {
             agreements: vec![Vec::new(); depths.len()],
             depths,
             is_straight: curves.iter().map(is_straight).collect(),
-            conic_signs: vec![Vec::new(); curves.len()],
+            clear_sides: vec![Vec::new(); curves.len()],
             curves,
             zero: RootForm::zero(),
             joints: BTreeMap::new(),
