@@ -46,7 +46,7 @@ impl EnvelopeSlab {
     }
 }
 
-/// Returns the envelope: at most [`MAX_SLABS`] slabs from the tip up, which together cover the solid. Each begins
+/// Returns the envelope: at most `MAX_SLABS` slabs from the tip up, which together cover the solid. Each begins
 /// where the one before ends, or below by rounding, since all are rounded outward as in `ToolInfo`.
 pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
     let mut prover = Prover::of_regions(model);
