@@ -242,8 +242,7 @@ impl Section<'_> {
         let holds = |p: Point| bounds.iter().all(|bound| bound.holds(self, p));
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
             for part in SAMPLE_FRACTIONS {
-                let foot_point =
-                    self.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
+                let foot_point = slice.foot_at(self, part);
                 let radius = slice.radius(self, part);
                 let own =
                     [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
