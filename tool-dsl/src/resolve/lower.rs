@@ -11,7 +11,7 @@ use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::source::Span;
-use crate::syntax::MAX_HEIGHT;
+use crate::syntax::MAX_EXPRESSION_HEIGHT;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -149,10 +149,10 @@ impl Lowering {
         if size > MAX_CONSTANT {
             return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
         }
-        if self.graph.height(id) > MAX_HEIGHT {
+        if self.graph.height(id) > MAX_EXPRESSION_HEIGHT {
             return Err(Diagnostic::new(
                 expr.span,
-                ValueKind::ExpressionTooDeep { limit: MAX_HEIGHT },
+                ValueKind::ExpressionTooDeep { limit: MAX_EXPRESSION_HEIGHT },
             ));
         }
         Ok((id, dimension))
