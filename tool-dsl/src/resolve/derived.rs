@@ -5,7 +5,7 @@ use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::{Conditions, Divider};
-use super::region::{RegionHead, RegionResolver, or_report};
+use super::region::{LawValues, Placed, RegionHead, RegionResolver, or_report};
 use crate::diagnostic::{Diagnostic, ProfileKind};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
@@ -81,7 +81,8 @@ pub(super) fn derived(
         None => {
             for part in &parts {
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let head = (part.name.clone(), part.span, part.owner, part.inside.clone());
+                let (name, inside) = (part.name.clone(), part.inside.clone());
+                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let direction = part.own_direction();
                 regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
@@ -199,12 +200,12 @@ impl RegionResolver<'_> {
     pub(super) fn of_part(
         mut self,
         part: &DerivedPart,
-        (name, span, owner, inside): (String, Span, usize, Formula),
+        head: RegionHead,
         direction: RawDirection,
     ) -> Result<Region, Diagnostic> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;
-        let head = RegionHead { name, span, owner, inside };
-        self.finish(head, (part.depth, span), (magnitude, niceness), direction)
+        let depth = Placed { value: part.depth, span: head.span };
+        self.finish(head, depth, LawValues { magnitude, niceness }, direction)
     }
 }

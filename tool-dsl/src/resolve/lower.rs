@@ -28,6 +28,12 @@ pub(super) struct Value {
     pub(super) used: bool,
 }
 
+/// A constant with its dimension, in the file's units.
+pub(super) struct Constant {
+    pub(super) value: Number,
+    pub(super) dimension: Dimension,
+}
+
 /// The names that an expression may mention, by its context.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Allowed {
@@ -119,21 +125,17 @@ impl Lowering {
     }
 
     /// Lowers an expression that has to be constant, in this role.
-    pub(super) fn constant(
-        &mut self,
-        expr: &Expr,
-        role: Role,
-    ) -> Result<(Number, Dimension), Diagnostic> {
+    pub(super) fn constant(&mut self, expr: &Expr, role: Role) -> Result<Constant, Diagnostic> {
         let (id, dimension) = self.lower(expr, Allowed::Constants(role))?;
         match self.graph.constant(id) {
-            Some(value) => Ok((value.clone(), dimension)),
+            Some(value) => Ok(Constant { value: value.clone(), dimension }),
             None => Err(not_constant(expr.span, None, role)),
         }
     }
 
     /// Lowers a constant length.
     pub(super) fn length(&mut self, expr: &Expr, role: Role) -> Result<Number, Diagnostic> {
-        let (value, dimension) = self.constant(expr, role)?;
+        let Constant { value, dimension } = self.constant(expr, role)?;
         if !dimension.is_length() {
             return Err(Diagnostic::new(expr.span, ValueKind::NotLength { role, dimension }));
         }
@@ -321,7 +323,7 @@ impl Lowering {
 
     fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
-        let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
+        let Constant { value, dimension: of_exponent } = self.constant(exponent, Role::Exponent)?;
         let halves =
             value
                 .doubled_exponent()

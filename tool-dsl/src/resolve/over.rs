@@ -6,7 +6,7 @@ use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{RegionHead, RegionResolver, first_mention, inside, or_report};
+use super::region::{Placed, RegionHead, RegionResolver, first_mention, inside, or_report};
 use crate::diagnostic::{
     CheckKind, Diagnostic, FormattedNumber, RegionKind, Role, SurfaceRemedy, any_error, enough,
     nearest,
@@ -285,7 +285,7 @@ impl Conditions<'_> {
                     }
                 };
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let head = (name, part.span, part.owner, inside);
+                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let source = DirectionSource::Oblique;
                 let direction = RawDirection { parts: *direction, span: part.span, source };
                 or_report(evaluation.of_part(part, head, direction), diagnostics)
@@ -293,18 +293,18 @@ impl Conditions<'_> {
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
                 let mut evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
-                let (magnitude, niceness) = evaluation.laws(region, depth, diagnostics);
+                let law_values = evaluation.law_values(region, depth, diagnostics);
                 let written = or_report(evaluation.resolve_direction(region), diagnostics)?;
-                let (magnitude, niceness) = (magnitude?, niceness?);
+                let law_values = law_values?;
                 let own =
                     or_report(evaluation.scalar_of(region, Quantity::Magnitude), diagnostics)?;
                 let free = own
                     .filter(|own| first_mention(&own.value, Quantity::Depth.keyword()).is_none());
-                let direction = match (written, free, magnitude) {
+                let direction = match (written, free, law_values.magnitude) {
                     (Some(direction), ..) => direction,
-                    (None, Some(own), Some((magnitude, _))) => {
+                    (None, Some(own), Some(magnitude)) => {
                         let graph = &mut evaluation.lowering.graph;
-                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
+                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude.value);
                         let parts = slope.map(|slope| graph.neg(slope));
                         let (span, source) = (own.value.span, DirectionSource::Written);
                         RawDirection { parts, span, source }
@@ -313,10 +313,8 @@ impl Conditions<'_> {
                 };
                 let (name, span) = (region.name.text.clone(), region.name.span);
                 let head = RegionHead { name, span, owner, inside };
-                or_report(
-                    evaluation.finish(head, (depth, span), (magnitude, niceness), direction),
-                    diagnostics,
-                )
+                let depth = Placed { value: depth, span };
+                or_report(evaluation.finish(head, depth, law_values, direction), diagnostics)
             }
         }
     }
