@@ -286,8 +286,8 @@ fn plan<'m>(
     let all = samples.all();
     let with_bounding_box = |piece: &Rc<Piece>| (Rc::clone(piece), piece.bounding_box());
     let whole_pieces: Vec<_> = input.pieces.iter().map(with_bounding_box).collect();
-    let corners = corners(input.corners, &whole_pieces, (shapes, size));
-    let all_corners = (0..corners.len()).collect();
+    let corners = corners(input.corners, &whole_pieces, shapes, size);
+    let all_corners: Vec<usize> = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
         shapes,
@@ -302,7 +302,7 @@ fn plan<'m>(
         tests: 0,
     };
     let candidates = (0..model.curves.len()).collect();
-    let tree = planner.tree(&input.pieces, (all, all_corners), candidates)?;
+    let tree = planner.tree(&input.pieces, &all, &all_corners, candidates)?;
     for (p, owner) in input.witnesses {
         if *tree.leaf_at(&|curve| shapes[curve].value(p)) != owner {
             return Err(inseparable_owners(model, p));
@@ -341,35 +341,44 @@ pub(super) struct Halves {
     pub(super) above: Vec<Rc<Piece>>,
 }
 
+/// A curve to split by, its division of the pieces, and the side to which its own points go.
+struct Choice {
+    curve: CurveIndex,
+    halves: Halves,
+    zeros: Zeros,
+}
+
 impl Planner<'_> {
     pub(super) fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
-        (samples, corners): (SampleSubset, Vec<usize>),
+        samples: &SampleSubset,
+        corners: &[usize],
         mut candidates: Vec<CurveIndex>,
     ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
-            return Ok(self.leaf(first, pieces, &corners));
+            return Ok(self.leaf(first, pieces, corners));
         }
-        let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut candidates) else {
-            return Ok(self.leaf(self.largest_owner(pieces), pieces, &corners));
+        let Some(choice) = self.choose(pieces, samples, &mut candidates) else {
+            return Ok(self.leaf(self.largest_owner(pieces), pieces, corners));
         };
+        let Choice { curve, halves, zeros } = choice;
         self.used[curve] = true;
         self.tests += 1;
         if self.tests > MAX_TESTS {
             return Err(super::too_large(self.model));
         }
         candidates.retain(|other| *other != curve);
-        let [low, high] = self.samples.divided(&samples, curve);
+        let [low, high] = self.samples.divided(samples, curve);
         let on_curve = match zeros {
-            Zeros::Both => Some(self.zero_set_tree(curve, &halves, &corners, &candidates)?),
+            Zeros::Both => Some(self.zero_set_tree(curve, &halves, corners, &candidates)?),
             _ => None,
         };
         let [corners_below, corners_above] =
-            [-1, 1].map(|side| self.corners_on(side, curve, &corners));
-        let below = self.tree(&halves.below, (low, corners_below), candidates.clone())?;
-        let above = self.tree(&halves.above, (high, corners_above), candidates)?;
+            [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        let below = self.tree(&halves.below, &low, &corners_below, candidates.clone())?;
+        let above = self.tree(&halves.above, &high, &corners_above, candidates)?;
         Ok(match on_curve {
             Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
             Some(on_curve) if on_curve != below => {
@@ -387,7 +396,7 @@ impl Planner<'_> {
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
         candidates: &mut Vec<CurveIndex>,
-    ) -> Option<(CurveIndex, Halves, Zeros)> {
+    ) -> Option<Choice> {
         let uncertain = self.samples.entropy(samples);
         let mut ranked: Vec<(f64, CurveIndex)> = candidates
             .iter()
@@ -397,12 +406,11 @@ impl Planner<'_> {
                 (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed_rank =
-            |curve: CurveIndex| self.model.first_curves.iter().position(|f| *f == curve);
-        ranked.sort_by(|a, b| {
-            let order = |curve| listed_rank(curve).unwrap_or(usize::MAX);
-            order(a.1).cmp(&order(b.1)).then(b.0.total_cmp(&a.0))
-        });
+        let listed_rank = |curve: CurveIndex| {
+            let listed = self.model.first_curves.iter().position(|first| *first == curve);
+            listed.unwrap_or(usize::MAX)
+        };
+        ranked.sort_by(|a, b| listed_rank(a.1).cmp(&listed_rank(b.1)).then(b.0.total_cmp(&a.0)));
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
@@ -411,33 +419,27 @@ impl Planner<'_> {
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
-            let owners = |pieces: &[Rc<Piece>]| {
-                let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
-                owners.sort_unstable();
-                owners.dedup();
-                owners.len()
-            };
-            let owner_count = owners(pieces);
-            if owners(&halves.below) == owner_count && owners(&halves.above) == owner_count {
-                fallback = fallback.or(Some((curve, halves, Zeros::Below)));
+            let count = owner_count(pieces);
+            if owner_count(&halves.below) == count && owner_count(&halves.above) == count {
+                fallback.get_or_insert((curve, halves));
                 continue;
             }
             // A curve whose points belong to both sides needs a tree of its own for them.
             let zeros = self.zeros(curve, &halves);
             if zeros != Zeros::Both {
-                return Some((curve, halves, zeros));
+                return Some(Choice { curve, halves, zeros });
             }
-            with_double_zeros.get_or_insert((curve, halves, zeros));
+            with_double_zeros.get_or_insert(Choice { curve, halves, zeros });
             skipped_count += 1;
             if skipped_count > MAX_SKIPPED_CURVES {
                 break;
             }
         }
-        let fallback = fallback.map(|(curve, halves, _)| {
+        with_double_zeros.or_else(|| {
+            let (curve, halves) = fallback?;
             let zeros = self.zeros(curve, &halves);
-            (curve, halves, zeros)
-        });
-        with_double_zeros.or(fallback)
+            Some(Choice { curve, halves, zeros })
+        })
     }
 
     /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
@@ -496,6 +498,14 @@ impl Planner<'_> {
         }
         halves
     }
+}
+
+/// Returns the number of different owners of some pieces.
+fn owner_count(pieces: &[Rc<Piece>]) -> usize {
+    let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    owners.len()
 }
 
 fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
