@@ -135,12 +135,14 @@ pub(super) struct BorderProver<'m> {
 
 impl<'m> BorderProver<'m> {
     /// Finds the forms of a tool's depths and curves, in its box. With `may_jump`, depths may differ by
-    /// rounding, because slopes across borders do not matter.
+    /// rounding, because slopes across borders do not matter; by no more than `point_box_fraction` of the
+    /// tool's size.
     pub(super) fn new(
         model: &'m Model,
         cell: Cell,
         forms: &mut Forms<'_>,
-        (may_jump, finest): (bool, f64),
+        may_jump: bool,
+        point_box_fraction: f64,
     ) -> BorderProver<'m> {
         let (size, ids) = (half_diagonal(&cell), model.depths());
         let depths: Vec<Option<RootForm>> = ids.iter().map(|depth| forms.of(*depth)).collect();
@@ -162,7 +164,7 @@ impl<'m> BorderProver<'m> {
             depth_differences: BTreeMap::new(),
             squares: curves.iter().map(square).collect(),
             may_jump,
-            max_jump: finest.min(MAX_TANGENT_JUMP) * size,
+            max_jump: point_box_fraction.min(MAX_TANGENT_JUMP) * size,
             check_listed_owners: !model.is_exact(),
             values: Evaluator::new(&model.graph, ids.iter().copied()),
             ids,

@@ -160,7 +160,7 @@ impl<'t> Survey<'t> {
         let mut forms = Forms::new(&model.graph);
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
         let border_prover =
-            BorderProver::new(model, whole, &mut forms, (feet.is_some(), point_box_fraction));
+            BorderProver::new(model, whole, &mut forms, feet.is_some(), point_box_fraction);
         let direction_facts = |(index, region)| {
             DirectionFacts::new(direction::is_parallel(model, region, border_prover.depth(index)))
         };
