@@ -12,8 +12,9 @@ use crate::geometry::cut::{Cut, Cutter, Piece};
 use crate::geometry::outline::{self, Point, minus, norm};
 use crate::geometry::shape::CurveFunction;
 use crate::model::{Model, Over, Section};
+use crate::regionalise::ROUNDING;
 use crate::regionalise::cells;
-use crate::regionalise::{ROUNDING, overlay};
+use crate::regionalise::overlay::{self, ConditionedPart};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -154,7 +155,7 @@ impl Polygons<'_> {
         let owners = plan(model, shapes, size, input, inside)?;
         // A sliver between a curve and its chord may have been given to the wrong owner.
         let part_of = |region: usize| match &section.over {
-            Some(over) => over.regions[region].0,
+            Some(over) => over.regions[region].part,
             None => region,
         };
         let part_at = |p, _| self.leaf_at(&owners, p).map(part_of);
@@ -199,7 +200,7 @@ impl Polygons<'_> {
 enum OwnerAt {
     /// A region, or `None` outside the solid.
     Known(Option<usize>),
-    /// The point is on a border within tolerance.
+    /// The point is on a border within tolerance, or in no region of its part.
     Undecided,
 }
 
@@ -244,7 +245,7 @@ impl PlanInput {
 impl Over {
     /// Returns the region of a part in which the given condition is the first to hold.
     fn region(&self, part: usize, condition: usize) -> Option<usize> {
-        self.regions.iter().position(|pair| *pair == (part, condition))
+        self.regions.iter().position(|region| *region == ConditionedPart { part, condition })
     }
 
     /// Returns the region of a point in a part, unless the point is on a border within tolerance.

@@ -68,7 +68,7 @@ impl ProfileFeet {
         let (features, whole) = (section.inner.features(), tool.extent.cell());
         let mut max_difference = 0.0f64;
         let ends = model.regions.iter().enumerate().map(|(index, region)| {
-            let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
+            let part = section.over.as_ref().map_or(index, |over| over.regions[index].part);
             let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
                     let segment = section.outline.get(piece)?;
