@@ -239,8 +239,7 @@ impl Polynomial {
     /// sign. An ellipse or a parabola is convex where it has the other sign, and so lies on one side of each
     /// of its tangents. Returns `None` for a hyperbola.
     pub(crate) fn clear_side_of(&self, line: &Polynomial) -> Option<ClearSide> {
-        let planar = |m: &Monomial| m[1] == 0 && m[2] == 0 && m[0] + m[3] <= 2;
-        if !self.0.keys().chain(line.0.keys()).all(planar) || !line.is_linear() {
+        if !self.is_conic() || !line.is_conic() || !line.is_linear() {
             return None;
         }
         let [dd, dz, zz] = SQUARES.map(|monomial| self.factor(monomial));
@@ -297,6 +296,11 @@ impl Polynomial {
     /// Returns the coefficient of a monomial with 256 bits.
     pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
         self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
+    }
+
+    /// Returns whether this is a polynomial in d and z of degree 2 at most.
+    pub(crate) fn is_conic(&self) -> bool {
+        self.0.keys().all(|[d, x, y, z]| *x == 0 && *y == 0 && d + z <= 2)
     }
 
     /// Returns whether the degree is at most 1.
