@@ -19,6 +19,7 @@ use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
+use std::cell::OnceCell;
 
 /// The largest difference, relative to the tool's size, between a depth and the distance to its segment for
 /// the two to count as equal. The difference is added to the certificate's slack, so the proof does not
@@ -44,8 +45,8 @@ impl End {
 
 type Ends = Vec<End>;
 
-/// A lower bound of an end's function below and above a curve; the outer `None` where it is not known yet.
-type Bounds = [Option<Option<EnclosedPolynomial>>; 2];
+/// Lower bounds of an end's function above (0) and below (1) a curve. A cell is empty until it is asked for.
+type Bounds = [OnceCell<Option<EnclosedPolynomial>>; 2];
 
 /// The segments of a profile.
 pub(super) struct ProfileFeet {
@@ -138,8 +139,8 @@ impl ProfileFeet {
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())
         };
         let known = &mut self.bounds[owner][end];
-        known.resize(curves.len(), [None, None]);
-        let bound = known[curve][usize::from(below)].get_or_insert_with(bound);
+        known.resize(curves.len(), Bounds::default());
+        let bound = known[curve][usize::from(below)].get_or_init(bound);
         bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }

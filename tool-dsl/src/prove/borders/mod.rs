@@ -72,8 +72,8 @@ enum ContactSearch {
     Found([Signs; 2]),
 }
 
-/// How the depths of a pair agree on each curve, if they do; `None` for a curve that was not asked for.
-type AgreementsByCurve = Vec<Option<Option<Rc<Agreement>>>>;
+/// The agreement of a pair's depths on each curve, if they agree there. A cell is empty until it is asked for.
+type AgreementsByCurve = Vec<OnceCell<Option<Rc<Agreement>>>>;
 
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
@@ -102,8 +102,8 @@ pub(super) struct BorderProver<'m> {
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    /// For a depth, and for the outside and then each depth, the agreement of the two on each curve, if they
-    /// agree there; the outer `None` where that is not known yet. Rows are empty until something is known.
+    /// For a depth, and for the outside and then each depth, the agreements of the two. Rows are empty until
+    /// something is known.
     agreements: Vec<Vec<AgreementsByCurve>>,
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
