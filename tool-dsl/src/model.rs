@@ -76,6 +76,7 @@ use crate::formula::{Curve, CurveIndex, Formula};
 use crate::geometry::outline::Segment;
 use crate::number::Number;
 use crate::regionalise::Partition;
+use crate::regionalise::overlay::ConditionedPart;
 use crate::source::Span;
 
 /// A unit of length that a file may state.
@@ -168,8 +169,8 @@ pub(crate) struct Section {
 pub(crate) struct Over {
     /// The conditions in order of precedence: a point belongs to the first that holds.
     pub(crate) conditions: Vec<Formula>,
-    /// The part and the condition of each region, as indices.
-    pub(crate) regions: Vec<(usize, usize)>,
+    /// The part and the condition of each region.
+    pub(crate) regions: Vec<ConditionedPart>,
     /// The distances to the segments of the outline with rounded corners, which conditions compare.
     pub(crate) distances: Vec<Id>,
 }

@@ -8,6 +8,7 @@ use crate::expr::{Coord, Id, Node};
 use crate::formula::Formula;
 use crate::model::{Model, Section};
 use crate::plan::{MAX_TESTS, PlannedTool, Tree};
+use crate::regionalise::overlay::ConditionedPart;
 
 /// A guarantee that does not hold: a fault of the compiler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +75,7 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
     let Some(over) = &section.over else { return Ok(()) };
     over.conditions.iter().try_for_each(|condition| formula(model, condition))?;
     function(model, "a distance", over.distances.iter().copied())?;
-    for (_, condition) in &over.regions {
+    for ConditionedPart { condition, .. } in &over.regions {
         if *condition >= over.conditions.len() {
             return Err(Broken::Region { index: *condition });
         }

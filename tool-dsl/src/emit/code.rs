@@ -31,7 +31,7 @@ pub(super) struct Writer<'g> {
     curves: &'g [Curve],
     form: Form,
     /// The number of uses of each node in this function. A node that is used once is written inline.
-    uses: BTreeMap<Id, usize>,
+    use_counts: BTreeMap<Id, usize>,
 }
 
 impl<'g> Writer<'g> {
@@ -43,17 +43,17 @@ impl<'g> Writer<'g> {
         roots: &[Id],
         tested: &BTreeSet<(CurveIndex, bool)>,
     ) -> Writer<'g> {
-        let mut writer = Writer { graph, curves, form, uses: BTreeMap::new() };
+        let mut writer = Writer { graph, curves, form, use_counts: BTreeMap::new() };
         let mut all: Vec<Id> = roots.to_vec();
         for (curve, _) in tested {
             all.extend(writer.compared(*curve));
         }
         for root in &all {
-            *writer.uses.entry(*root).or_default() += 1;
+            *writer.use_counts.entry(*root).or_default() += 1;
         }
         for id in graph.dependencies(all) {
             for operand in graph.node(id).operands() {
-                *writer.uses.entry(operand).or_default() += 1;
+                *writer.use_counts.entry(operand).or_default() += 1;
             }
         }
         writer
@@ -79,7 +79,7 @@ impl<'g> Writer<'g> {
         curve: CurveIndex,
         strict: bool,
     ) -> String {
-        let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
+        let writer = Writer { graph, curves, form: Form::Scalar, use_counts: BTreeMap::new() };
         let mut code = Tokens::default();
         writer.test(&mut code, curve, strict);
         code.done().to_string()
@@ -87,23 +87,23 @@ impl<'g> Writer<'g> {
 
     /// Writes an expression for people.
     pub(super) fn written(graph: &Graph, curves: &[Curve], id: Id) -> String {
-        let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
+        let writer = Writer { graph, curves, form: Form::Scalar, use_counts: BTreeMap::new() };
         let mut code = Tokens::default();
         writer.leaf(&mut code, id);
         code.done().to_string()
     }
 
-    fn uses(&self, coord: Coord) -> bool {
-        self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
+    fn mentions(&self, coord: Coord) -> bool {
+        self.use_counts.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
     }
 
     /// Returns the definitions that the function needs besides a point: the reciprocal of the unit of length,
     /// `d` and `q`.
     pub(super) fn given(&self) -> TokenStream {
-        let per_length = self.uses(Coord::PerLength).then(|| {
+        let per_length = self.mentions(Coord::PerLength).then(|| {
             quote! { let per_length = Lane::of(length, 1.0) / length; }
         });
-        let across = match (self.uses(Coord::D), self.uses(Coord::Q)) {
+        let across = match (self.mentions(Coord::D), self.mentions(Coord::Q)) {
             (true, true) => quote! { let q = x * x + y * y; let d = q.sqrt(); },
             (true, false) => quote! { let d = (x * x + y * y).sqrt(); },
             (false, true) => quote! { let q = x * x + y * y; },
@@ -155,15 +155,15 @@ impl<'g> Writer<'g> {
             });
             return;
         }
-        let flipped = matches!(left, Operand::Constant(_));
-        let (first, sign, second) = match (strict, flipped) {
-            (false, false) => (left, "<=", right),
-            (true, false) => (left, "<", right),
-            (false, true) => (right, ">=", left),
-            (true, true) => (right, ">", left),
-        };
+        let mirrored = matches!(left, Operand::Constant(_));
+        let (first, second) = if mirrored { (right, left) } else { (left, right) };
         operand(code, &first);
-        code.sign(sign);
+        code.sign(match (mirrored, strict) {
+            (false, false) => "<=",
+            (false, true) => "<",
+            (true, false) => ">=",
+            (true, true) => ">",
+        });
         operand(code, &second);
     }
 
@@ -197,7 +197,7 @@ impl<'g> Writer<'g> {
     /// Returns whether a node has its own `let`.
     fn named(&self, id: Id) -> bool {
         let free = matches!(self.graph.node(id), Node::Const(_) | Node::Coord(_));
-        !free && self.uses.get(&id).is_some_and(|uses| *uses > 1)
+        !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
     }
 
     /// Writes a node's operation, even if the node has a name.
@@ -236,6 +236,8 @@ impl<'g> Writer<'g> {
                 None => two(code, a, "+", b),
             },
             Node::Sub(a, b) => two(code, a, "-", b),
+            // The graph has a product's constant on the left. It is written on the right, since the trait `Lane`
+            // has `Self * f64` but not `f64 * Self`.
             Node::Mul(a, b) => match known(a) {
                 Some(factor) => {
                     self.value(code, *b);

@@ -26,6 +26,20 @@ pub(crate) fn monomial_of(coord: Coord) -> Monomial {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial(BTreeMap<Monomial, Number>);
 
+const D: Monomial = [1, 0, 0, 0];
+const Z: Monomial = [0, 0, 0, 1];
+/// The monomials d², d z and z².
+const SQUARES: [Monomial; 3] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]];
+
+/// The side of a straight line on which a conic has one sign.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct ClearSide {
+    /// True if the line's polynomial is negative on that side.
+    pub(crate) is_below: bool,
+    /// True if the conic's polynomial is positive there.
+    pub(crate) is_positive: bool,
+}
+
 /// The highest degree that is recognised.
 const MAX_DEGREE: u8 = 8;
 
@@ -221,26 +235,35 @@ impl Polynomial {
         EnclosedPolynomial::new(self.0.iter().map(term).collect())
     }
 
-    /// Compares a conic with a straight line that it does not cross but may touch. Returns the sign that the
-    /// conic has on one whole side of the line (true if positive), and whether that is the side where the
-    /// line is negative. An ellipse or a parabola is convex where it has the other sign, and so lies on one
-    /// side of each of its tangents. Returns `None` for a hyperbola.
-    pub(crate) fn clear_of(&self, line: &Polynomial) -> Option<(bool, bool)> {
-        let planar = |m: &Monomial| m[1] == 0 && m[2] == 0 && m[0] + m[3] <= 2;
-        if !self.0.keys().chain(line.0.keys()).all(planar) || !line.is_linear() {
+    /// Returns the side of a straight line on which a conic that does not cross it, but may touch it, has one
+    /// sign. An ellipse or a parabola is convex where it has the other sign, and so lies on one side of each
+    /// of its tangents. Returns `None` for a hyperbola.
+    pub(crate) fn clear_side_of(&self, line: &Polynomial) -> Option<ClearSide> {
+        if !self.is_conic() || !line.is_conic() || !line.is_linear() {
             return None;
         }
-        let [dd, dz, zz] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(|m| self.factor(m));
-        let exact = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]];
-        let [of_d, of_both, of_z] = exact.map(|monomial| self.exact_factor(monomial));
-        let discriminant = &(&Number::int(4) * &(&of_d * &of_z)) - &(&of_both * &of_both);
+        let [dd, dz, zz] = SQUARES.map(|monomial| self.factor(monomial));
+        let [of_dd, of_dz, of_zz] = SQUARES.map(|monomial| self.exact_factor(monomial));
+        let discriminant = &(&Number::int(4) * &(&of_dd * &of_zz)) - &(&of_dz * &of_dz);
         let sizes = dd * dd + dz * dz + zz * zz;
         if dd + zz == 0.0 || discriminant.to_f64() < -ROUNDING * sizes || dd * zz < 0.0 {
             return None;
         }
-        let remainder = self.on_line(line)?;
+        // There the conic decreases toward the side of the other sign.
+        let gradient = self.gradient_at(self.point_nearest_to_0_on(line)?);
+        let normal = [D, Z].map(|monomial| line.factor(monomial));
+        let rise = gradient[0] * normal[0] + gradient[1] * normal[1];
+        let scale = (gradient[0].abs() + gradient[1].abs()) * (normal[0].abs() + normal[1].abs());
+        let is_positive = dd + zz > 0.0;
+        let is_below = (rise > 0.0) != is_positive;
+        (rise.abs() > 1e-6 * scale).then_some(ClearSide { is_below, is_positive })
+    }
+
+    /// Returns the point (d, z) of a straight line at which a conic's value is nearest to 0; `None` if the
+    /// conic crosses the line.
+    fn point_nearest_to_0_on(&self, line: &Polynomial) -> Option<[f64; 2]> {
         let mut factors = [Number::int(0), Number::int(0), Number::int(0)];
-        for (monomial, value) in &remainder.0 {
+        for (monomial, value) in &self.on_line(line)?.0 {
             factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
         }
         let [c, b, a] = factors;
@@ -250,23 +273,19 @@ impl Polynomial {
         if difference > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
             return None;
         }
-        // Nearest to the line, the conic decreases toward the side of the other sign.
-        let lowest = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
-        let [line_d, line_z] = [[1, 0, 0, 0], [0, 0, 0, 1]].map(|m| line.factor(m));
-        let rest = line.factor([0; 4]);
-        let (d, z) = if line_d.abs() > line_z.abs() {
-            (-(rest + line_z * lowest) / line_d, lowest)
+        let extreme = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
+        let [of_d, of_z, rest] = [D, Z, [0; 4]].map(|monomial| line.factor(monomial));
+        Some(if of_d.abs() > of_z.abs() {
+            [-(rest + of_z * extreme) / of_d, extreme]
         } else {
-            (lowest, -(rest + line_d * lowest) / line_z)
-        };
-        let direction = [
-            2.0 * dd * d + dz * z + self.factor([1, 0, 0, 0]),
-            dz * d + 2.0 * zz * z + self.factor([0, 0, 0, 1]),
-        ];
-        let rise = direction[0] * line_d + direction[1] * line_z;
-        let scale = (direction[0].abs() + direction[1].abs()) * (line_d.abs() + line_z.abs());
-        let positive = dd + zz > 0.0;
-        (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
+            [extreme, -(rest + of_d * extreme) / of_z]
+        })
+    }
+
+    /// Returns a conic's gradient, in d and z, at a point of the half plane.
+    fn gradient_at(&self, [d, z]: [f64; 2]) -> [f64; 2] {
+        let [dd, dz, zz] = SQUARES.map(|monomial| self.factor(monomial));
+        [2.0 * dd * d + dz * z + self.factor(D), dz * d + 2.0 * zz * z + self.factor(Z)]
     }
 
     /// Returns the coefficient of a monomial, rounded to a double.
@@ -277,6 +296,11 @@ impl Polynomial {
     /// Returns the coefficient of a monomial with 256 bits.
     pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
         self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
+    }
+
+    /// Returns whether this is a polynomial in d and z of degree 2 at most.
+    pub(crate) fn is_conic(&self) -> bool {
+        self.0.keys().all(|[d, x, y, z]| *x == 0 && *y == 0 && d + z <= 2)
     }
 
     /// Returns whether the degree is at most 1.

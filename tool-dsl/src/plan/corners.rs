@@ -19,7 +19,8 @@ pub(super) struct Corner {
 pub(super) fn corners(
     mut points: Vec<Point>,
     whole: &[(Rc<Piece>, [Point; 2])],
-    (shapes, size): (&[CurveFunction<'_>], f64),
+    shapes: &[CurveFunction<'_>],
+    size: f64,
 ) -> Vec<Corner> {
     let tolerance = COINCIDENCE_FRACTION * size;
     let are_near =

@@ -11,6 +11,13 @@ const MIN_SIDE_COST: f64 = 8.0;
 /// The penalty, in bits, for each owner that remains on both sides. Without it, trees grow by half.
 const SHARED_OWNER_PENALTY_BITS: f64 = 0.2;
 
+/// A point with its owner, and the weight of its surroundings.
+pub(super) struct Sample {
+    pub(super) point: Point,
+    pub(super) weight: f64,
+    pub(super) owner: Option<usize>,
+}
+
 /// All samples, in words of up to 64 with the same owner.
 pub(super) struct Samples {
     owners: Vec<usize>,
@@ -21,67 +28,83 @@ pub(super) struct Samples {
     count: usize,
 }
 
-/// A subset of the samples: indices of words, the bits taken from each, and their weight.
+/// Some samples of a word, given by the word's index and their bits.
+#[derive(Clone, Copy)]
+struct WordPart {
+    word: usize,
+    bits: u64,
+    /// The sum of their weights.
+    weight: f64,
+}
+
+/// A subset of the samples.
 #[derive(Default)]
-pub(super) struct SampleSubset(Vec<(usize, u64, f64)>);
+pub(super) struct SampleSubset(Vec<WordPart>);
 
 impl Samples {
-    pub(super) fn new(
-        all: &[(Point, f64, Option<usize>)],
-        shapes: &[CurveFunction<'_>],
-    ) -> Samples {
-        let runs: Vec<&[(Point, f64, Option<usize>)]> =
-            all.chunk_by(|a, b| a.2 == b.2).flat_map(|run| run.chunks(64)).collect();
+    pub(super) fn new(all: &[Sample], shapes: &[CurveFunction<'_>]) -> Samples {
+        let runs: Vec<&[Sample]> =
+            all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
         let below = |shape: &CurveFunction<'_>| {
-            let bits = |run: &&[(Point, f64, Option<usize>)]| {
+            let bits = |run: &&[Sample]| {
                 let mut bits = 0;
-                for (k, (p, ..)) in run.iter().enumerate() {
-                    bits |= u64::from(shape.below(*p)) << k;
+                for (k, sample) in run.iter().enumerate() {
+                    bits |= u64::from(shape.below(sample.point)) << k;
                 }
                 bits
             };
             runs.iter().map(bits).collect()
         };
         let owners: Vec<usize> =
-            runs.iter().map(|run| run[0].2.map_or(0, |owner| owner + 1)).collect();
+            runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
         Samples {
             count: owners.iter().max().map_or(1, |largest| largest + 1),
-            weights: runs.iter().map(|run| run.iter().map(|sample| sample.1).collect()).collect(),
+            weights: runs
+                .iter()
+                .map(|run| run.iter().map(|sample| sample.weight).collect())
+                .collect(),
             below: shapes.iter().map(below).collect(),
             owners,
         }
     }
 
     pub(super) fn all(&self) -> SampleSubset {
-        let word = |(at, weights): (usize, &Vec<f64>)| {
-            (at, u64::MAX >> (64 - weights.len()), weights.iter().sum())
+        let whole = |(word, weights): (usize, &Vec<f64>)| WordPart {
+            word,
+            bits: u64::MAX >> (64 - weights.len()),
+            weight: weights.iter().sum(),
         };
-        SampleSubset(self.weights.iter().enumerate().map(word).collect())
+        SampleSubset(self.weights.iter().enumerate().map(whole).collect())
     }
 
     /// Returns the samples below a curve, and those above.
     pub(super) fn divided(&self, subset: &SampleSubset, curve: CurveIndex) -> [SampleSubset; 2] {
         let mut sides = [SampleSubset::default(), SampleSubset::default()];
-        for word in &subset.0 {
-            for (side, (bits, weight)) in self.sides(*word, curve).into_iter().enumerate() {
-                if bits != 0 {
-                    sides[side].0.push((word.0, bits, weight));
+        for part in &subset.0 {
+            for (side, half) in sides.iter_mut().zip(self.sides(*part, curve)) {
+                if half.bits != 0 {
+                    side.0.push(half);
                 }
             }
         }
         sides
     }
 
-    /// Returns the samples of a word that are below a curve and those above, with their weights.
-    fn sides(&self, (word, bits, weight): (usize, u64, f64), curve: CurveIndex) -> [(u64, f64); 2] {
-        let below = bits & self.below[curve][word];
-        if below == bits {
-            return [(bits, weight), (0, 0.0)];
+    /// Returns the samples that are below a curve, and those above.
+    fn sides(&self, part: WordPart, curve: CurveIndex) -> [WordPart; 2] {
+        let none = WordPart { bits: 0, weight: 0.0, ..part };
+        let below = part.bits & self.below[curve][part.word];
+        if below == part.bits {
+            return [part, none];
         }
         if below == 0 {
-            return [(0, 0.0), (bits, weight)];
+            return [none, part];
         }
-        [below, bits & !below].map(|bits| (bits, self.weight(word, bits)))
+        [below, part.bits & !below].map(|bits| WordPart {
+            bits,
+            weight: self.weight(part.word, bits),
+            ..part
+        })
     }
 
     fn weight(&self, word: usize, mut bits: u64) -> f64 {
@@ -96,8 +119,8 @@ impl Samples {
     /// Returns the entropy of the owner of a sample, in bits.
     pub(super) fn entropy(&self, subset: &SampleSubset) -> f64 {
         let mut counts = vec![0.0; self.count];
-        for (word, _, weight) in &subset.0 {
-            counts[self.owners[*word]] += weight;
+        for part in &subset.0 {
+            counts[self.owners[part.word]] += part.weight;
         }
         let total: f64 = counts.iter().sum();
         counts.iter().map(|count| bits(*count, total)).sum::<f64>() / total.max(f64::MIN_POSITIVE)
@@ -108,11 +131,11 @@ impl Samples {
     pub(super) fn gain(&self, subset: &SampleSubset, entropy: f64, curve: CurveIndex) -> f64 {
         let mut counts = vec![[0.0; 2]; self.count];
         let mut totals = [0.0; 2];
-        for word in &subset.0 {
-            let count = &mut counts[self.owners[word.0]];
-            for (side, (_, weight)) in self.sides(*word, curve).into_iter().enumerate() {
-                count[side] += weight;
-                totals[side] += weight;
+        for part in &subset.0 {
+            let count = &mut counts[self.owners[part.word]];
+            for (side, half) in self.sides(*part, curve).into_iter().enumerate() {
+                count[side] += half.weight;
+                totals[side] += half.weight;
             }
         }
         if totals[0] == 0.0 || totals[1] == 0.0 {

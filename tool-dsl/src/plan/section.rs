@@ -2,7 +2,7 @@
 //! is left.
 
 use super::corners::{Corner, corners};
-use super::samples::{SampleSubset, Samples};
+use super::samples::{Sample, SampleSubset, Samples};
 use super::zero_set::Zeros;
 use super::{MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
@@ -12,8 +12,9 @@ use crate::geometry::cut::{Cut, Cutter, Piece};
 use crate::geometry::outline::{self, Point, minus, norm};
 use crate::geometry::shape::CurveFunction;
 use crate::model::{Model, Over, Section};
+use crate::regionalise::ROUNDING;
 use crate::regionalise::cells;
-use crate::regionalise::{ROUNDING, overlay};
+use crate::regionalise::overlay::{self, ConditionedPart};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -29,6 +30,7 @@ pub(super) type Owners = Tree<Option<usize>>;
 pub(super) const BITS_PER_ADDITION: f64 = 0.01;
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
+
 /// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let mut result = try_trees(model, section, CHORDS_PER_EDGE[0]);
@@ -40,40 +42,54 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
     result
 }
 
+/// The distances of points far outside from the outline, in sizes: 8, 8², …, 8¹⁵.
+fn far_distances(size: f64) -> impl Iterator<Item = f64> {
+    (1..16).map(move |k| size * 8f64.powi(k))
+}
+
+/// The offsets of points in strips from the strips' middle line, in sizes.
+const STRIP_OFFSETS: [f64; 4] = [-0.01, -1e-5, 1e-5, 0.01];
+
+/// Returns points of the half plane far from the point of the axis at the height `middle`, all around.
+fn ring_points(middle: f64, size: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for distance in far_distances(size) {
+        for k in 0..=128 {
+            let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
+            points.push([distance * cos, middle + distance * sin]);
+        }
+    }
+    points
+}
+
+/// Returns points far from the end of a segment, in a thin strip along a unit vector and its opposite.
+fn strip_points(end: Point, direction: Point, size: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for distance in far_distances(size).flat_map(|distance| [distance, -distance]) {
+        for offset in STRIP_OFFSETS {
+            let across = [-direction[1] * offset * size, direction[0] * offset * size];
+            points.push([0, 1].map(|k| end[k] + distance * direction[k] + across[k]));
+        }
+    }
+    points
+}
+
 /// Returns whether a tree has an owner far outside, where there was no piece. The test uses points all
 /// around, and points in thin strips along the lines and normals of the outline.
 pub(super) fn has_owner_far_outside(model: &Model, section: &Section, tree: &Owners) -> bool {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let [low, high] = outline::bounding_box(&section.outline).map(|end| end[1]);
-    let middle = low / 2.0 + high / 2.0;
-    let is_owned = |p: Point| {
-        p[0] >= 0.0 && tree.leaf_at(&|curve| shapes[curve].value([p[0], p[1]])).is_some()
-    };
-    let distances = || (1..16).map(|k| size * 8f64.powi(k));
-    let any_around = distances().any(|distance| {
-        (0..=128).any(|k| {
-            let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
-            is_owned([distance * cos, middle + distance * sin])
-        })
-    });
-    let any_in_strips = || {
-        section.outline.iter().any(|segment| {
-            let [from, to] = segment.ends();
-            let direction = minus(to, from).map(|part| part / norm(minus(to, from)));
-            [from, to].into_iter().any(|end| {
-                [direction, [-direction[1], direction[0]]].into_iter().any(|direction| {
-                    distances().chain(distances().map(|distance| -distance)).any(|distance| {
-                        [-0.01, -1e-5, 1e-5, 0.01].into_iter().any(|offset| {
-                            let across =
-                                [-direction[1] * offset * size, direction[0] * offset * size];
-                            is_owned([0, 1].map(|k| end[k] + distance * direction[k] + across[k]))
-                        })
-                    })
-                })
-            })
-        })
-    };
-    any_around || any_in_strips()
+    let mut points = ring_points(low / 2.0 + high / 2.0, size);
+    for segment in &section.outline {
+        let [from, to] = segment.ends();
+        let along = minus(to, from).map(|part| part / norm(minus(to, from)));
+        for end in [from, to] {
+            points.extend(strip_points(end, along, size));
+            points.extend(strip_points(end, [-along[1], along[0]], size));
+        }
+    }
+    let mut in_half_plane = points.into_iter().filter(|p| p[0] >= 0.0);
+    in_half_plane.any(|p| tree.leaf_at(&|curve| shapes[curve].value(p)).is_some())
 }
 
 fn try_trees(
@@ -82,123 +98,177 @@ fn try_trees(
     chords: u32,
 ) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
-    let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
-    let whole_piece = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
+    let outer = section.outer.cells(chords);
+    let polygons = Polygons { model, section, chords, outer, shapes: &shapes, size };
+    let owners = polygons.plan_inside()?;
+    let clearances = polygons.plan_outside(&owners)?;
+    Ok((owners, clearances))
+}
 
-    let mut inner_input = PlanInput::default();
-    for cell in &inner {
-        match &section.over {
-            None => inner_input
-                .add(cell, [whole_piece(cell, Some(cell.part))], |_| Some(Some(cell.part))),
-            Some(over) => {
-                let pieces =
-                    overlay::divided(whole_piece(cell, None), &over.conditions, &shapes, size);
-                let owned = pieces.into_iter().filter_map(|(piece, holding)| {
-                    let owner = over.region(cell.part, *holding.first()?)?;
-                    Some(Piece { owner: Some(owner), ..piece })
-                });
-                inner_input.add(cell, owned, |p| over.owner(cell.part, p, &shapes, size).map(Some));
+/// A section whose curved edges are chords.
+struct Polygons<'m> {
+    model: &'m Model,
+    section: &'m Section,
+    /// The number of chords per curved edge.
+    chords: u32,
+    /// The cells outside the solid.
+    outer: Vec<cells::Cell>,
+    /// The model's curves.
+    shapes: &'m [CurveFunction<'m>],
+    /// The diagonal of the outline's bounding box, in the file's unit.
+    size: f64,
+}
+
+impl Polygons<'_> {
+    fn piece(&self, cell: &cells::Cell, owner: Option<usize>) -> Piece {
+        overlay::piece(cell, owner, self.shapes, self.size)
+    }
+
+    /// Returns the leaf of a tree at a point.
+    fn leaf_at(&self, tree: &Owners, p: Point) -> Option<usize> {
+        *tree.leaf_at(&|curve| self.shapes[curve].value(p))
+    }
+
+    /// Plans the tree of regions.
+    fn plan_inside(&self) -> Result<Owners, Diagnostic> {
+        let Polygons { model, section, shapes, size, .. } = *self;
+        let mut input = PlanInput::default();
+        for cell in section.inner.cells(self.chords) {
+            let Some(over) = &section.over else {
+                input.add_whole(&cell, self.piece(&cell, Some(cell.part)));
+                continue;
+            };
+            let whole = self.piece(&cell, None);
+            for (piece, holding) in overlay::divided(whole, &over.conditions, shapes, size) {
+                let first = holding.first().copied();
+                let region = first.and_then(|condition| over.region(cell.part, condition));
+                if region.is_some() {
+                    input.add_piece(Piece { owner: region, ..piece });
+                }
             }
+            input.add_points(&cell, |p| over.owner_at(cell.part, p, shapes, size));
+        }
+        for cell in &self.outer {
+            input.add_whole(cell, self.piece(cell, None));
+        }
+        let inside = model.regions.iter().map(|region| &region.inside).collect();
+        let owners = plan(model, shapes, size, input, inside)?;
+        // A sliver between a curve and its chord may have been given to the wrong owner.
+        let part_of = |region: usize| match &section.over {
+            Some(over) => over.regions[region].part,
+            None => region,
+        };
+        let part_at = |p, _| self.leaf_at(&owners, p).map(part_of);
+        match section.inner.wrongly_assigned_point(part_at) {
+            Some(p) => Err(inseparable_owners(model, p)),
+            None => Ok(owners),
         }
     }
-    for cell in &outer {
-        inner_input.add(cell, [whole_piece(cell, None)], |_| Some(None));
-    }
-    let inside = model.regions.iter().map(|region| &region.inside).collect();
-    let owners = plan(model, &shapes, size, inner_input, inside)?;
-    // A sliver between a curve and its chord may have been given to the wrong owner.
-    let owner = |p: Point| *owners.leaf_at(&|curve| shapes[curve].value(p));
-    let part = |region: usize| match &section.over {
-        Some(over) => over.regions[region].0,
-        None => region,
-    };
-    if let Some(p) = section.inner.wrongly_assigned_point(|p, _| owner(p).map(part)) {
-        return Err(inseparable_owners(model, p));
-    }
 
-    let mut outside = PlanInput::default();
-    for cell in &outer {
-        outside.add(cell, [whole_piece(cell, Some(cell.part))], |_| Some(Some(cell.part)));
-    }
-    // Rounding may move a point of the surface just below it, so the same features continue there.
-    for (piece, cell) in section.inner.shell(chords) {
-        let Some(part) = section.outer.part_of(section.outer.segment_count() - 1 - piece) else {
-            continue;
+    /// Plans the tree of distances to the nearest features outside, given that of regions.
+    fn plan_outside(&self, owners: &Owners) -> Result<Tree<Id>, Diagnostic> {
+        let Polygons { model, section, shapes, size, .. } = *self;
+        let mut input = PlanInput::default();
+        for cell in &self.outer {
+            input.add_whole(cell, self.piece(cell, Some(cell.part)));
+        }
+        // Rounding may move a point of the surface just below it, so the same features continue there.
+        for (piece, cell) in section.inner.shell(self.chords) {
+            // The outside runs along the same segments in reverse.
+            let outer_piece = section.outer.segment_count() - 1 - piece;
+            if let Some(part) = section.outer.part_of(outer_piece) {
+                input.add_whole(&cell, self.piece(&cell, Some(part)));
+            }
+        }
+        let conditions = section.outside.iter().map(|part| &part.condition).collect();
+        let nearest = plan(model, shapes, size, input, conditions)?;
+        let part_at = |p, distance| {
+            // A region may own an outside point only within rounding of the surface.
+            let is_free = distance <= ROUNDING * size || self.leaf_at(owners, p).is_none();
+            self.leaf_at(&nearest, p).filter(|_| is_free)
         };
-        outside.add(&cell, [whole_piece(&cell, Some(part))], |_| None);
+        if let Some(p) = section.outer.wrongly_assigned_point(part_at) {
+            return Err(inseparable_owners(model, p));
+        }
+        let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
+        let clearances = nearest.map(&clearance);
+        Ok(clearances.unwrap_or(Tree::Leaf(section.outside[0].clearance)))
     }
-    let neighbour_conditions = section.outside.iter().map(|part| &part.condition).collect();
-    let outside = plan(model, &shapes, size, outside, neighbour_conditions)?;
-    let part_at = |p: Point| *outside.leaf_at(&|curve| shapes[curve].value(p));
-    let is_free = |p, distance| distance <= ROUNDING * size || owner(p).is_none();
-    if let Some(p) = section
-        .outer
-        .wrongly_assigned_point(|p, distance| part_at(p).filter(|_| is_free(p, distance)))
-    {
-        return Err(inseparable_owners(model, p));
-    }
-    let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
-    let outside = outside.map(&clearance);
-    Ok((owners, outside.unwrap_or(Tree::Leaf(section.outside[0].clearance))))
+}
+
+/// The owner of a point.
+enum OwnerAt {
+    /// A region, or `None` outside the solid.
+    Known(Option<usize>),
+    /// The point is on a border within tolerance, or in no region of its part.
+    Undecided,
 }
 
 /// The input of a plan: pieces to separate, weighted sample points, and points to check the tree with.
 #[derive(Default)]
 pub(super) struct PlanInput {
     pub(super) pieces: Vec<Rc<Piece>>,
-    samples: Vec<(Point, f64, Option<usize>)>,
+    samples: Vec<Sample>,
     witnesses: Vec<(Point, Option<usize>)>,
     pub(super) corners: Vec<Point>,
 }
 
 impl PlanInput {
-    /// Adds the pieces of a cell, and its points where their owner is known.
-    fn add(
-        &mut self,
-        cell: &cells::Cell,
-        pieces: impl IntoIterator<Item = Piece>,
-        owner: impl Fn(Point) -> Option<Option<usize>>,
-    ) {
-        for piece in pieces {
-            let origin = self.pieces.len();
-            self.pieces.push(Rc::new(Piece { origin, ..piece }));
-        }
+    /// Adds a cell with one owner, that of its piece.
+    fn add_whole(&mut self, cell: &cells::Cell, piece: Piece) {
+        let owner = piece.owner;
+        self.add_piece(piece);
+        self.add_points(cell, |_| OwnerAt::Known(owner));
+    }
+
+    fn add_piece(&mut self, piece: Piece) {
+        let origin = self.pieces.len();
+        self.pieces.push(Rc::new(Piece { origin, ..piece }));
+    }
+
+    /// Adds a cell's corners, and its points where their owner is known.
+    fn add_points(&mut self, cell: &cells::Cell, owner_at: impl Fn(Point) -> OwnerAt) {
         self.corners.extend(&cell.corners);
-        let samples = cell.samples.iter();
-        self.samples.extend(samples.filter_map(|(p, weight)| Some((*p, *weight, owner(*p)?))));
-        self.witnesses.extend(cell.witnesses.iter().filter_map(|p| Some((*p, owner(*p)?))));
+        for &(point, weight) in &cell.samples {
+            if let OwnerAt::Known(owner) = owner_at(point) {
+                self.samples.push(Sample { point, weight, owner });
+            }
+        }
+        for &point in &cell.witnesses {
+            if let OwnerAt::Known(owner) = owner_at(point) {
+                self.witnesses.push((point, owner));
+            }
+        }
     }
 }
 
 impl Over {
     /// Returns the region of a part in which the given condition is the first to hold.
     fn region(&self, part: usize, condition: usize) -> Option<usize> {
-        self.regions.iter().position(|pair| *pair == (part, condition))
+        self.regions.iter().position(|region| *region == ConditionedPart { part, condition })
     }
 
     /// Returns the region of a point in a part, unless the point is on a border within tolerance.
-    fn owner(
-        &self,
-        part: usize,
-        p: Point,
-        shapes: &[CurveFunction<'_>],
-        size: f64,
-    ) -> Option<usize> {
+    fn owner_at(&self, part: usize, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> OwnerAt {
         let on_border = Cell::new(false);
-        let holds = |sign: i8| {
+        let first_condition = |sign_on_border: f64| {
             let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
                 0 => {
                     on_border.set(true);
-                    f64::from(sign)
+                    sign_on_border
                 }
                 _ => shapes[curve].value(p),
             };
             self.conditions.iter().position(|condition| condition.holds(&value))
         };
-        let low = holds(-1)?;
+        let low = first_condition(-1.0);
         // Away from every curve that was evaluated, the sign does not matter.
-        let high = if on_border.get() { holds(1)? } else { low };
-        if low == high { self.region(part, low) } else { None }
+        let high = if on_border.get() { first_condition(1.0) } else { low };
+        let decided = low.filter(|_| low == high);
+        match decided.and_then(|condition| self.region(part, condition)) {
+            Some(region) => OwnerAt::Known(Some(region)),
+            None => OwnerAt::Undecided,
+        }
     }
 }
 
@@ -217,8 +287,8 @@ fn plan<'m>(
     let all = samples.all();
     let with_bounding_box = |piece: &Rc<Piece>| (Rc::clone(piece), piece.bounding_box());
     let whole_pieces: Vec<_> = input.pieces.iter().map(with_bounding_box).collect();
-    let corners = corners(input.corners, &whole_pieces, (shapes, size));
-    let all_corners = (0..corners.len()).collect();
+    let corners = corners(input.corners, &whole_pieces, shapes, size);
+    let all_corners: Vec<usize> = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
         shapes,
@@ -233,7 +303,7 @@ fn plan<'m>(
         tests: 0,
     };
     let candidates = (0..model.curves.len()).collect();
-    let tree = planner.tree(&input.pieces, (all, all_corners), candidates)?;
+    let tree = planner.tree(&input.pieces, &all, &all_corners, candidates)?;
     for (p, owner) in input.witnesses {
         if *tree.leaf_at(&|curve| shapes[curve].value(p)) != owner {
             return Err(inseparable_owners(model, p));
@@ -272,35 +342,44 @@ pub(super) struct Halves {
     pub(super) above: Vec<Rc<Piece>>,
 }
 
+/// A curve to split by, its division of the pieces, and the side to which its own points go.
+struct Choice {
+    curve: CurveIndex,
+    halves: Halves,
+    zeros: Zeros,
+}
+
 impl Planner<'_> {
     pub(super) fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
-        (samples, corners): (SampleSubset, Vec<usize>),
+        samples: &SampleSubset,
+        corners: &[usize],
         mut candidates: Vec<CurveIndex>,
     ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
-            return Ok(self.leaf(first, pieces, &corners));
+            return Ok(self.leaf(first, pieces, corners));
         }
-        let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut candidates) else {
-            return Ok(self.leaf(self.largest_owner(pieces), pieces, &corners));
+        let Some(choice) = self.choose(pieces, samples, &mut candidates) else {
+            return Ok(self.leaf(self.largest_owner(pieces), pieces, corners));
         };
+        let Choice { curve, halves, zeros } = choice;
         self.used[curve] = true;
         self.tests += 1;
         if self.tests > MAX_TESTS {
             return Err(super::too_large(self.model));
         }
         candidates.retain(|other| *other != curve);
-        let [low, high] = self.samples.divided(&samples, curve);
+        let [low, high] = self.samples.divided(samples, curve);
         let on_curve = match zeros {
-            Zeros::Both => Some(self.zero_set_tree(curve, &halves, &corners, &candidates)?),
+            Zeros::Both => Some(self.zero_set_tree(curve, &halves, corners, &candidates)?),
             _ => None,
         };
         let [corners_below, corners_above] =
-            [-1, 1].map(|side| self.corners_on(side, curve, &corners));
-        let below = self.tree(&halves.below, (low, corners_below), candidates.clone())?;
-        let above = self.tree(&halves.above, (high, corners_above), candidates)?;
+            [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        let below = self.tree(&halves.below, &low, &corners_below, candidates.clone())?;
+        let above = self.tree(&halves.above, &high, &corners_above, candidates)?;
         Ok(match on_curve {
             Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
             Some(on_curve) if on_curve != below => {
@@ -318,7 +397,7 @@ impl Planner<'_> {
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
         candidates: &mut Vec<CurveIndex>,
-    ) -> Option<(CurveIndex, Halves, Zeros)> {
+    ) -> Option<Choice> {
         let uncertain = self.samples.entropy(samples);
         let mut ranked: Vec<(f64, CurveIndex)> = candidates
             .iter()
@@ -328,12 +407,11 @@ impl Planner<'_> {
                 (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed_rank =
-            |curve: CurveIndex| self.model.first_curves.iter().position(|f| *f == curve);
-        ranked.sort_by(|a, b| {
-            let order = |curve| listed_rank(curve).unwrap_or(usize::MAX);
-            order(a.1).cmp(&order(b.1)).then(b.0.total_cmp(&a.0))
-        });
+        let listed_rank = |curve: CurveIndex| {
+            let listed = self.model.first_curves.iter().position(|first| *first == curve);
+            listed.unwrap_or(usize::MAX)
+        };
+        ranked.sort_by(|a, b| listed_rank(a.1).cmp(&listed_rank(b.1)).then(b.0.total_cmp(&a.0)));
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
@@ -342,33 +420,27 @@ impl Planner<'_> {
                 continue;
             }
             // A curve that cuts through cells without separating owners is kept as a last resort.
-            let owners = |pieces: &[Rc<Piece>]| {
-                let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
-                owners.sort_unstable();
-                owners.dedup();
-                owners.len()
-            };
-            let owner_count = owners(pieces);
-            if owners(&halves.below) == owner_count && owners(&halves.above) == owner_count {
-                fallback = fallback.or(Some((curve, halves, Zeros::Below)));
+            let count = owner_count(pieces);
+            if owner_count(&halves.below) == count && owner_count(&halves.above) == count {
+                fallback.get_or_insert((curve, halves));
                 continue;
             }
             // A curve whose points belong to both sides needs a tree of its own for them.
             let zeros = self.zeros(curve, &halves);
             if zeros != Zeros::Both {
-                return Some((curve, halves, zeros));
+                return Some(Choice { curve, halves, zeros });
             }
-            with_double_zeros.get_or_insert((curve, halves, zeros));
+            with_double_zeros.get_or_insert(Choice { curve, halves, zeros });
             skipped_count += 1;
             if skipped_count > MAX_SKIPPED_CURVES {
                 break;
             }
         }
-        let fallback = fallback.map(|(curve, halves, _)| {
+        with_double_zeros.or_else(|| {
+            let (curve, halves) = fallback?;
             let zeros = self.zeros(curve, &halves);
-            (curve, halves, zeros)
-        });
-        with_double_zeros.or(fallback)
+            Some(Choice { curve, halves, zeros })
+        })
     }
 
     /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
@@ -427,6 +499,14 @@ impl Planner<'_> {
         }
         halves
     }
+}
+
+/// Returns the number of different owners of some pieces.
+fn owner_count(pieces: &[Rc<Piece>]) -> usize {
+    let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    owners.len()
 }
 
 fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {

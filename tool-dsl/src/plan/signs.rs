@@ -11,7 +11,7 @@ use crate::model::Model;
 /// Returns the tree of owners for regions of which only the conditions are known.
 ///
 /// # Errors
-/// If the tree would have more than [`LARGEST`] tests.
+/// If the tree would have more than [`MAX_TESTS`] tests.
 pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Diagnostic> {
     let samples = samples(model, extent);
     let all_samples: Vec<u32> = (0..samples.len() as u32).collect();

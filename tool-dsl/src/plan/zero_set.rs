@@ -89,8 +89,9 @@ impl Planner<'_> {
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
         let [corners_below, corners_above] =
             [-1, 1].map(|side| self.corners_on(side, curve, corners));
-        let below = self.tree(&below, (SampleSubset::default(), corners_below), open.to_vec())?;
-        let above = self.tree(&above, (SampleSubset::default(), corners_above), open.to_vec())?;
+        let none = SampleSubset::default();
+        let below = self.tree(&below, &none, &corners_below, open.to_vec())?;
+        let above = self.tree(&above, &none, &corners_above, open.to_vec())?;
         Ok(first(&below, &above))
     }
 }

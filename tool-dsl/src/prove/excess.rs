@@ -17,14 +17,14 @@ struct FromPoint {
 
 impl FromPoint {
     fn of(depth: &RootForm) -> Option<FromPoint> {
-        let (factor, under) = depth.root().filter(|_| depth.is_distance())?;
-        let half = |coord| &under.exact_factor(monomial_of(coord)) / &Number::int(-2);
+        let root = depth.root().filter(|_| depth.is_distance())?;
+        let half = |coord| &root.radicand.exact_factor(monomial_of(coord)) / &Number::int(-2);
         // The half plane has D and Z, space has the other three; an absent coordinate is 0.
         let radial = half(Coord::D);
         let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
         let first = if radial.is_zero() { x } else { radial };
         Some(FromPoint {
-            sign: if factor.is_negative() { -1 } else { 1 },
+            sign: if root.factor.is_negative() { -1 } else { 1 },
             centre: [first, y, z],
             rest: depth.part().exact_factor([0; 4]),
         })

@@ -13,13 +13,13 @@ use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::enclosed::EnclosedPolynomial;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
-
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
+use std::cell::OnceCell;
 
 /// The largest difference, relative to the tool's size, between a depth and the distance to its segment for
 /// the two to count as equal. The difference is added to the certificate's slack, so the proof does not
@@ -45,8 +45,8 @@ impl End {
 
 type Ends = Vec<End>;
 
-/// A lower bound of an end's function below and above a curve; the outer `None` where it is not known yet.
-type Bounds = [Option<Option<EnclosedPolynomial>>; 2];
+/// Lower bounds of an end's function above (0) and below (1) a curve. A cell is empty until it is asked for.
+type Bounds = [OnceCell<Option<EnclosedPolynomial>>; 2];
 
 /// The segments of a profile.
 pub(super) struct ProfileFeet {
@@ -69,7 +69,7 @@ impl ProfileFeet {
         let (features, whole) = (section.inner.features(), tool.extent.cell());
         let mut max_difference = 0.0f64;
         let ends = model.regions.iter().enumerate().map(|(index, region)| {
-            let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
+            let part = section.over.as_ref().map_or(index, |over| over.regions[index].part);
             let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
                     let segment = section.outline.get(piece)?;
@@ -131,15 +131,16 @@ impl ProfileFeet {
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
                 // Where the end's function is negative, the conic has the opposite sign throughout.
-                let clear = curve.clear_of(end)? == (below, true);
-                return clear.then(|| Polynomial::zero().enclosed());
+                let opposite = ClearSide { is_below: true, is_positive: below };
+                let is_clear = curve.clear_side_of(end)? == opposite;
+                return is_clear.then(|| Polynomial::zero().enclosed());
             }
             let sign = Number::int(if below { 1 } else { -1 });
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())
         };
         let known = &mut self.bounds[owner][end];
-        known.resize(curves.len(), [None, None]);
-        let bound = known[curve][usize::from(below)].get_or_insert_with(bound);
+        known.resize(curves.len(), Bounds::default());
+        let bound = known[curve][usize::from(below)].get_or_init(bound);
         bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }

@@ -20,9 +20,19 @@
 //! It is `x sin(β/2) = 2 ρ` from a straight side or from an arc that bends away. From an arc of radius `R` that
 //! bends toward the bisector it is `R - √(R² - 2 R x sin(β/2) + x²)`, which is at least `ρ` if
 //! `R ≥ 2 ρ / sin²(β/2)`. From all other segments it is at least as far as the narrowest passage less `x`,
-//! which is more than `x`. The surface of the solid is therefore at most `x = 4 s / sin(β/2)` from that point.
+//! which is more than `x`. For points beside a corner and on arcs it is a little farther: the surface of the
+//! solid is at most `X = 9/8 x = 4.5 s / sin(β/2)` from that point (Theorem 3 of `docs/proofs.md`).
 
 use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
+
+/// `X sin(β/2) / s`. The point on the bisector is at `x = 4 s / sin(β/2)`; an eighth more is for points beside
+/// the corner and for arcs, which are off their tangents.
+const DISTANCE_FACTOR: f64 = 4.5;
+/// The least radius of an arc, in `X / sin(β/2)`. Along a length of `2 x` such an arc leaves its tangent by
+/// `(2 x)² / (200 X)` at most, less than `x / 50`.
+const MIN_RADIUS_FACTOR: f64 = 100.0;
+/// The least distance of test points from the profile, in `s`: twice `ρ`, beyond which the two sets are known.
+const TEST_OFFSET_FACTOR: f64 = 4.0;
 
 /// The narrowest passage and the sharpest corner of a profile.
 pub(super) struct Profile {
@@ -40,18 +50,21 @@ impl Profile {
         let radii = outline.iter().filter_map(|piece| Some(piece.round()?.1));
         let min_radius = radii.fold(f64::INFINITY, f64::min);
         let mut narrowest = 2.0 * min_radius;
-        let last = outline.len().saturating_sub(1);
         for (index, piece) in outline.iter().enumerate() {
             for (other, other_segment) in outline.iter().enumerate().skip(index + 1) {
-                let joint = (other == index + 1).then_some([1, 0]);
-                narrowest = narrowest.min(facing_distance(piece, other_segment, joint.as_slice()));
+                let joints: &[_] = if other == index + 1 { &[[1, 0]] } else { &[] };
+                narrowest = narrowest.min(facing_distance(piece, other_segment, joints));
             }
             // The first and last segments continue as their own mirror images, which run in the opposite
             // sense.
             for (other, image) in mirrored.iter().enumerate().skip(index) {
-                let ends = [(index == 0).then_some([0, 1]), (index == last).then_some([1, 0])];
-                let joints: Vec<_> =
-                    ends.into_iter().flatten().filter(|_| other == index).collect();
+                let mut joints = Vec::new();
+                if other == index && index == 0 {
+                    joints.push([0, 1]);
+                }
+                if other == index && index + 1 == outline.len() {
+                    joints.push([1, 0]);
+                }
                 narrowest = narrowest.min(facing_distance(piece, image, &joints));
             }
         }
@@ -59,6 +72,8 @@ impl Profile {
         let closed_curve = || outline.iter().chain(mirrored.iter().rev());
         let sharpest = closed_curve().zip(closed_curve().cycle().skip(1)).map(|(before, after)| {
             let [before, after] = [before.tangent(true), after.tangent(false)];
+            // A turn to the left is positive. The outside angle is β = π + turn, and sin(β/2) = cos(turn/2).
+            // Where that is more than π, the corner is nearer to points on the bisector than its sides are.
             let turn = cross(before, after).atan2(dot(before, after));
             (0.5 * turn.min(0.0)).cos()
         });
@@ -69,10 +84,10 @@ impl Profile {
     /// where the solid ends, and the points that decide which side is solid lie at a distance of `test_offset`
     /// from the profile. Returns `None` if this does not prove that the profile encloses the solid.
     pub(super) fn max_distance(&self, slack: f64, test_offset: f64) -> Option<f64> {
-        let max_distance = 4.5 * slack / self.sharpest;
+        let max_distance = DISTANCE_FACTOR * slack / self.sharpest;
         let proved = 2.0 * max_distance < self.narrowest
-            && 100.0 * max_distance / self.sharpest < self.min_radius
-            && 4.0 * slack < test_offset;
+            && MIN_RADIUS_FACTOR * max_distance / self.sharpest < self.min_radius
+            && TEST_OFFSET_FACTOR * slack < test_offset;
         proved.then_some(max_distance)
     }
 }
@@ -91,8 +106,8 @@ fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64
     let is_between_normals =
         |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
     for [p, q] in normals(one, other) {
-        let facing_distance = dot(one.inward(p), other.inward(q)) < 0.0;
-        if facing_distance && is_between_normals(one, p) && is_between_normals(other, q) {
+        let inward_sides_oppose = dot(one.inward(p), other.inward(q)) < 0.0;
+        if inward_sides_oppose && is_between_normals(one, p) && is_between_normals(other, q) {
             min_distance = min_distance.min(norm(minus(p, q)));
         }
     }

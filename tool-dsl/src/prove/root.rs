@@ -8,11 +8,39 @@ use crate::formula::{NEGATIVE, POSITIVE, Signs};
 use crate::number::Number;
 use std::collections::HashMap;
 
-/// `l + k √P`
+/// `l + k √P`: `l` is the polynomial and `k √P` the root.
 #[derive(Clone, Debug)]
 pub(super) struct RootForm {
     polynomial: Polynomial,
-    root: Option<(Number, Polynomial)>,
+    root: Option<RootTerm>,
+}
+
+/// `k √P`: `k` is the factor and `P` the radicand.
+#[derive(Clone, Debug)]
+pub(super) struct RootTerm {
+    pub(super) factor: Number,
+    pub(super) radicand: Polynomial,
+}
+
+impl RootTerm {
+    /// Returns the root with another factor, unless that is 0.
+    fn with_factor(&self, factor: Number) -> Option<RootTerm> {
+        (!factor.is_zero()).then(|| RootTerm { factor, radicand: self.radicand.clone() })
+    }
+
+    fn scaled(&self, by: &Number) -> RootTerm {
+        RootTerm { factor: &self.factor * by, radicand: self.radicand.clone() }
+    }
+
+    /// Returns `k² P`.
+    fn square(&self) -> Polynomial {
+        self.radicand.scaled(&(&self.factor * &self.factor))
+    }
+
+    pub(super) fn has_radicand_of(&self, other: &RootTerm) -> bool {
+        let ratio = self.radicand.ratio(&other.radicand);
+        ratio.is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)))
+    }
 }
 
 /// The agreement of two depths on a curve.
@@ -121,10 +149,8 @@ impl<'g> Forms<'g> {
         let of = |id: &Id| self.forms.get(id)?.as_ref();
         match self.graph.node(id) {
             Node::Sqrt(a) => {
-                let inner = of(a)?;
-                let root =
-                    (inner.root.is_none()).then(|| (Number::int(1), inner.polynomial.clone()))?;
-                Some(RootForm { polynomial: Polynomial::zero(), root: Some(root) })
+                let radicand = of(a)?.polynomial()?.clone();
+                Some(RootForm::new(Polynomial::zero(), Number::int(1), radicand))
             }
             Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
             Node::Add(a, b) => of(a)?.plus(of(b)?),
@@ -144,7 +170,7 @@ impl<'g> Forms<'g> {
 impl RootForm {
     /// Returns `polynomial + factor √radicand`.
     pub(super) fn new(polynomial: Polynomial, factor: Number, radicand: Polynomial) -> RootForm {
-        RootForm { polynomial, root: Some((factor, radicand)) }
+        RootForm { polynomial, root: Some(RootTerm { factor, radicand }) }
     }
 
     /// Returns an upper bound of the difference of two distances, with root factors of ±1, in a box; `None`
@@ -155,10 +181,11 @@ impl RootForm {
             self.polynomial.clone().plus(&other.polynomial.scaled(&minus_one)).over(cell).abs();
         match (&self.root, &other.root) {
             (None, None) => Some(polynomial.high),
-            (Some((k, p)), Some((m, q))) => {
+            (Some(a), Some(b)) => {
                 // |√P - √Q| is at most √|P - Q|.
-                let squares = p.clone().plus(&q.scaled(&minus_one)).over(cell).abs();
-                k.nearly_equals(m).then(|| polynomial.plus(squares.sqrt()).high)
+                let squares =
+                    a.radicand.clone().plus(&b.radicand.scaled(&minus_one)).over(cell).abs();
+                a.factor.nearly_equals(&b.factor).then(|| polynomial.plus(squares.sqrt()).high)
             }
             _ => None,
         }
@@ -172,59 +199,55 @@ impl RootForm {
     /// Returns a polynomial that is zero wherever the form is. A second polynomial, if present, must be
     /// positive for the first to have the form's sign too.
     pub(super) fn curve(&self) -> Option<(Polynomial, Option<Polynomial>)> {
-        let Some((k, p)) = &self.root else { return Some((self.polynomial.clone(), None)) };
+        let Some(root) = &self.root else { return Some((self.polynomial.clone(), None)) };
         // (l + k √P) (l - k √P) = l² - k² P. The second factor has the sign of l where k has the opposite
         // sign.
-        let sign = Number::int(if k.is_negative() { 1 } else { -1 });
-        Some((self.times_conjugate(k, p)?.scaled(&sign), Some(self.polynomial.scaled(&sign))))
+        let sign = Number::int(if root.factor.is_negative() { 1 } else { -1 });
+        Some((self.times_conjugate()?.scaled(&sign), Some(self.polynomial.scaled(&sign))))
     }
 
-    /// `l² - k² P`
-    fn times_conjugate(&self, k: &Number, p: &Polynomial) -> Option<Polynomial> {
-        Some(self.polynomial.times(&self.polynomial)?.plus(&p.scaled(&-&(k * k))))
+    /// Returns `l² - k² P`, if there is a root.
+    fn times_conjugate(&self) -> Option<Polynomial> {
+        let square = self.root.as_ref()?.square();
+        Some(self.polynomial.times(&self.polynomial)?.plus(&square.scaled(&Number::int(-1))))
     }
 
     fn scaled(&self, factor: &Number) -> RootForm {
         RootForm {
             polynomial: self.polynomial.scaled(factor),
-            root: self.root.as_ref().map(|(k, p)| (k * factor, p.clone())),
+            root: self.root.as_ref().map(|root| root.scaled(factor)),
         }
     }
 
     fn plus(&self, other: &RootForm) -> Option<RootForm> {
         let root = match (&self.root, &other.root) {
             (root, None) | (None, root) => root.clone(),
-            (Some((k, p)), Some((m, q))) => {
-                let same = p.ratio(q).is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)));
-                let sum = k + m;
-                same.then(|| (!sum.is_zero()).then(|| (sum, p.clone())))?
-            }
+            (Some(a), Some(b)) if a.has_radicand_of(b) => a.with_factor(&a.factor + &b.factor),
+            _ => return None,
         };
         Some(RootForm { polynomial: self.polynomial.clone().plus(&other.polynomial), root })
     }
 
     /// `(c + k √P)² = c² + k² P + 2 c k √P`
     fn square(&self) -> Option<RootForm> {
-        let (c, (k, p)) = (self.polynomial.constant()?, self.root.as_ref()?);
-        let polynomial = Polynomial::from_constant(&(&c * &c)).plus(&p.scaled(&(k * k)));
-        let doubled = &(&Number::int(2) * &c) * k;
-        Some(RootForm { polynomial, root: (!doubled.is_zero()).then(|| (doubled, p.clone())) })
+        let (c, root) = (self.polynomial.constant()?, self.root.as_ref()?);
+        let polynomial = Polynomial::from_constant(&(&c * &c)).plus(&root.square());
+        let doubled = &(&Number::int(2) * &c) * &root.factor;
+        Some(RootForm { polynomial, root: root.with_factor(doubled) })
     }
 
     /// `(m² - k² P) γ / (m + k √P) = γ (m - k √P)`, the form in which depths below flat arcs are written.
     fn over(&self, divisor: &RootForm) -> Option<RootForm> {
-        if self.root.is_some() {
-            return None;
-        }
-        let conjugate = RootForm {
-            polynomial: divisor.polynomial.clone(),
-            root: divisor.root.as_ref().map(|(k, p)| (-k, p.clone())),
-        };
-        let Some((k, p)) = &divisor.root else {
+        let dividend = self.polynomial()?;
+        let Some(root) = &divisor.root else {
             let divisor = divisor.polynomial.constant()?;
             return Some(self.scaled(&Number::int(1).checked_div(&divisor)?));
         };
-        Some(conjugate.scaled(&self.polynomial.ratio(&divisor.times_conjugate(k, p)?)?))
+        let conjugate = RootForm {
+            polynomial: divisor.polynomial.clone(),
+            root: Some(root.scaled(&Number::int(-1))),
+        };
+        Some(conjugate.scaled(&dividend.ratio(&divisor.times_conjugate()?)?))
     }
 
     /// Returns the difference of two forms, with roots eliminated by squaring.
@@ -235,16 +258,15 @@ impl RootForm {
             let (squared, branch) = difference.curve()?;
             return Some(Difference { squared, branch, is_opposite: false, positive: None });
         }
-        let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
+        let (a, b) = (self.root.as_ref()?, other.root.as_ref()?);
         let constant_difference =
             self.polynomial.clone().plus(&other.polynomial.scaled(&minus)).constant()?;
-        let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
-        let squares_difference = a.clone().plus(&b.scaled(&minus));
+        let squares_difference = a.square().plus(&b.square().scaled(&minus));
         if constant_difference.is_zero() {
-            let (is_opposite, squared) = (k.is_negative(), squares_difference);
-            let same_sign = is_opposite == m.is_negative();
+            let is_opposite = a.factor.is_negative();
+            let same_sign = is_opposite == b.factor.is_negative();
             return same_sign.then_some(Difference {
-                squared,
+                squared: squares_difference,
                 branch: None,
                 is_opposite,
                 positive: None,
@@ -255,13 +277,17 @@ impl RootForm {
         // sign of m, u - m √Q has the sign of m (u² - m² Q).
         let square = &constant_difference * &constant_difference;
         let leading = squares_difference.plus(&Polynomial::from_constant(&square));
-        let squared = leading.times(&leading)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
-        let same = constant_difference.is_negative() == k.is_negative();
+        let squared =
+            leading.times(&leading)?.plus(&a.square().scaled(&(&Number::int(-4) * &square)));
+        let same = constant_difference.is_negative() == a.factor.is_negative();
         let branch = Some(leading.scaled(&Number::int(if same { -1 } else { 1 })));
-        let first =
-            RootForm::new(Polynomial::from_constant(&constant_difference), k.clone(), p.clone());
-        let positive = Some(first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 })));
-        Some(Difference { squared, branch, is_opposite: same != m.is_negative(), positive })
+        let first = RootForm {
+            polynomial: Polynomial::from_constant(&constant_difference),
+            root: Some(a.clone()),
+        };
+        let is_negative = b.factor.is_negative();
+        let positive = Some(first.scaled(&Number::int(if is_negative { -1 } else { 1 })));
+        Some(Difference { squared, branch, is_opposite: same != is_negative, positive })
     }
 
     /// Returns a polynomial as a form.
@@ -272,8 +298,8 @@ impl RootForm {
     /// Encloses the form over a box.
     fn over_box(&self, cell: &Cell) -> Interval {
         let polynomial = self.polynomial.over(cell);
-        let Some((k, p)) = &self.root else { return polynomial };
-        polynomial.plus(Interval::enclosing(k).times(p.over(cell).sqrt()))
+        let Some(RootTerm { factor, radicand }) = &self.root else { return polynomial };
+        polynomial.plus(Interval::enclosing(factor).times(radicand.over(cell).sqrt()))
     }
 
     /// Returns polynomials in the direction of the form's gradient or its opposite, for each of a monomial's
@@ -281,7 +307,7 @@ impl RootForm {
     pub(super) fn gradient_direction(&self) -> Option<[Polynomial; 4]> {
         let radicand = match &self.root {
             None => &self.polynomial,
-            Some((_, p)) => self.polynomial.constant().map(|_| p)?,
+            Some(root) => self.polynomial.constant().map(|_| &root.radicand)?,
         };
         Some([0, 1, 2, 3].map(|by| radicand.derivative(by)))
     }
@@ -291,9 +317,9 @@ impl RootForm {
         &self.polynomial
     }
 
-    /// Returns the root's factor and its radicand.
-    pub(super) fn root(&self) -> Option<(&Number, &Polynomial)> {
-        self.root.as_ref().map(|(factor, radicand)| (factor, radicand))
+    /// Returns the root, if there is one.
+    pub(super) fn root(&self) -> Option<&RootTerm> {
+        self.root.as_ref()
     }
 
     /// Returns the polynomial, if the form has no root.
@@ -304,7 +330,8 @@ impl RootForm {
     /// Returns whether this is a root without further terms: nowhere below 0, and smooth except where it is
     /// 0.
     pub(super) fn is_length(&self) -> bool {
-        self.polynomial.is_zero() && self.root.as_ref().is_some_and(|(k, _)| !k.is_negative())
+        self.polynomial.is_zero()
+            && self.root.as_ref().is_some_and(|root| !root.factor.is_negative())
     }
 
     /// Returns whether this is a distance: `c ± |p - centre|`, or a linear function with a gradient of length
@@ -314,10 +341,10 @@ impl RootForm {
             None => {
                 self.polynomial.slope_squared().is_some_and(|s| s.nearly_equals(&Number::int(1)))
             }
-            Some((k, p)) => {
-                k.abs().nearly_equals(&Number::int(1))
+            Some(root) => {
+                root.factor.abs().nearly_equals(&Number::int(1))
                     && self.polynomial.constant().is_some()
-                    && p.is_squared_distance()
+                    && root.radicand.is_squared_distance()
             }
         }
     }

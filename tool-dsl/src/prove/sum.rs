@@ -1,7 +1,7 @@
 //! Curves that compare two depths with different roots. They are sums of a polynomial and roots, not
 //! polynomials.
 
-use super::root::{Forms, RootForm};
+use super::root::{Forms, RootForm, RootTerm};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::{Graph, Id, Node};
 use crate::number::Number;
@@ -10,7 +10,7 @@ use crate::number::Number;
 #[derive(Clone)]
 pub(super) struct RootSum {
     polynomial: Polynomial,
-    roots: Vec<(Number, Polynomial)>,
+    roots: Vec<RootTerm>,
 }
 
 impl RootSum {
@@ -34,39 +34,38 @@ impl RootSum {
     }
 
     fn from(form: &RootForm) -> RootSum {
-        let roots = form.root().map(|(factor, under)| (factor.clone(), under.clone()));
-        RootSum { polynomial: form.part().clone(), roots: roots.into_iter().collect() }
+        let roots = form.root().cloned().into_iter().collect();
+        RootSum { polynomial: form.part().clone(), roots }
     }
 
     /// Returns the factor by which this is a multiple of the first depth minus the second.
     pub(super) fn ratio_to_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
         let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
-        let (factor, under) = self.roots.first()?;
-        let (other, _) = difference.roots.iter().find(|(_, own)| is_same_radicand(own, under))?;
-        let ratio = factor.checked_div(other)?;
+        let root = self.roots.first()?;
+        let other = difference.roots.iter().find(|other| other.has_radicand_of(root))?;
+        let ratio = root.factor.checked_div(&other.factor)?;
         let rest = difference.scaled(&-&ratio).plus(self.clone());
         (rest.polynomial.is_zero() && rest.roots.is_empty()).then_some(ratio)
     }
 
-    fn scaled(self, factor_by: &Number) -> RootSum {
-        let roots = self.roots.into_iter().map(|(factor, under)| (&factor * factor_by, under));
-        RootSum { polynomial: self.polynomial.scaled(factor_by), roots: roots.collect() }
+    fn scaled(self, by: &Number) -> RootSum {
+        let scaled = |root: RootTerm| RootTerm { factor: &root.factor * by, ..root };
+        let roots = self.roots.into_iter().map(scaled).collect();
+        RootSum { polynomial: self.polynomial.scaled(by), roots }
     }
 
     fn plus(mut self, other: RootSum) -> RootSum {
-        for (factor, under) in other.roots {
-            match self.roots.iter_mut().find(|(_, own)| is_same_radicand(own, &under)) {
+        for root in other.roots {
+            match self.roots.iter_mut().find(|own| own.has_radicand_of(&root)) {
                 // A sum that cancels in 256 bits is 0.
-                Some((own, _)) if own.nearly_equals(&-&factor) => *own = Number::int(0),
-                Some((own, _)) => *own = &*own + &factor,
-                None => self.roots.push((factor, under)),
+                Some(own) if own.factor.nearly_equals(&-&root.factor) => {
+                    own.factor = Number::int(0);
+                }
+                Some(own) => own.factor = &own.factor + &root.factor,
+                None => self.roots.push(root),
             }
         }
-        self.roots.retain(|(factor, _)| !factor.is_zero());
+        self.roots.retain(|root| !root.factor.is_zero());
         RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
     }
-}
-
-fn is_same_radicand(a: &Polynomial, b: &Polynomial) -> bool {
-    a.ratio(b).is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)))
 }

@@ -4,51 +4,70 @@
 use crate::expr::polynomial::Polynomial;
 use crate::number::{Number, ROUNDING};
 
-/// A conic's six coefficients: 1, d, z, d², dz, z².
-type Conic<N> = [N; 6];
+/// The coefficients of a conic: of 1, d, z, d², d z and z².
+#[derive(Clone)]
+struct Conic<N> {
+    one: N,
+    d: N,
+    z: N,
+    dd: N,
+    dz: N,
+    zz: N,
+}
 
 /// The number of Newton steps from a double to a point of 256 bits. Each gains as many digits as a double
 /// has, less those lost if the point is badly conditioned.
 const NEWTON_STEPS: usize = 24;
 
-fn conic(polynomial: &Polynomial) -> Option<Conic<Number>> {
-    let mut factors = [(); 6].map(|()| Number::int(0));
-    for (monomial, value) in polynomial.terms() {
-        let at = match monomial {
-            [0, 0, 0, 0] => 0,
-            [1, 0, 0, 0] => 1,
-            [0, 0, 0, 1] => 2,
-            [2, 0, 0, 0] => 3,
-            [1, 0, 0, 1] => 4,
-            [0, 0, 0, 2] => 5,
-            _ => return None,
-        };
-        factors[at] = value.clone();
+impl Conic<Number> {
+    fn of(polynomial: &Polynomial) -> Option<Conic<Number>> {
+        let factor = |d, z| polynomial.exact_factor([d, 0, 0, z]);
+        polynomial.is_conic().then(|| Conic {
+            one: factor(0, 0),
+            d: factor(1, 0),
+            z: factor(0, 1),
+            dd: factor(2, 0),
+            dz: factor(1, 1),
+            zz: factor(0, 2),
+        })
     }
-    Some(factors)
+
+    fn rounded(&self) -> Conic<f64> {
+        let Conic { one, d, z, dd, dz, zz } = self;
+        let [one, d, z, dd, dz, zz] = [one, d, z, dd, dz, zz].map(Number::to_f64);
+        Conic { one, d, z, dd, dz, zz }
+    }
+
+    /// Returns the value at a point, and the sum of the absolute values of its terms.
+    fn value(&self, [d, z]: &[Number; 2]) -> (Number, f64) {
+        let [dd, dz, zz] = [&(&self.dd * d) * d, &(&self.dz * d) * z, &(&self.zz * z) * z];
+        Number::sum(&[self.one.clone(), &self.d * d, &self.z * z, dd, dz, zz])
+    }
+
+    fn gradient(&self, [d, z]: &[Number; 2]) -> [Number; 2] {
+        let two = Number::int(2);
+        let by_d = Number::sum(&[self.d.clone(), &(&two * &self.dd) * d, &self.dz * z]).0;
+        [by_d, Number::sum(&[self.z.clone(), &self.dz * d, &(&two * &self.zz) * z]).0]
+    }
 }
 
-fn slope(c: &Conic<f64>, [d, z]: [f64; 2]) -> [f64; 2] {
-    [c[1] + 2.0 * c[3] * d + c[4] * z, c[2] + c[4] * d + 2.0 * c[5] * z]
-}
+impl Conic<f64> {
+    fn value(&self, [d, z]: [f64; 2]) -> f64 {
+        let linear = self.one + self.d * d + self.z * z;
+        linear + (self.dd * d * d + self.dz * d * z + self.zz * z * z)
+    }
 
-fn exact_value(c: &Conic<Number>, [d, z]: &[Number; 2]) -> (Number, f64) {
-    let [dd, dz, zz] = [&(&c[3] * d) * d, &(&c[4] * d) * z, &(&c[5] * z) * z];
-    Number::sum(&[c[0].clone(), &c[1] * d, &c[2] * z, dd, dz, zz])
-}
-
-fn exact_slope(c: &Conic<Number>, [d, z]: &[Number; 2]) -> [Number; 2] {
-    let two = Number::int(2);
-    let d_slope = Number::sum(&[c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
-    [d_slope, Number::sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
+    fn gradient(&self, [d, z]: [f64; 2]) -> [f64; 2] {
+        [self.d + 2.0 * self.dd * d + self.dz * z, self.z + self.dz * d + 2.0 * self.zz * z]
+    }
 }
 
 /// Returns the step from a point where conic `b`'s value and the cross product of both gradients have these
 /// values to one where they are nearly 0.
 fn newton_step([a, b]: [&Conic<f64>; 2], p: [f64; 2], [first, second]: [f64; 2]) -> [f64; 2] {
-    let ([ad, az], [bd, bz]) = (slope(a, p), slope(b, p));
-    let d_derivative = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
-    let z_derivative = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
+    let ([ad, az], [bd, bz]) = (a.gradient(p), b.gradient(p));
+    let d_derivative = 2.0 * a.dd * bz + ad * b.dz - a.dz * bd - az * 2.0 * b.dd;
+    let z_derivative = a.dz * bz + ad * 2.0 * b.zz - 2.0 * a.zz * bd - az * b.dz;
     let determinant = bd * z_derivative - bz * d_derivative;
     [
         (first * z_derivative - bz * second) / determinant,
@@ -59,7 +78,7 @@ fn newton_step([a, b]: [&Conic<f64>; 2], p: [f64; 2], [first, second]: [f64; 2])
 /// The contact of two conics near a point.
 #[derive(Clone)]
 pub(super) struct Contact {
-    slopes: [[Number; 2]; 2],
+    gradients: [[Number; 2]; 2],
     conics: [Conic<Number>; 2],
 }
 
@@ -71,16 +90,14 @@ impl Contact {
         near: [f64; 2],
         size: f64,
     ) -> Option<Contact> {
-        let conics = [conic(a)?, conic(b)?];
-        let [a, b] = conics.each_ref().map(|conic| conic.each_ref().map(Number::to_f64));
+        let conics = [Conic::of(a)?, Conic::of(b)?];
+        let [a, b] = conics.each_ref().map(Conic::rounded);
         // The equations: one conic's value and the cross product of both gradients are 0. The first half of
         // the steps uses doubles.
         let mut p = near;
         for _ in 0..NEWTON_STEPS / 2 {
-            let ([ad, az], [bd, bz]) = (slope(&a, p), slope(&b, p));
-            let value = b[0] + b[1] * p[0] + b[2] * p[1];
-            let quadratic = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
-            let step = newton_step([&a, &b], p, [value + quadratic, ad * bz - az * bd]);
+            let ([ad, az], [bd, bz]) = (a.gradient(p), b.gradient(p));
+            let step = newton_step([&a, &b], p, [b.value(p), ad * bz - az * bd]);
             p = [p[0] - step[0], p[1] - step[1]];
         }
         // False for NaN too.
@@ -89,27 +106,27 @@ impl Contact {
         for _ in NEWTON_STEPS / 2..NEWTON_STEPS {
             let [Some(d), Some(z)] = &at else { return None };
             let exact = [d.clone(), z.clone()];
-            let [[ad, az], [bd, bz]] = conics.each_ref().map(|c| exact_slope(c, &exact));
+            let [[ad, az], [bd, bz]] = conics.each_ref().map(|conic| conic.gradient(&exact));
             let cross = &(&ad * &bz) - &(&az * &bd);
-            let values = [exact_value(&conics[1], &exact).0.to_f64(), cross.to_f64()];
+            let values = [conics[1].value(&exact).0.to_f64(), cross.to_f64()];
             let step = newton_step([&a, &b], [d.to_f64(), z.to_f64()], values);
             at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(step[k])?));
         }
         let [Some(d), Some(z)] = at else { return None };
         let point = [d, z];
         let is_zero = |(value, size): (Number, f64)| value.to_f64().abs() <= ROUNDING * size;
-        let slopes = conics.each_ref().map(|conic| exact_slope(conic, &point));
-        let [[ad, az], [bd, bz]] = &slopes;
-        let touches = conics.iter().all(|conic| is_zero(exact_value(conic, &point)))
+        let gradients = conics.each_ref().map(|conic| conic.gradient(&point));
+        let [[ad, az], [bd, bz]] = &gradients;
+        let touches = conics.iter().all(|conic| is_zero(conic.value(&point)))
             && is_zero(Number::sum(&[ad * bz, -&(az * bd)]));
-        touches.then_some(Contact { slopes, conics })
+        touches.then_some(Contact { gradients, conics })
     }
 
     /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1. Then `to b` is a
     /// positive multiple of `from a` plus a sum of squares that is 0 at the point of contact.
     pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
-        let [[ad, az], [bd, bz]] = &self.slopes;
+        let [[ad, az], [bd, bz]] = &self.gradients;
         let (dot_product, _) = Number::sum(&[ad * bd, az * bz]);
         let (length, _) = Number::sum(&[ad * ad, az * az]);
         let Some(ratio) = (&Number::int(to * from) * &dot_product).checked_div(&length) else {
@@ -119,8 +136,10 @@ impl Contact {
             return false;
         }
         let [from, to] = [from, to].map(Number::int);
-        let quadratic = |k: usize| Number::sum(&[&to * &b[k], -&(&ratio * &(&from * &a[k]))]);
-        let [(dd, dd_size), (dz, dz_size), (zz, zz_size)] = [3, 4, 5].map(quadratic);
+        let rest = |of_a, of_b| Number::sum(&[&to * of_b, -&(&ratio * &(&from * of_a))]);
+        let (dd, dd_size) = rest(&a.dd, &b.dd);
+        let (dz, dz_size) = rest(&a.dz, &b.dz);
+        let (zz, zz_size) = rest(&a.zz, &b.zz);
         let size = dd_size.max(dz_size).max(zz_size);
         let (discriminant, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
         let is_not_negative = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;

@@ -5,7 +5,7 @@
 //! `e` its distance from the line. It differs from `|t|` by at most `e`. The difference of two depths on the
 //! line is therefore affine in `t`, up to these `e`.
 
-use super::root::RootForm;
+use super::root::{RootForm, RootTerm};
 use crate::expr::Coord;
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
@@ -82,11 +82,11 @@ impl Tangency {
         };
         tangency.add(a, false, line, only)?;
         tangency.add(b, true, line, only)?;
-        if let (Some((k, p)), Some((m, q))) = (a.root(), b.root())
-            && k.nearly_equals(m)
+        if let (Some(of_a), Some(of_b)) = (a.root(), b.root())
+            && of_a.factor.nearly_equals(&of_b.factor)
             && tangency.rest.is_zero()
         {
-            let [p, q] = [p.on_line(line)?, q.on_line(line)?];
+            let [p, q] = [of_a.radicand.on_line(line)?, of_b.radicand.on_line(line)?];
             let difference = p.clone().plus(&q.scaled(&Number::int(-1)));
             tangency.radicands = Some([p, q, difference]);
         }
@@ -112,7 +112,7 @@ impl Tangency {
         }
         self.slope = &self.slope + &signed(slope);
         self.rest = &self.rest + &signed(rest);
-        let Some((factor, under)) = depth.root() else {
+        let Some(RootTerm { factor, radicand }) = depth.root() else {
             let size = line.slope_squared()?.to_f64().sqrt();
             let slopes = [Coord::D, Coord::Z].map(|coord| {
                 let by = monomial_of(coord);
@@ -124,7 +124,7 @@ impl Tangency {
             self.slope_across = self.slope_across.max(slope_across);
             return Some(());
         };
-        let [rest, slope, square] = coefficients(&under.on_line(line)?, monomial_of_axis)?;
+        let [rest, slope, square] = coefficients(&radicand.on_line(line)?, monomial_of_axis)?;
         let foot = -&slope.checked_div(&(&Number::int(2) * &square))?;
         let squared_distance = &rest - &(&(&foot * &foot) * &square);
         let scale = square.sqrt()?;

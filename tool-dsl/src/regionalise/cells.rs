@@ -77,8 +77,7 @@ pub(super) fn surface_layer(
         };
         let ends_at = |k: u32| {
             let part = f64::from(k) / f64::from(steps);
-            let foot_point =
-                section.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
+            let foot_point = slice.foot_at(section, part);
             let depth = slice.radius(section, part).min(LAYER_FRACTION * section.size);
             (foot_point.foot, foot_point.at(depth))
         };
@@ -197,8 +196,7 @@ fn samples(section: &Section<'_>, slice: &Slice) -> Vec<(Point, f64)> {
     let mut samples = Vec::new();
     let layer_thickness = SHELL_FRACTION * section.size;
     for part in SAMPLE_FRACTIONS {
-        let t = slice.from + part * (slice.to - slice.from);
-        let foot_point = section.foot_point(slice.feature, t);
+        let foot_point = slice.foot_at(section, part);
         let radius = slice.radius(section, part).min(2.0 * section.size);
         let wide = |r: f64| {
             let ends = [slice.from, slice.to].map(|t| section.foot_point(slice.feature, t).at(r));
@@ -221,8 +219,7 @@ fn witnesses(section: &Section<'_>, slice: &Slice) -> Vec<Point> {
     let mut witnesses = Vec::new();
     for k in 0..24 {
         let part = (f64::from(k) + 0.5) / 24.0;
-        let foot_point =
-            section.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
+        let foot_point = slice.foot_at(section, part);
         let radius = slice.radius(section, part);
         witnesses.extend(
             [0.002, 0.15, 0.4, 0.7, 0.93, 0.998].map(|share| foot_point.at(share * radius)),

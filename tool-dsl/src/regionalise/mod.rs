@@ -19,7 +19,7 @@ use crate::geometry::outline::{Point, Segment, turn};
 use curve::Border;
 pub(crate) use curve::{Test, direction_to_surface};
 pub(crate) use section::Feature;
-use section::{Obstacle, Section};
+use section::{FootPoint, Obstacle, Section};
 use slices::Slice;
 
 /// The error of depths computed from a partition, relative to the partition's size.
@@ -239,42 +239,47 @@ impl Section<'_> {
 
     /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
     fn wrong_point(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
-        let holds = |p: Point| bounds.iter().all(|bound| bound.holds(self, p));
+        let holds = |p: &Point| bounds.iter().all(|bound| bound.holds(self, *p));
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
-            for part in SAMPLE_FRACTIONS {
-                let foot_point =
-                    self.foot_point(slice.feature, slice.from + part * (slice.to - slice.from));
-                let radius = slice.radius(self, part);
+            for fraction in SAMPLE_FRACTIONS {
+                let foot_point = slice.foot_at(self, fraction);
+                let radius = slice.radius(self, fraction);
                 let own =
                     [0.0, 0.2, 0.5, 0.8, 1.0 - 1e-6].map(|share| foot_point.at(share * radius));
-                if let Some(p) = own.into_iter().find(|p| !holds(*p)) {
+                if let Some(p) = own.into_iter().find(|p| !holds(p)) {
                     return Some(p);
                 }
-                if !matches!(slice.obstacle, Obstacle::Feature(_)) {
-                    continue;
-                }
-                let max_distance = self.focus(slice.feature);
-                let distances_beyond =
-                    [1.0 + 1e-5, 1.05, 1.2, 1.5, 2.0, 3.0, 6.0].map(|times| times * radius);
-                // The points just before and behind the start of an exception.
-                let edges = bounds.iter().flat_map(|bound| &bound.unless).flat_map(|border| {
-                    let r = border.intersection_distance(self, &foot_point);
-                    [1e-9, 1e-4, -1e-9, -1e-4].map(|step| r + step * self.size)
-                });
-                let distances = distances_beyond
-                    .into_iter()
-                    .chain(edges)
-                    .chain([0.5, 1.0, 3.0, 30.0].map(|s| s * self.size));
-                let mut distances = distances
-                    .filter(|r| (radius..max_distance.min(100.0 * self.size)).contains(r))
-                    .map(|r| foot_point.at(r))
-                    .filter(|p| p[0] >= 0.0);
-                if let Some(p) = distances.find(|p| holds(*p)) {
-                    return Some(p);
+                if let Obstacle::Feature(_) = slice.obstacle {
+                    let max_distance = self.focus(slice.feature);
+                    let beyond = self.points_beyond(&foot_point, radius, max_distance, bounds);
+                    if let Some(p) = beyond.into_iter().find(holds) {
+                        return Some(p);
+                    }
                 }
             }
         }
         None
+    }
+
+    /// Returns points on a normal beyond a cell's far end, at less than a maximum distance from the foot.
+    fn points_beyond(
+        &self,
+        foot_point: &FootPoint,
+        radius: f64,
+        max_distance: f64,
+        bounds: &[Bound],
+    ) -> Vec<Point> {
+        let mut distances =
+            [1.0 + 1e-5, 1.05, 1.2, 1.5, 2.0, 3.0, 6.0].map(|times| times * radius).to_vec();
+        // The points just before and behind the start of an exception.
+        for border in bounds.iter().flat_map(|bound| &bound.unless) {
+            let start = border.intersection_distance(self, foot_point);
+            distances.extend([1e-9, 1e-4, -1e-9, -1e-4].map(|step| start + step * self.size));
+        }
+        distances.extend([0.5, 1.0, 3.0, 30.0].map(|sizes| sizes * self.size));
+        distances.retain(|r| (radius..max_distance.min(100.0 * self.size)).contains(r));
+        let points = distances.into_iter().map(|r| foot_point.at(r));
+        points.filter(|p| p[0] >= 0.0).collect()
     }
 
     /// Returns the distance at which the normals of a feature meet, beyond which its distance shrinks again.
@@ -289,42 +294,13 @@ impl Section<'_> {
     }
 
     /// Returns the feature's own line or circle, and the normals at its ends where the neighbours do not imply them.
-    /// Between two lines that meet in a convex corner, the bisector implies them.
     fn ends(&self, feature: usize, neighbours: &[Bound]) -> Vec<Bound> {
         let mut bounds = Vec::new();
         match self.features[feature] {
             Feature::Piece(piece) => {
                 bounds.push(Bound::always(Border::Inside { piece }));
-                let segment = &self.outline[piece];
                 for end in [0, 1] {
-                    let next = if end == 1 { Some(piece + 1) } else { piece.checked_sub(1) };
-                    let next = next.filter(|next| *next < self.outline.len());
-                    let is_implied = match next {
-                        Some(next) => {
-                            let (low, high) = (piece.min(next), piece.max(next));
-                            let convex = turn(
-                                self.outline[low].tangent(true),
-                                self.outline[high].tangent(false),
-                            ) > 0.0;
-                            let lines =
-                                segment.circle.is_none() && self.outline[next].circle.is_none();
-                            let compared = neighbours.iter().any(|bound| {
-                                bound.unless.is_empty()
-                                    && matches!(bound.border, Border::Nearer { other, .. }
-                                        if self.features[other] == Feature::Piece(next))
-                            });
-                            convex && lines && compared
-                        }
-                        // At the axis, half of the mirrored corner suffices.
-                        None => {
-                            let t = segment.tangent(end == 1);
-                            let direction = if end == 1 { t } else { [-t[0], -t[1]] };
-                            let mirrored_turn = turn(direction, [direction[0], -direction[1]]);
-                            let corner = if end == 1 { mirrored_turn } else { -mirrored_turn };
-                            segment.circle.is_none() && corner >= 0.0
-                        }
-                    };
-                    if !is_implied {
+                    if !self.imply_normal(neighbours, piece, end) {
                         bounds.push(Bound::always(Border::Before { piece, end }));
                     }
                 }
@@ -336,5 +312,32 @@ impl Section<'_> {
             }
         }
         bounds
+    }
+
+    /// Returns whether the borders to neighbours imply the normal at the start (0) or end (1) of a segment, as the
+    /// bisector of two lines that meet in a convex corner does.
+    fn imply_normal(&self, neighbours: &[Bound], piece: usize, end: usize) -> bool {
+        let segment = &self.outline[piece];
+        if segment.circle.is_some() {
+            return false;
+        }
+        let next = if end == 1 { Some(piece + 1) } else { piece.checked_sub(1) };
+        let Some(next) = next.filter(|next| *next < self.outline.len()) else {
+            // At the axis, half of the mirrored corner suffices.
+            let t = segment.tangent(end == 1);
+            let outward = if end == 1 { t } else { [-t[0], -t[1]] };
+            let mirrored_turn = turn(outward, [outward[0], -outward[1]]);
+            return if end == 1 { mirrored_turn >= 0.0 } else { mirrored_turn <= 0.0 };
+        };
+        let [low, high] = [&self.outline[piece.min(next)], &self.outline[piece.max(next)]];
+        let is_bisector = |bound: &Bound| match bound.border {
+            Border::Nearer { other, .. } => {
+                bound.unless.is_empty() && self.features[other] == Feature::Piece(next)
+            }
+            _ => false,
+        };
+        turn(low.tangent(true), high.tangent(false)) > 0.0
+            && self.outline[next].circle.is_none()
+            && neighbours.iter().any(is_bisector)
     }
 }

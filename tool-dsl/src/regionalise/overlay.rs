@@ -87,10 +87,17 @@ fn divide(
     }
 }
 
-/// The pairs of parts and conditions that have points in common.
+/// A part where a condition holds, both as indices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ConditionedPart {
+    pub(crate) part: usize,
+    pub(crate) condition: usize,
+}
+
+/// The parts and conditions that have points in common.
 pub(crate) struct Overlay {
-    /// Indices of part and condition.
-    pub(crate) pairs: Vec<(usize, usize)>,
+    /// Sorted by condition, then by part.
+    pub(crate) parts: Vec<ConditionedPart>,
     /// A point at which no condition holds.
     pub(crate) uncovered: Option<Point>,
     /// Two conditions, and a point where both hold.
@@ -106,7 +113,7 @@ pub(crate) fn overlay(
     shapes: &[CurveFunction<'_>],
     size: f64,
 ) -> Overlay {
-    let mut result = Overlay { pairs: Vec::new(), uncovered: None, doubly_covered: None };
+    let mut result = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
     // A point within rounding of a curve counts as inside only if it is so for both signs of the curve.
     let inside = |formula: &Formula, p: Point| {
         let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
@@ -134,15 +141,15 @@ pub(crate) fn overlay(
                     if let (Some(second), None) = (rest.first(), result.doubly_covered) {
                         result.doubly_covered = Some((*first, *second, middle));
                     }
-                    let pair = (cell.part, *first);
-                    if !result.pairs.contains(&pair) {
-                        result.pairs.push(pair);
+                    let part = ConditionedPart { part: cell.part, condition: *first };
+                    if !result.parts.contains(&part) {
+                        result.parts.push(part);
                     }
                 }
             }
         }
     }
-    result.pairs.sort_by_key(|(part, condition)| (*condition, *part));
+    result.parts.sort_by_key(|part| (part.condition, part.part));
     result
 }
 

@@ -40,6 +40,13 @@ pub(super) enum Obstacle {
     Far,
 }
 
+/// The end of a ball's growth: its radius there, and the obstacle that stops it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stop {
+    pub(super) radius: f64,
+    pub(super) obstacle: Obstacle,
+}
+
 /// The outer limit of the partition of the outside, in sizes of the outline.
 const OUTER_DISTANCE_IN_SIZES: f64 = 64.0;
 /// Tolerance, in sizes, for a contact to count as on a segment near its end.
@@ -187,26 +194,24 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// Returns the radius to which a ball that touches a feature at `foot_point` grows, and the obstacle that stops it.
-    pub(super) fn grow_ball(&self, feature: usize, foot_point: &FootPoint) -> (f64, Obstacle) {
-        let (mut min_radius, mut obstacle) = (f64::INFINITY, Obstacle::Far);
-        for other in [Obstacle::Far, Obstacle::Axis, Obstacle::Centre] {
-            let radius = self.growth_to(feature, foot_point, other);
-            if radius < min_radius
-                || (other == Obstacle::Centre && radius <= min_radius && radius.is_finite())
-            {
-                (min_radius, obstacle) = (radius, other);
+    /// Returns where the growth of a ball that touches a feature at `foot_point` stops.
+    pub(super) fn grow_ball(&self, feature: usize, foot_point: &FootPoint) -> Stop {
+        let mut stop = Stop { radius: f64::INFINITY, obstacle: Obstacle::Far };
+        for obstacle in [Obstacle::Far, Obstacle::Axis, Obstacle::Centre] {
+            let radius = self.growth_to(feature, foot_point, obstacle);
+            // Of two obstacles at the same distance, the arc's own centre counts.
+            let is_centre = obstacle == Obstacle::Centre && radius.is_finite();
+            if radius < stop.radius || (is_centre && radius <= stop.radius) {
+                stop = Stop { radius, obstacle };
             }
         }
-        for other in 0..self.features.len() {
-            if other != feature {
-                let radius = self.growth_to_extension(foot_point, other);
-                if radius < min_radius && self.touches(feature, foot_point, other, radius) {
-                    (min_radius, obstacle) = (radius, Obstacle::Feature(other));
-                }
+        for other in (0..self.features.len()).filter(|other| *other != feature) {
+            let radius = self.growth_to_extension(foot_point, other);
+            if radius < stop.radius && self.touches(feature, foot_point, other, radius) {
+                stop = Stop { radius, obstacle: Obstacle::Feature(other) };
             }
         }
-        (min_radius, obstacle)
+        stop
     }
 
     /// Returns the radius at which a given obstacle stops the ball; infinite if it never does.

@@ -6,7 +6,7 @@
 //! along the feature. A change of the stopping feature is a vertex of the partition, and between two vertices lies a
 //! slice of the cell.
 
-use super::section::{Obstacle, Section};
+use super::section::{FootPoint, Obstacle, Section};
 use crate::geometry::outline::{Point, minus, norm};
 
 /// A slice of a cell: the normals between two parameters, and the obstacle that ends them.
@@ -53,10 +53,8 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
             let Obstacle::Feature(other) = slice.obstacle else { continue };
             for t in [slice.from, slice.to, slice.from / 2.0 + slice.to / 2.0] {
                 let foot_point = section.foot_point(slice.feature, t);
-                let parameter = section.parameter(
-                    other,
-                    foot_point.at(section.grow_ball(slice.feature, &foot_point).0),
-                );
+                let stop = section.grow_ball(slice.feature, &foot_point);
+                let parameter = section.parameter(other, foot_point.at(stop.radius));
                 samples[other].extend([parameter - 1e-7, parameter, parameter + 1e-7]);
             }
         }
@@ -68,6 +66,8 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
     slices
 }
 
+/// Returns the slices of each feature: the lower envelope of the radii at which obstacles stop the ball, followed
+/// from sample to sample. Sorts the samples.
 fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> {
     let last = 1.0 - END_FRACTIONS[0];
     samples
@@ -78,14 +78,14 @@ fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> 
             parameters.sort_by(f64::total_cmp);
             parameters.dedup();
             let mut walk = EnvelopeWalk { section, feature, slices: Vec::new() };
-            let mut previous = (parameters[0], walk.obstacle(parameters[0]));
-            walk.append(0.0, parameters[0], previous.1);
+            let mut previous = walk.sampled(parameters[0]);
+            walk.append(0.0, previous.t, previous.obstacle);
             for &t in &parameters[1..] {
-                let current = (t, walk.obstacle(t));
+                let current = walk.sampled(t);
                 walk.divide(previous, current, MAX_HALVINGS);
                 previous = current;
             }
-            walk.append(previous.0, 1.0, previous.1);
+            walk.append(previous.t, 1.0, previous.obstacle);
             merged(walk.slices)
         })
         .collect()
@@ -112,17 +112,28 @@ fn merged(slices: Vec<Slice>) -> Vec<Slice> {
     merged
 }
 
+/// The traversal of a feature's envelope, from its first parameter to its last.
 struct EnvelopeWalk<'a> {
     section: &'a Section<'a>,
     feature: usize,
+    /// The slices up to the current parameter.
     slices: Vec<Slice>,
 }
 
+/// A parameter and the obstacle that stops the ball there.
+#[derive(Clone, Copy)]
+struct Sampled {
+    t: f64,
+    obstacle: Obstacle,
+}
+
 impl EnvelopeWalk<'_> {
-    fn obstacle(&self, t: f64) -> Obstacle {
-        self.section.grow_ball(self.feature, &self.section.foot_point(self.feature, t)).1
+    fn sampled(&self, t: f64) -> Sampled {
+        let foot_point = self.section.foot_point(self.feature, t);
+        Sampled { t, obstacle: self.section.grow_ball(self.feature, &foot_point).obstacle }
     }
 
+    /// Appends a slice, or extends the last one if it has the same obstacle.
     fn append(&mut self, from: f64, to: f64, obstacle: Obstacle) {
         match self.slices.last_mut() {
             Some(last) if last.obstacle == obstacle => last.to = to,
@@ -131,53 +142,56 @@ impl EnvelopeWalk<'_> {
     }
 
     /// Returns the parameter at which one obstacle takes over from another, if no third one lies between them.
-    fn takeover(&self, a: f64, b: f64, [first, last]: [Obstacle; 2]) -> Option<f64> {
-        let (mut low, mut high) = (a, b);
+    fn takeover(&self, first: Sampled, last: Sampled) -> Option<f64> {
+        let (mut low, mut high) = (first.t, last.t);
         for _ in 0..MAX_HALVINGS {
             let middle = low / 2.0 + high / 2.0;
             if middle <= low || middle >= high {
                 break;
             }
             let foot_point = self.section.foot_point(self.feature, middle);
-            let [own, other] =
-                [first, last].map(|s| self.section.growth_to(self.feature, &foot_point, s));
-            if own < other {
+            let [to_first, to_last] = [first, last]
+                .map(|sampled| self.section.growth_to(self.feature, &foot_point, sampled.obstacle));
+            if to_first < to_last {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        (self.obstacle(low) == first && self.obstacle(high) == last).then_some(high)
+        let is_direct = self.sampled(low).obstacle == first.obstacle
+            && self.sampled(high).obstacle == last.obstacle;
+        is_direct.then_some(high)
     }
 
-    /// Appends the slices between two parameters whose obstacles are known.
-    fn divide(&mut self, (a, first): (f64, Obstacle), (b, last): (f64, Obstacle), halvings: u32) {
-        if first == last {
-            return self.append(a, b, first);
+    /// Appends the slices between two samples.
+    fn divide(&mut self, first: Sampled, last: Sampled, halvings: u32) {
+        if first.obstacle == last.obstacle {
+            return self.append(first.t, last.t, first.obstacle);
         }
-        if let Some(parameter) = self.takeover(a, b, [first, last]) {
-            self.append(a, parameter, first);
-            return self.append(parameter, b, last);
+        if let Some(t) = self.takeover(first, last) {
+            self.append(first.t, t, first.obstacle);
+            return self.append(t, last.t, last.obstacle);
         }
-        let (mut low, mut high) = (a, b);
-        for step in 0..halvings {
+        // Neither takes over from the other directly, so a third obstacle lies between.
+        let (mut low, mut high) = (first.t, last.t);
+        for halvings_left in (0..halvings).rev() {
             let middle = low / 2.0 + high / 2.0;
             if middle <= low || middle >= high {
                 break;
             }
-            let obstacle = self.obstacle(middle);
-            if obstacle == first {
+            let found = self.sampled(middle);
+            if found.obstacle == first.obstacle {
                 low = middle;
-            } else if obstacle == last {
+            } else if found.obstacle == last.obstacle {
                 high = middle;
             } else {
-                let halvings_left = halvings - step - 1;
-                self.divide((low, first), (middle, obstacle), halvings_left);
-                return self.divide((middle, obstacle), (high, last), halvings_left);
+                self.divide(Sampled { t: low, ..first }, found, halvings_left);
+                return self.divide(found, Sampled { t: high, ..last }, halvings_left);
             }
         }
-        self.append(a, high, first);
-        self.append(high, b, last);
+        // No third one was found within the halvings: its slice is narrower than rounding.
+        self.append(first.t, high, first.obstacle);
+        self.append(high, last.t, last.obstacle);
     }
 }
 
@@ -189,27 +203,25 @@ impl Slice {
 
     /// Returns points along the slice's normals.
     pub(super) fn points_on_normals(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
-        let ray = |k: u32| {
+        let points_along = |k: u32| {
             let fraction = f64::from(k) / f64::from(steps);
-            let foot_point =
-                section.foot_point(self.feature, self.from + fraction * (self.to - self.from));
+            let foot_point = self.foot_at(section, fraction);
             let radius = self.radius(section, fraction);
             [0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
                 .map(|radius_fraction| foot_point.at(radius_fraction * radius))
         };
-        (0..=steps).flat_map(ray).collect()
+        (0..=steps).flat_map(points_along).collect()
     }
 
     /// Returns points along the slice's normals, most densely near its ends.
     pub(super) fn sample_points(&self, section: &Section<'_>) -> Vec<Point> {
-        const EVEN_STEPS: u32 = 12;
+        const INNER_STEPS: u32 = 12;
         let near_end = (2..10).map(|k| 0.25f64.powi(k));
-        let fractions = (1..EVEN_STEPS).map(|k| f64::from(k) / f64::from(EVEN_STEPS));
+        let fractions = (1..INNER_STEPS).map(|k| f64::from(k) / f64::from(INNER_STEPS));
         let fractions =
             fractions.chain(near_end.clone()).chain(near_end.map(|fraction| 1.0 - fraction));
         let points_along = |fraction: f64| {
-            let foot_point =
-                section.foot_point(self.feature, self.from + fraction * (self.to - self.from));
+            let foot_point = self.foot_at(section, fraction);
             let radius = self.radius(section, fraction);
             [0.1, 0.5, 0.9, 0.99, 1.0]
                 .map(|radius_fraction| foot_point.at(radius_fraction * radius))
@@ -217,19 +229,25 @@ impl Slice {
         fractions.flat_map(points_along).filter(|p| p[0] >= 0.0).collect()
     }
 
+    fn parameter_at(&self, fraction: f64) -> f64 {
+        self.from + fraction * (self.to - self.from)
+    }
+
+    /// Returns the foot of the normal at a fraction of the slice's width.
+    pub(super) fn foot_at(&self, section: &Section<'_>, fraction: f64) -> FootPoint {
+        section.foot_point(self.feature, self.parameter_at(fraction))
+    }
+
     /// Returns the point of the far end at a fraction of the slice's width.
     pub(super) fn far_end_at(&self, section: &Section<'_>, fraction: f64) -> Point {
-        let foot_point =
-            section.foot_point(self.feature, self.from + fraction * (self.to - self.from));
-        foot_point.at(self.radius(section, fraction))
+        self.foot_at(section, fraction).at(self.radius(section, fraction))
     }
 
     /// Returns the length of the normal at a fraction of the slice's width, by the slice's own obstacle even if another
     /// one is as near.
     pub(super) fn radius(&self, section: &Section<'_>, fraction: f64) -> f64 {
         // At the very ends of a feature the growth of the ball is a limit.
-        let t = (self.from + fraction * (self.to - self.from))
-            .clamp(END_FRACTIONS[0], 1.0 - END_FRACTIONS[0]);
+        let t = self.parameter_at(fraction).clamp(END_FRACTIONS[0], 1.0 - END_FRACTIONS[0]);
         let foot_point = section.foot_point(self.feature, t);
         let own_radius = match self.obstacle {
             Obstacle::Feature(_) => section.growth_to(self.feature, &foot_point, self.obstacle),
@@ -238,17 +256,15 @@ impl Slice {
         if own_radius.is_finite() {
             own_radius
         } else {
-            section.grow_ball(self.feature, &foot_point).0
+            section.grow_ball(self.feature, &foot_point).radius
         }
     }
 
     /// Returns whether the slice has negligible width.
     pub(super) fn is_thin(&self, section: &Section<'_>) -> bool {
-        let [a, b] = [0.0, 1.0].map(|fraction| {
-            let foot_point =
-                section.foot_point(self.feature, self.from + fraction * (self.to - self.from));
-            [foot_point.foot, foot_point.at(self.radius(section, fraction))]
-        });
-        norm(minus(a[0], b[0])).max(norm(minus(a[1], b[1]))) < 1e-10 * section.size
+        let feet = [0.0, 1.0].map(|fraction| self.foot_at(section, fraction).foot);
+        let far_ends = [0.0, 1.0].map(|fraction| self.far_end_at(section, fraction));
+        let width = |[a, b]: [Point; 2]| norm(minus(a, b));
+        width(feet).max(width(far_ends)) < 1e-10 * section.size
     }
 }

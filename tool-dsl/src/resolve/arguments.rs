@@ -1,6 +1,6 @@
 //! Arguments of a tool's `param`s, from outside its file.
 
-use super::lower::Lowering;
+use super::lower::{Constant, Lowering};
 use crate::diagnostic::{
     Diagnostic, FormattedNumber, Kind, NameRemedy, Names, ParamRemedy, Role, ValueKind, nearest,
 };
@@ -14,9 +14,8 @@ use crate::syntax::tree::{Definition, Expr, Item, Name, Tool};
 /// An argument of a `param`, evaluated where it is given.
 pub(super) struct Argument<'t> {
     setting: &'t Definition,
-    value: Number,
-    dimension: Dimension,
-    /// The unit of the value.
+    constant: Constant,
+    /// The unit of the file in which it is written.
     unit: Unit,
 }
 
@@ -64,9 +63,7 @@ fn read_arguments<'t>(
             continue;
         }
         match lowering.constant(&setting.value, Role::Param) {
-            Ok((value, dimension)) => {
-                arguments.push(Argument { setting, value, dimension, unit: lowering.unit });
-            }
+            Ok(constant) => arguments.push(Argument { setting, constant, unit: lowering.unit }),
             Err(diagnostic) => diagnostics.push(adapt(diagnostic)),
         }
     }
@@ -76,12 +73,12 @@ fn read_arguments<'t>(
 /// Returns the value of a `param`: its argument, otherwise its default.
 pub(super) fn value_of(
     param: &Definition,
-    default: (Number, Dimension),
+    default: Constant,
     arguments: &[Argument<'_>],
     unit: Unit,
-) -> Result<(Number, Dimension), Diagnostic> {
+) -> Result<Constant, Diagnostic> {
     match arguments.iter().find(|argument| argument.setting.name.text == param.name.text) {
-        Some(argument) => argument.replace_default(&param.value, default.1, unit),
+        Some(argument) => argument.replace_default(&param.value, default.dimension, unit),
         None => Ok(default),
     }
 }
@@ -92,15 +89,16 @@ impl Argument<'_> {
         default: &Expr,
         default_dimension: Dimension,
         unit: Unit,
-    ) -> Result<(Number, Dimension), Diagnostic> {
+    ) -> Result<Constant, Diagnostic> {
         let Definition { name: Name { text: word, .. }, value } = self.setting;
-        let Some(dimension) = default_dimension.common(self.dimension) else {
+        let Constant { value: number, dimension: found } = &self.constant;
+        let Some(dimension) = default_dimension.common(*found) else {
             let diagnostic = Diagnostic::new(
                 value.span,
                 ValueKind::ArgumentDimension {
                     name: word.clone(),
                     dimension: default_dimension,
-                    found: self.dimension,
+                    found: *found,
                 },
             )
             .with_label(default.span, "default value");
@@ -109,12 +107,12 @@ impl Argument<'_> {
         let power = match dimension {
             // For a length, a number without a unit is in the unit of the file in which it is written.
             Dimension::Length(power) => power,
-            Dimension::Dimensionless if self.unit != unit && !self.value.is_zero() => {
+            Dimension::Dimensionless if self.unit != unit && !number.is_zero() => {
                 return Err(Diagnostic::new(
                     value.span,
                     ValueKind::AmbiguousArgumentUnit {
                         name: word.clone(),
-                        number: FormattedNumber(self.value.to_f64()),
+                        number: FormattedNumber(number.to_f64()),
                         file_unit: self.unit.symbol(),
                         mounted_unit: unit.symbol(),
                     },
@@ -122,7 +120,7 @@ impl Argument<'_> {
             }
             _ => 0.0,
         };
-        Ok((&self.value * &scale(self.unit, unit, power), dimension))
+        Ok(Constant { value: number * &scale(self.unit, unit, power), dimension })
     }
 }
 

@@ -5,13 +5,14 @@ use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::{Conditions, Divider};
-use super::region::{RegionHead, RegionResolver, or_report};
+use super::region::{LawValues, Placed, RegionHead, RegionResolver, or_report};
 use crate::diagnostic::{Diagnostic, ProfileKind};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
 use crate::model::{DirectionSource, OutsidePart, Over, Region, Section, Surface};
+use crate::regionalise::overlay::ConditionedPart;
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::source::Span;
 
@@ -81,20 +82,24 @@ pub(super) fn derived(
         None => {
             for part in &parts {
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let head = (part.name.clone(), part.span, part.owner, part.inside.clone());
+                let (name, inside) = (part.name.clone(), part.inside.clone());
+                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let direction = part.own_direction();
                 regions.extend(or_report(evaluation.of_part(part, head, direction), diagnostics));
             }
         }
         Some(conditions) if diagnostics.len() == before => {
-            let pairs =
-                conditions.pairs((&outline, &inner, &parts), (curves, lowering), span, diagnostics);
-            for (part, index) in &pairs {
-                let pair = (&parts[*part], *index);
-                regions.extend(conditions.region(pair, &surfaces, laws, lowering, diagnostics));
+            let whole = (outline.as_slice(), &inner, parts.as_slice());
+            let divided =
+                conditions.conditioned_parts(whole, (curves, lowering), span, diagnostics);
+            for ConditionedPart { part, condition } in &divided {
+                let (part, condition) = (&parts[*part], *condition);
+                let region =
+                    conditions.region(part, condition, &surfaces, laws, lowering, diagnostics);
+                regions.extend(region);
             }
             let Conditions { conditions, distances, .. } = conditions;
-            over = Some(Over { conditions, regions: pairs, distances });
+            over = Some(Over { conditions, regions: divided, distances });
         }
         Some(_) => {}
     }
@@ -147,10 +152,12 @@ pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Fo
     let zero = graph.int(0);
     match test {
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
-        Test::All(segment_count) => {
-            Formula::All(segment_count.iter().map(|t| formula(t, curves, graph)).collect())
+        Test::All(tests) => {
+            Formula::All(tests.iter().map(|test| formula(test, curves, graph)).collect())
         }
-        Test::Any(any) => Formula::Any(any.iter().map(|t| formula(t, curves, graph)).collect()),
+        Test::Any(tests) => {
+            Formula::Any(tests.iter().map(|test| formula(test, curves, graph)).collect())
+        }
         Test::Strictly(test) => match formula(test, curves, graph) {
             Formula::Atom { curve, below, .. } => Formula::Atom { curve, below, strict: true },
             // A side that always or never holds has no border.
@@ -199,12 +206,12 @@ impl RegionResolver<'_> {
     pub(super) fn of_part(
         mut self,
         part: &DerivedPart,
-        (name, span, owner, inside): (String, Span, usize, Formula),
+        head: RegionHead,
         direction: RawDirection,
     ) -> Result<Region, Diagnostic> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;
-        let head = RegionHead { name, span, owner, inside };
-        self.finish(head, (part.depth, span), (magnitude, niceness), direction)
+        let depth = Placed { value: part.depth, span: head.span };
+        self.finish(head, depth, LawValues { magnitude, niceness }, direction)
     }
 }

@@ -11,7 +11,7 @@ use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::source::Span;
-use crate::syntax::MAX_HEIGHT;
+use crate::syntax::MAX_EXPRESSION_HEIGHT;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,6 +26,12 @@ pub(super) struct Value {
     pub(super) dimension: Dimension,
     pub(super) span: Span,
     pub(super) used: bool,
+}
+
+/// A constant with its dimension, in the file's units.
+pub(super) struct Constant {
+    pub(super) value: Number,
+    pub(super) dimension: Dimension,
 }
 
 /// The names that an expression may mention, by its context.
@@ -119,21 +125,17 @@ impl Lowering {
     }
 
     /// Lowers an expression that has to be constant, in this role.
-    pub(super) fn constant(
-        &mut self,
-        expr: &Expr,
-        role: Role,
-    ) -> Result<(Number, Dimension), Diagnostic> {
+    pub(super) fn constant(&mut self, expr: &Expr, role: Role) -> Result<Constant, Diagnostic> {
         let (id, dimension) = self.lower(expr, Allowed::Constants(role))?;
         match self.graph.constant(id) {
-            Some(value) => Ok((value.clone(), dimension)),
+            Some(value) => Ok(Constant { value: value.clone(), dimension }),
             None => Err(not_constant(expr.span, None, role)),
         }
     }
 
     /// Lowers a constant length.
     pub(super) fn length(&mut self, expr: &Expr, role: Role) -> Result<Number, Diagnostic> {
-        let (value, dimension) = self.constant(expr, role)?;
+        let Constant { value, dimension } = self.constant(expr, role)?;
         if !dimension.is_length() {
             return Err(Diagnostic::new(expr.span, ValueKind::NotLength { role, dimension }));
         }
@@ -149,10 +151,10 @@ impl Lowering {
         if size > MAX_CONSTANT {
             return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
         }
-        if self.graph.height(id) > MAX_HEIGHT {
+        if self.graph.height(id) > MAX_EXPRESSION_HEIGHT {
             return Err(Diagnostic::new(
                 expr.span,
-                ValueKind::ExpressionTooDeep { limit: MAX_HEIGHT },
+                ValueKind::ExpressionTooDeep { limit: MAX_EXPRESSION_HEIGHT },
             ));
         }
         Ok((id, dimension))
@@ -321,7 +323,7 @@ impl Lowering {
 
     fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: Allowed) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
-        let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
+        let Constant { value, dimension: of_exponent } = self.constant(exponent, Role::Exponent)?;
         let halves =
             value
                 .doubled_exponent()

@@ -31,7 +31,7 @@ use arguments::Argument;
 use condition::Curves;
 use derived::FromProfile;
 use law::Laws;
-use lower::{Lowering, in_range};
+use lower::{Constant, Lowering, in_range};
 use mount::MountedNiceness;
 use over::Divider;
 use std::collections::BTreeMap;
@@ -319,12 +319,12 @@ fn constants(
         if is_param || lowering.is_parametric(&definition.value) {
             lowering.parametric.insert(definition.name.text.clone());
         }
-        let value = lowering.constant(&definition.value, Role::Let);
-        let value = value.and_then(|value| match is_param {
-            true => arguments::value_of(definition, value, given, lowering.unit),
-            false => Ok(value),
-        });
-        let defined = value.and_then(|(value, dimension)| {
+        let mut constant = lowering.constant(&definition.value, Role::Let);
+        if is_param {
+            constant = constant
+                .and_then(|default| arguments::value_of(definition, default, given, lowering.unit));
+        }
+        let defined = constant.and_then(|Constant { value, dimension }| {
             in_range(&value, definition.value.span)?;
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))

@@ -72,26 +72,29 @@ fn turned(graph: &mut Graph, radial: Id, coordinate: Id) -> Option<Id> {
     }
 }
 
-/// Builds the outputs of a region. A magnitude that is the depth is a length and changes with the unit; any other is
-/// the file's own number.
+/// Builds the outputs of a region. Without a magnitude of its own it is the depth, a length, and changes with the unit;
+/// any other is the file's own number.
 pub(super) fn outputs(
     graph: &mut Graph,
     domain: Domain,
     depth: Id,
-    (magnitude, is_depth): (Id, bool),
+    own_magnitude: Option<Id>,
     direction: [Id; 3],
     niceness: Id,
 ) -> RegionOutputs {
     let zero = graph.int(0);
-    let slope = gradient(graph, domain, magnitude);
+    let slope = gradient(graph, domain, own_magnitude.unwrap_or(depth));
     let slope = in_space(graph, domain, slope);
     let depth = graph.max(zero, depth);
-    let (magnitude, gradient) = if is_depth {
-        let length = graph.coord(Coord::Length);
-        (graph.mul(depth, length), slope)
-    } else {
-        let per = graph.coord(Coord::PerLength);
-        (magnitude, slope.map(|part| graph.mul(part, per)))
+    let (magnitude, gradient) = match own_magnitude {
+        None => {
+            let length = graph.coord(Coord::Length);
+            (graph.mul(depth, length), slope)
+        }
+        Some(magnitude) => {
+            let per = graph.coord(Coord::PerLength);
+            (magnitude, slope.map(|part| graph.mul(part, per)))
+        }
     };
     RegionOutputs {
         depth,

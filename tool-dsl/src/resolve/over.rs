@@ -6,7 +6,7 @@ use super::direction::RawDirection;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{RegionHead, RegionResolver, first_mention, inside, or_report};
+use super::region::{Placed, RegionHead, RegionResolver, first_mention, inside, or_report};
 use crate::diagnostic::{
     CheckKind, Diagnostic, FormattedNumber, RegionKind, Role, SurfaceRemedy, any_error, enough,
     nearest,
@@ -16,7 +16,7 @@ use crate::expr::Id;
 use crate::formula::Formula;
 use crate::geometry::outline::Segment;
 use crate::model::{DirectionSource, Region, Surface};
-use crate::regionalise::overlay::{self, Overlay};
+use crate::regionalise::overlay::{self, ConditionedPart, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
 use crate::source::Span;
@@ -220,29 +220,29 @@ fn fans<'t>(
 }
 
 impl Conditions<'_> {
-    /// Returns the pairs of parts and conditions that have points in common.
-    pub(super) fn pairs(
+    /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
+    pub(super) fn conditioned_parts(
         &self,
         (outline, inner, parts): (&[Segment], &Partition, &[DerivedPart]),
         (curves, lowering): (&Curves, &Lowering),
         span: Span,
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<(usize, usize)> {
+    ) -> Vec<ConditionedPart> {
         let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
-        let parts: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
-        let Overlay { pairs, uncovered: head, doubly_covered: double } =
-            overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
+        let insides: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
+        let Overlay { parts, uncovered, doubly_covered } =
+            overlay::overlay(&inner.cells(8), &insides, &self.conditions, &shapes, size);
         let formatted =
             |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
-        if let Some(p) = head {
+        if let Some(p) = uncovered {
             diagnostics
                 .push(Diagnostic::new(span, RegionKind::UncoveredPoint { location: formatted(p) }));
         }
-        if let Some((first, second, p)) = double
+        if let Some((first, second, p)) = doubly_covered
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
         {
             let (a, b) = (&a.name, &b.name);
-            let is_left = pairs.iter().any(|(_, condition)| *condition == second);
+            let is_left = parts.iter().any(|part| part.condition == second);
             diagnostics.push(match is_left {
                 true => overlapping(&a.text, &b.text, b.span, formatted(p), a.span),
                 false => never_wins(&b.text, b.span, &a.text, a.span, 0),
@@ -251,7 +251,7 @@ impl Conditions<'_> {
         for (k, kind) in self.kinds.iter().enumerate() {
             if let Kind::Hand(region, _) = kind
                 && !any_error(diagnostics)
-                && pairs.iter().all(|(_, condition)| *condition != k)
+                && parts.iter().all(|part| part.condition != k)
             {
                 let name = &region.name;
                 diagnostics.push(Diagnostic::new(
@@ -260,21 +260,22 @@ impl Conditions<'_> {
                 ));
             }
         }
-        pairs
+        parts
     }
 
     /// Returns the region of a part in which a condition holds.
     pub(super) fn region(
         &self,
-        (part, index): (&DerivedPart, usize),
+        part: &DerivedPart,
+        condition: usize,
         surfaces: &[Surface],
         laws: &Laws<'_>,
         lowering: &mut Lowering,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
-        let inside = Formula::All(vec![self.conditions[index].clone(), part.inside.clone()]);
+        let inside = Formula::All(vec![self.conditions[condition].clone(), part.inside.clone()]);
         let depth = part.depth;
-        match &self.kinds[index] {
+        match &self.kinds[condition] {
             Kind::Smooth(direction, origin) => {
                 let own = matches!((part.feature, origin), (Feature::Piece(a), Origin::Piece(b)) if a == *b);
                 let name = match origin {
@@ -285,7 +286,7 @@ impl Conditions<'_> {
                     }
                 };
                 let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
-                let head = (name, part.span, part.owner, inside);
+                let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let source = DirectionSource::Oblique;
                 let direction = RawDirection { parts: *direction, span: part.span, source };
                 or_report(evaluation.of_part(part, head, direction), diagnostics)
@@ -293,18 +294,18 @@ impl Conditions<'_> {
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
                 let mut evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
-                let (magnitude, niceness) = evaluation.laws(region, depth, diagnostics);
+                let law_values = evaluation.law_values(region, depth, diagnostics);
                 let written = or_report(evaluation.resolve_direction(region), diagnostics)?;
-                let (magnitude, niceness) = (magnitude?, niceness?);
+                let law_values = law_values?;
                 let own =
                     or_report(evaluation.scalar_of(region, Quantity::Magnitude), diagnostics)?;
                 let free = own
                     .filter(|own| first_mention(&own.value, Quantity::Depth.keyword()).is_none());
-                let direction = match (written, free, magnitude) {
+                let direction = match (written, free, law_values.magnitude) {
                     (Some(direction), ..) => direction,
-                    (None, Some(own), Some((magnitude, _))) => {
+                    (None, Some(own), Some(magnitude)) => {
                         let graph = &mut evaluation.lowering.graph;
-                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
+                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude.value);
                         let parts = slope.map(|slope| graph.neg(slope));
                         let (span, source) = (own.value.span, DirectionSource::Written);
                         RawDirection { parts, span, source }
@@ -313,10 +314,8 @@ impl Conditions<'_> {
                 };
                 let (name, span) = (region.name.text.clone(), region.name.span);
                 let head = RegionHead { name, span, owner, inside };
-                or_report(
-                    evaluation.finish(head, (depth, span), (magnitude, niceness), direction),
-                    diagnostics,
-                )
+                let depth = Placed { value: depth, span };
+                or_report(evaluation.finish(head, depth, law_values, direction), diagnostics)
             }
         }
     }

@@ -120,7 +120,18 @@ pub(super) struct RegionHead {
 }
 
 /// A value and its span.
-pub(super) type Placed = (Id, Span);
+#[derive(Clone, Copy)]
+pub(super) struct Placed {
+    pub(super) value: Id,
+    pub(super) span: Span,
+}
+
+/// The magnitude and the niceness of a region.
+pub(super) struct LawValues {
+    /// The magnitude; `None` if it is the depth.
+    pub(super) magnitude: Option<Placed>,
+    pub(super) niceness: Niceness,
+}
 
 /// A niceness, its span, and whether it may rise with depth.
 #[derive(Clone, Copy)]
@@ -166,20 +177,20 @@ impl RegionResolver<'_> {
         &mut self,
         own: Option<&Expr>,
         depth: Id,
-    ) -> Result<Option<(Id, Span)>, Diagnostic> {
+    ) -> Result<Option<Placed>, Diagnostic> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
         let id = quantity(self.lowering, value, Allowed::Depth(depth))?;
         let is_depth = id == depth && first_mention(value, Quantity::Depth.keyword()).is_some();
-        Ok((!is_depth).then_some((id, value.span)))
+        Ok((!is_depth).then_some(Placed { value: id, span: value.span }))
     }
 
     /// Builds the expressions of the region's outputs.
     pub(super) fn finish(
         self,
         head: RegionHead,
-        (depth, depth_span): (Id, Span),
-        (magnitude, niceness): (Option<Placed>, Niceness),
+        depth: Placed,
+        LawValues { magnitude: own_magnitude, niceness }: LawValues,
         raw_direction: RawDirection,
     ) -> Result<Region, Diagnostic> {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
@@ -189,20 +200,19 @@ impl RegionResolver<'_> {
                 RegionKind::ZeroDirection { region: head.name.clone() },
             )
         })?;
-        let is_depth = magnitude.is_none();
-        let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
-        let magnitudes = (magnitude, is_depth);
-        let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness.value);
+        let own = own_magnitude.map(|magnitude| magnitude.value);
+        let outputs = outputs::outputs(graph, domain, depth.value, own, direction, niceness.value);
+        let magnitude = own_magnitude.unwrap_or(depth);
         let law_spans =
-            LawSpans { depth: depth_span, magnitude: magnitude_span, niceness: niceness.span };
+            LawSpans { depth: depth.span, magnitude: magnitude.span, niceness: niceness.span };
         Ok(Region {
             name: head.name,
             span: head.span,
             surface: head.owner,
             inside: head.inside,
-            depth,
+            depth: depth.value,
             law_spans,
-            magnitude,
+            magnitude: magnitude.value,
             direction,
             raw_direction: (raw_direction.parts, raw_direction.span),
             source: raw_direction.source,
@@ -224,32 +234,37 @@ impl RegionResolver<'_> {
         let known = or_report(self.depth(written), diagnostics);
         // Without a depth, the other properties are still checked, with a stand-in for it.
         let any = self.lowering.domain.coordinates()[0].0;
-        let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
-        let (magnitude, niceness) = self.laws(written, depth.0, diagnostics);
+        let depth = known.unwrap_or_else(|| Placed {
+            value: self.lowering.graph.coord(any),
+            span: written.name.span,
+        });
+        let law_values = self.law_values(written, depth.value, diagnostics);
         let direction = or_report(self.resolve_direction(written), diagnostics);
         let (name, span) = (written.name.text.clone(), written.name.span);
         let head = RegionHead { name, span, owner, inside: inside? };
         let direction = direction?.unwrap_or_else(|| RawDirection {
-            parts: self.steepest_descent(depth.0),
-            span: depth.1,
+            parts: self.steepest_descent(depth.value),
+            span: depth.span,
             source: DirectionSource::Derived,
         });
         known?;
-        or_report(self.finish(head, depth, (magnitude?, niceness?), direction), diagnostics)
+        or_report(self.finish(head, depth, law_values?, direction), diagnostics)
     }
 
-    /// Returns the magnitude and the niceness of a written region.
-    pub(super) fn laws(
+    /// Returns the magnitude and the niceness of a written region, and reports their errors.
+    pub(super) fn law_values(
         &mut self,
         written: &tree::Region,
         depth: Id,
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> (Option<Option<Placed>>, Option<Niceness>) {
+    ) -> Option<LawValues> {
         let magnitude = self.scalar_of(written, Quantity::Magnitude);
         let magnitude = magnitude.and_then(|own| self.magnitude(own.map(|own| &own.value), depth));
         let niceness = self.scalar_of(written, Quantity::Niceness);
         let niceness = niceness.and_then(|own| self.niceness(own, depth));
-        (or_report(magnitude, diagnostics), or_report(niceness, diagnostics))
+        let (magnitude, niceness) =
+            (or_report(magnitude, diagnostics), or_report(niceness, diagnostics));
+        Some(LawValues { magnitude: magnitude?, niceness: niceness? })
     }
 
     /// Returns the region's own property for a quantity.
@@ -271,7 +286,7 @@ impl RegionResolver<'_> {
     }
 
     /// Returns the depth: the region's own, otherwise its magnitude.
-    fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Diagnostic> {
+    fn depth(&mut self, written: &tree::Region) -> Result<Placed, Diagnostic> {
         let (value, by) = match self.scalar_of(written, Quantity::Depth)? {
             Some(own) => (&own.value, Quantity::Depth),
             None => match self.scalar_of(written, Quantity::Magnitude)? {
@@ -302,7 +317,7 @@ impl RegionResolver<'_> {
         if graph.constant(id).is_some() {
             return Err(Diagnostic::new(value.span, RegionKind::ConstantDepth));
         }
-        Ok((id, value.span))
+        Ok(Placed { value: id, span: value.span })
     }
 
     /// Returns the niceness written by the region, otherwise by the law for its surface, otherwise by its mounted file.

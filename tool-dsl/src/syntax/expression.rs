@@ -1,7 +1,7 @@
 //! Parses expressions: converts pairs of pest to sums, products and their operands.
 
 use super::Rule;
-use super::limits::MAX_HEIGHT;
+use super::limits::MAX_EXPRESSION_HEIGHT;
 use super::parse::Reader;
 use super::tree::{Binary, Expr, ExprKind, Name};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
@@ -22,8 +22,10 @@ impl Reader<'_> {
         let mut beyond = None;
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
-            self.diagnostics
-                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooDeep { limit: MAX_HEIGHT }));
+            self.diagnostics.push(Diagnostic::new(
+                span,
+                SyntaxKind::ExpressionTooDeep { limit: MAX_EXPRESSION_HEIGHT },
+            ));
         }
         expr
     }
@@ -47,7 +49,7 @@ impl Reader<'_> {
                 match (inner.next(), inner.next()) {
                     (Some(_), Some(operand)) => {
                         let (operand, height) = self.tree(operand, beyond);
-                        if height == MAX_HEIGHT {
+                        if height == MAX_EXPRESSION_HEIGHT {
                             *beyond = beyond.or(Some(span));
                             return (operand, height);
                         }
@@ -81,7 +83,7 @@ impl Reader<'_> {
                             tallest = tallest.max(height);
                             arguments.push(argument);
                         }
-                        if tallest == MAX_HEIGHT {
+                        if tallest == MAX_EXPRESSION_HEIGHT {
                             *beyond = beyond.or(Some(span));
                             return (
                                 Expr { kind: ExprKind::Number(Number::int(1), None), span },
@@ -95,7 +97,7 @@ impl Reader<'_> {
             }
             _ => (ExprKind::Name(pair.as_str().trim().to_owned()), 0),
         };
-        (Expr { kind, span }, height.min(MAX_HEIGHT))
+        (Expr { kind, span }, height.min(MAX_EXPRESSION_HEIGHT))
     }
 
     /// Parses `a + b - c` or `a * b / c`, both left-associative.
@@ -157,7 +159,7 @@ fn binary(
     beyond: &mut Option<Span>,
 ) -> Measured {
     let tallest = left.1.max(right.1);
-    if tallest == MAX_HEIGHT {
+    if tallest == MAX_EXPRESSION_HEIGHT {
         *beyond = beyond.or(Some(right.0.span));
         return left;
     }

@@ -15,7 +15,7 @@ const MAX_ITEMS: usize = 4096;
 pub(super) const MAX_NESTING: usize = 64;
 /// The maximum height of an expression, in operations, both as written and between a value and a coordinate. Functions
 /// that walk an expression recurse as deep.
-pub(crate) const MAX_HEIGHT: u32 = 300;
+pub(crate) const MAX_EXPRESSION_HEIGHT: u32 = 300;
 
 /// Returns an error for a name or a list of items above the limits, which no person would write.
 pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {

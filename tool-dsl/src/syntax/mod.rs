@@ -11,8 +11,10 @@ mod parse;
 mod refuse;
 pub mod tree;
 
+use grammar::Grammar;
+pub(crate) use grammar::Rule;
 pub(crate) use lexeme::begins_a_tool;
-pub(crate) use limits::MAX_HEIGHT;
+pub(crate) use limits::MAX_EXPRESSION_HEIGHT;
 pub use mount::parse_argument;
 pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
@@ -24,5 +26,3 @@ mod grammar {
     #[grammar = "syntax/grammar.pest"]
     pub(crate) struct Grammar;
 }
-use grammar::Grammar;
-pub(crate) use grammar::Rule;

@@ -4,6 +4,7 @@ use super::super::root::Agreement;
 use super::{BorderProver, Pair};
 use crate::expr::Node;
 use crate::formula::{ANY_SIGN, CurveIndex};
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
@@ -34,29 +35,19 @@ impl BorderProver<'_> {
     /// Returns how two owners' depths agree on a curve, if they do.
     pub(super) fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
         let row = &mut self.agreements[pair.0];
-        if row.is_empty() {
-            row.resize(self.depths.len() + 1, Vec::new());
-        }
-        let known = &mut row[pair.1.map_or(0, |other| other + 1)];
-        if known.is_empty() {
-            known.resize(self.curves.len(), None);
-        }
-        if let Some(known) = &known[curve] {
-            return known.clone();
-        }
-        let difference = self.depth_differences.entry(pair).or_insert_with(|| {
-            let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
-            self.depths[pair.0].as_ref()?.difference(other?)
+        row.resize(self.depths.len() + 1, Vec::new());
+        let by_curve = &mut row[pair.1.map_or(0, |other| other + 1)];
+        by_curve.resize(self.curves.len(), OnceCell::new());
+        let agreement = by_curve[curve].get_or_init(|| {
+            let difference = self.depth_differences.entry(pair).or_insert_with(|| {
+                let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
+                self.depths[pair.0].as_ref()?.difference(other?)
+            });
+            let (polynomial, _) = self.curves[curve].as_ref()?;
+            let square = self.squares[curve].as_ref();
+            difference.as_ref()?.agreement_on(polynomial, square).map(Rc::new)
         });
-        let agreement = match (difference, &self.curves[curve]) {
-            (Some(difference), Some((polynomial, _))) => {
-                difference.agreement_on(polynomial, self.squares[curve].as_ref())
-            }
-            _ => None,
-        };
-        let agreement = agreement.map(Rc::new);
-        known[curve] = Some(agreement.clone());
-        agreement
+        agreement.clone()
     }
 
     /// Returns the curves on which two depths are equal, recognised by their expressions or their sums of

@@ -12,12 +12,13 @@ use super::tangent::{DepthDifference, Tangency};
 use crate::elimination::Linear;
 use crate::expr::Id;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::expr::value::Evaluator;
 use crate::formula::{ANY_SIGN, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
 use order::{ExcessBesideLine, LowerByLinear};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
@@ -71,11 +72,8 @@ enum ContactSearch {
     Found([Signs; 2]),
 }
 
-/// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-type ConicSign = Option<(bool, bool)>;
-
-/// How the depths of a pair agree on each curve, if they do; `None` for a curve that was not asked for.
-type AgreementsByCurve = Vec<Option<Option<Rc<Agreement>>>>;
+/// The agreement of a pair's depths on each curve, if they agree there. A cell is empty until it is asked for.
+type AgreementsByCurve = Vec<OnceCell<Option<Rc<Agreement>>>>;
 
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
@@ -104,15 +102,15 @@ pub(super) struct BorderProver<'m> {
     zero: RootForm,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    /// For a depth, and for the outside and then each depth, the agreement of the two on each curve, if they
-    /// agree there; the outer `None` where that is not known yet. Rows are empty until something is known.
+    /// For a depth, and for the outside and then each depth, the agreements of the two. Rows are empty until
+    /// something is known.
     agreements: Vec<Vec<AgreementsByCurve>>,
     /// The differences of the depths of two owners, and the squares of curves, to which agreements compare them.
     depth_differences: BTreeMap<Pair, Option<Difference>>,
     squares: Vec<Option<Polynomial>>,
-    /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
-    /// A row by line, of entries by curve; `None` where that is not known yet.
-    conic_signs: Vec<Vec<Option<ConicSign>>>,
+    /// The sides of lines on which conics have one sign: a row by line, of entries by curve. Rows are empty
+    /// until something is known.
+    clear_sides: Vec<Vec<OnceCell<Option<ClearSide>>>>,
     /// The signs of a curve that linear curves leave possible.
     by_linear: HashMap<(Leaf, CurveIndex), Signs>,
     linear: Linear,
@@ -137,12 +135,14 @@ pub(super) struct BorderProver<'m> {
 
 impl<'m> BorderProver<'m> {
     /// Finds the forms of a tool's depths and curves, in its box. With `may_jump`, depths may differ by
-    /// rounding, because slopes across borders do not matter.
+    /// rounding, because slopes across borders do not matter; by no more than `point_box_fraction` of the
+    /// tool's size.
     pub(super) fn new(
         model: &'m Model,
         cell: Cell,
         forms: &mut Forms<'_>,
-        (may_jump, finest): (bool, f64),
+        may_jump: bool,
+        point_box_fraction: f64,
     ) -> BorderProver<'m> {
         let (size, ids) = (half_diagonal(&cell), model.depths());
         let depths: Vec<Option<RootForm>> = ids.iter().map(|depth| forms.of(*depth)).collect();
@@ -164,7 +164,7 @@ impl<'m> BorderProver<'m> {
             depth_differences: BTreeMap::new(),
             squares: curves.iter().map(square).collect(),
             may_jump,
-            max_jump: finest.min(MAX_TANGENT_JUMP) * size,
+            max_jump: point_box_fraction.min(MAX_TANGENT_JUMP) * size,
             check_listed_owners: !model.is_exact(),
             values: Evaluator::new(&model.graph, ids.iter().copied()),
             ids,
@@ -173,7 +173,7 @@ impl<'m> BorderProver<'m> {
             agreements: vec![Vec::new(); depths.len()],
             depths,
             is_straight: curves.iter().map(is_straight).collect(),
-            conic_signs: vec![Vec::new(); curves.len()],
+            clear_sides: vec![Vec::new(); curves.len()],
             curves,
             zero: RootForm::zero(),
             joints: BTreeMap::new(),
@@ -212,10 +212,10 @@ impl<'m> BorderProver<'m> {
     pub(super) fn is_listed_owner(
         &mut self,
         claim: &Claim,
-        cover_and_cell: (&mut Cover<'_>, Cell),
+        cover: &mut Cover<'_>,
+        cell: Cell,
         check_overlaps: bool,
     ) -> bool {
-        let (cover, cell) = cover_and_cell;
         self.cell = cell;
         // A claim with a zero sign is a line or a point.
         if claim.signs.iter().any(|(_, signs)| *signs == ZERO) {
@@ -265,54 +265,80 @@ impl<'m> BorderProver<'m> {
 
     /// Returns a curve with two claims to a box on its two sides, and the continuity of depth there. Returns
     /// `None` if the claims do not meet in the box, given that their depths are known to differ (`depths_differ`).
-    pub(super) fn of(
+    pub(super) fn separation(
         &mut self,
         pair: Pair,
-        [a, b]: [&Claim; 2],
-        (cover, cell): (&mut Cover<'_>, Cell),
+        claims: [&Claim; 2],
+        cover: &mut Cover<'_>,
+        cell: Cell,
         depths_differ: bool,
     ) -> Option<Separation> {
         self.cell = cell;
-        let separating_curves = separating_curves(a, b);
-        let mut joint =
-            separating_curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
-        joint = joint.or_else(|| {
+        let curves = separating_curves(claims);
+        let agreed = curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
+        let joint = agreed.or_else(|| {
             self.joints(pair).into_iter().find(|curve| {
-                let [a, b] = [a, b].map(|claim| self.sign_on(claim, *curve, cover));
-                a & b & !ZERO == 0
+                let [of_a, of_b] = claims.map(|claim| self.sign_on(claim, *curve, cover));
+                of_a & of_b & !ZERO == 0
             })
         });
-        let Some(curve) = joint else {
-            let curve = *separating_curves.first()?;
-            if let Some(parted) = self.smooth_separation(pair, &separating_curves) {
-                return Some(parted);
-            }
-            let lower = self
-                .lower(pair, [a, b], &separating_curves, cover)
-                .map(|difference| self.without_rounding(difference));
-            let parted = |joint| Separation { curve, joint, below: false, difference: 0.0 };
-            return match (lower, depths_differ) {
-                (Some(0.0), true) => None,
-                (Some(difference), _) => Some(Separation { difference, ..parted(Joint::Lower) }),
-                (None, _) => Some(parted(Joint::None)),
-            };
-        };
-        let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
+        match joint {
+            Some(joint) => self.separation_by_joint(pair, claims, joint, cover, depths_differ),
+            None => self.separation_without_joint(pair, claims, &curves, cover, depths_differ),
+        }
+    }
+
+    /// Returns the separation of two claims by a curve on which their depths agree.
+    fn separation_by_joint(
+        &mut self,
+        pair: Pair,
+        claims: [&Claim; 2],
+        curve: CurveIndex,
+        cover: &mut Cover<'_>,
+        depths_differ: bool,
+    ) -> Option<Separation> {
+        let [of_a, of_b] = claims.map(|claim| self.sign_on(claim, curve, cover));
         let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
-        let parted = |joint| Separation { curve, joint, below, difference: 0.0 };
         // A curve without an agreement is where the two depths do not differ.
         let agreement = self.agreement(pair, curve);
         let smooth = agreement.as_ref().is_some_and(|agreement| agreement.smooth);
-        // If the depths may agree on the root's other branch, nothing is known about this one.
-        let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&cell)));
-        let other_branch = branch.is_some_and(|branch| branch.high < 0.0);
-        let is_certain = branch.is_none_or(|branch| branch.low > 0.0);
-        match (other_branch || depths_differ, is_certain) {
-            (true, true) => None,
-            (true, false) => Some(parted(Joint::None)),
-            _ if smooth => Some(parted(Joint::Smooth)),
-            _ => Some(parted(Joint::Kinked)),
+        let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&self.cell)));
+        let is_other_branch = branch.is_some_and(|branch| branch.high < 0.0);
+        let is_this_branch = branch.is_none_or(|branch| branch.low > 0.0);
+        let joint = if depths_differ || is_other_branch {
+            if is_this_branch {
+                return None;
+            }
+            // The depths may agree on the root's other branch, so nothing is known about this one.
+            Joint::None
+        } else if smooth {
+            Joint::Smooth
+        } else {
+            Joint::Kinked
+        };
+        Some(Separation { curve, joint, below, difference: 0.0 })
+    }
+
+    /// Returns the separation of two claims by the first of the curves for which their paths demand opposite
+    /// sides, or by a straight one of them across which depth is nearly smooth.
+    fn separation_without_joint(
+        &mut self,
+        pair: Pair,
+        claims: [&Claim; 2],
+        curves: &[CurveIndex],
+        cover: &mut Cover<'_>,
+        depths_differ: bool,
+    ) -> Option<Separation> {
+        let curve = *curves.first()?;
+        if let Some(smooth) = self.smooth_separation(pair, curves) {
+            return Some(smooth);
         }
+        let Some(difference) = self.lower(pair, claims, curves, cover) else {
+            return Some(Separation { curve, joint: Joint::None, below: false, difference: 0.0 });
+        };
+        let difference = self.without_rounding(difference);
+        let meet = !depths_differ || difference != 0.0;
+        meet.then_some(Separation { curve, joint: Joint::Lower, below: false, difference })
     }
 
     /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
@@ -363,7 +389,7 @@ fn closure(signs: Signs) -> Signs {
 }
 
 /// Returns the curves for which the paths to two claims demand opposite sides.
-fn separating_curves(a: &Claim, b: &Claim) -> Vec<CurveIndex> {
+fn separating_curves([a, b]: [&Claim; 2]) -> Vec<CurveIndex> {
     let mut curves = Vec::new();
     for (curve, signs) in &a.signs {
         let is_opposite =

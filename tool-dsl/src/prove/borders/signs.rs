@@ -3,8 +3,9 @@
 use super::super::cover::{Claim, Cover};
 use super::super::tangency::Contact;
 use super::{BorderProver, ContactSearch, MAX_CONTACT_BOXES, leaf};
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::{ClearSide, Polynomial};
 use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use std::cell::OnceCell;
 
 impl BorderProver<'_> {
     /// Returns the signs that a curve can have at a claim's points in the current box. They follow from the
@@ -101,32 +102,25 @@ impl BorderProver<'_> {
     /// do not cross.
     fn implied(&mut self, known: CurveIndex, below: bool, curve: CurveIndex) -> Signs {
         let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
-        match (self.conic_sign(known, curve), self.conic_sign(curve, known)) {
-            (Some((positive, is_below)), _) if is_below == below => side(positive),
+        match (self.clear_side(known, curve), self.clear_side(curve, known)) {
+            (Some(clear), _) if clear.is_below == below => side(clear.is_positive),
             // The points are inside the conic, which lies on the other side of the line.
-            (_, Some((positive, is_below))) if positive == below => side(is_below),
+            (_, Some(clear)) if clear.is_positive == below => side(clear.is_below),
             _ => ANY_SIGN,
         }
     }
 
-    /// Returns the sign that a conic has on a whole side of a line, and whether that is the side below it.
-    fn conic_sign(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
-        let curves = self.curves.len();
-        let row = &mut self.conic_signs[line];
-        if row.is_empty() {
-            row.resize(curves, None);
-        }
-        if let Some(known) = row[curve] {
-            return known;
-        }
-        let known = match (&self.curves[line], &self.curves[curve]) {
-            (Some((line, None)), Some((conic, None))) if !self.is_straight[curve] => {
-                conic.clear_of(line)
+    /// Returns the side of a line on which a conic has one sign. `None` if the curves are not that, or if no such
+    /// side is known.
+    fn clear_side(&mut self, line: CurveIndex, conic: CurveIndex) -> Option<ClearSide> {
+        let row = &mut self.clear_sides[line];
+        row.resize(self.curves.len(), OnceCell::new());
+        *row[conic].get_or_init(|| match (&self.curves[line], &self.curves[conic]) {
+            (Some((line, None)), Some((curve, None))) if !self.is_straight[conic] => {
+                curve.clear_side_of(line)
             }
             _ => None,
-        };
-        self.conic_signs[line][curve] = Some(known);
-        known
+        })
     }
 }
 

@@ -27,36 +27,29 @@ impl Survey<'_> {
             whole: self.tool.extent.cell(),
         };
         if self.check_overlaps {
-            let known = self.regions.iter_mut().zip(&self.tool.model.regions).enumerate();
-            for (index, (facts, region)) in known {
-                if let Some(facts) = facts {
+            for (index, region) in self.tool.model.regions.iter().enumerate() {
+                if let Some(facts) = &mut self.regions[index] {
                     facts.niceness = ranges.niceness(index, region, facts.niceness);
                 }
             }
         }
-        let known = self.directions.into_iter().zip(self.certain_facts);
-        let facts = self.regions.into_iter().zip(shares).zip(known).enumerate();
-        let regions: Vec<RegionFacts> = facts
-            .map(|(index, ((facts, share), (direction, certain)))| {
-                let facts = facts.unwrap_or(RegionFacts::NONE);
-                let distance = self.border_prover.is_distance(index);
-                RegionFacts {
-                    share,
-                    is_distance: distance,
-                    gradient_length: if distance {
-                        Interval::new(1.0, 1.0)
-                    } else {
-                        facts.gradient_length
-                    },
-                    direction_error: direction.angle_to_descent,
-                    oblique_witness: certain.oblique,
-                    rising_witness: certain.rises,
-                    singular_cells: direction.singular,
-                    turns_on_axis: direction.on_axis,
-                    ..facts
-                }
-            })
-            .collect();
+        let mut regions = Vec::new();
+        for (region, direction) in self.directions.into_iter().enumerate() {
+            let facts = self.regions[region].take().unwrap_or(RegionFacts::NONE);
+            let is_distance = self.border_prover.is_distance(region);
+            let exact_length = Interval::new(1.0, 1.0);
+            regions.push(RegionFacts {
+                share: shares[region],
+                is_distance,
+                gradient_length: if is_distance { exact_length } else { facts.gradient_length },
+                direction_error: direction.angle_to_descent,
+                oblique_witness: self.certain_facts[region].oblique,
+                rising_witness: self.certain_facts[region].rises,
+                singular_cells: direction.singular,
+                turns_on_axis: direction.on_axis,
+                ..facts
+            });
+        }
         Certificate {
             min_slope,
             slack,

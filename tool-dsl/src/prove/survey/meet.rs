@@ -9,6 +9,7 @@ use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use crate::model::Region;
 
 /// The accuracy of turns of the direction on the surface, in radians, unless boxes are as small as points. It
 /// only decides whether a box is divided; the certificate has the angle of the enclosure.
@@ -30,27 +31,7 @@ impl Survey<'_> {
         claims: &[Claim],
         box_size: BoxSize,
     ) -> bool {
-        let mut meetings = Vec::new();
-        for (k, a) in claims.iter().enumerate() {
-            for b in &claims[k + 1..] {
-                // The region comes first; of two regions, the one listed earlier.
-                let (a, b) = match (a.owner, b.owner) {
-                    (x, y) if x == y => continue,
-                    (None, _) => (b, a),
-                    (Some(x), Some(y)) if y < x => (b, a),
-                    _ => (a, b),
-                };
-                let Some(own) = a.owner else { continue };
-                let pair = (own, b.owner);
-                let depths_differ = self.jump(pair).low > 0.0;
-                let cover_and_cell = (&mut self.cover, cell);
-                if let Some(separation) =
-                    self.border_prover.of(pair, [a, b], cover_and_cell, depths_differ)
-                {
-                    meetings.push(Meeting { pair, separation, jump_point: None });
-                }
-            }
-        }
+        let mut meetings = self.meetings(cell, claims);
         let is_small = half_diagonal(&cell) <= SMALL_BOX_FRACTION * self.size;
         let (mut min_fall, mut any_vague) = (f64::INFINITY, false);
         for meeting in &mut meetings {
@@ -98,27 +79,53 @@ impl Survey<'_> {
             return false;
         }
         self.min_slope = self.min_slope.min(min_fall);
-        let unjoined = meetings.iter().filter(|meeting| {
-            meeting.separation.joint == Joint::None && meeting.jump_point.is_none()
-        });
-        let pairs: Vec<Pair> = unjoined.map(|meeting| meeting.pair).collect();
-        let mut largest_jump = 0.0f64;
-        for pair in pairs {
-            let jump = self.jump(pair).high;
-            let known_jump = self.largest_jumps.entry(pair).or_insert(0.0);
-            *known_jump = known_jump.max(jump);
-            largest_jump = largest_jump.max(jump);
-        }
-        self.jumps = sum_rounded_up(self.jumps, largest_jump);
+        self.record_jumps(&meetings);
         for meeting in &meetings {
-            let known_jump = self
-                .smooth_border_jumps
-                .entry((meeting.pair, meeting.separation.curve))
-                .or_insert(0.0);
-            *known_jump = meeting.separation.difference.max(*known_jump);
             self.record_border(meeting, cell);
         }
         true
+    }
+
+    /// Returns the pairs of claims that meet in the current box.
+    fn meetings(&mut self, cell: Cell, claims: &[Claim]) -> Vec<Meeting> {
+        let mut meetings = Vec::new();
+        for (k, a) in claims.iter().enumerate() {
+            for b in &claims[k + 1..] {
+                // The region comes first; of two regions, the one listed earlier.
+                let (a, b) = match (a.owner, b.owner) {
+                    (x, y) if x == y => continue,
+                    (None, _) => (b, a),
+                    (Some(x), Some(y)) if y < x => (b, a),
+                    _ => (a, b),
+                };
+                let Some(own) = a.owner else { continue };
+                let pair = (own, b.owner);
+                let depths_differ = self.jump(pair).low > 0.0;
+                let (prover, cover) = (&mut self.border_prover, &mut self.cover);
+                let separation = prover.separation(pair, [a, b], cover, cell, depths_differ);
+                if let Some(separation) = separation {
+                    meetings.push(Meeting { pair, separation, jump_point: None });
+                }
+            }
+        }
+        meetings
+    }
+
+    /// Records the jumps of depth between claims that no curve joins and on borders that are nearly smooth.
+    fn record_jumps(&mut self, meetings: &[Meeting]) {
+        let mut largest_jump = 0.0f64;
+        for meeting in meetings {
+            if meeting.separation.joint == Joint::None && meeting.jump_point.is_none() {
+                let jump = self.jump(meeting.pair).high;
+                let known_jump = self.largest_jumps.entry(meeting.pair).or_insert(0.0);
+                *known_jump = known_jump.max(jump);
+                largest_jump = largest_jump.max(jump);
+            }
+            let key = (meeting.pair, meeting.separation.curve);
+            let known_jump = self.smooth_border_jumps.entry(key).or_insert(0.0);
+            *known_jump = meeting.separation.difference.max(*known_jump);
+        }
+        self.jumps = sum_rounded_up(self.jumps, largest_jump);
     }
 
     /// Returns a lower bound of the rate at which depth falls toward one of the sides of a border, and its
@@ -134,10 +141,15 @@ impl Survey<'_> {
     }
 
     /// Returns the difference of two depths in the current box.
-    fn jump(&mut self, (own, other): Pair) -> Interval {
+    fn jump(&mut self, pair: Pair) -> Interval {
+        self.difference(pair, |region| region.depth)
+    }
+
+    /// Returns the absolute difference of a quantity of two regions in the current box; it is 0 outside.
+    fn difference(&mut self, (own, other): Pair, quantity: impl Fn(&Region) -> Id) -> Interval {
         let regions = &self.tool.model.regions;
-        let own = self.slopes.get(regions[own].depth).value;
-        let other = other.map_or(NOTHING, |other| self.slopes.get(regions[other].depth).value);
+        let mut value = |owner: usize| self.slopes.get(quantity(&regions[owner])).value;
+        let (own, other) = (value(own), other.map_or(NOTHING, value));
         own.plus(other.negated()).abs()
     }
 
@@ -173,25 +185,17 @@ impl Survey<'_> {
             let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
-        let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
-        let [own_outputs, other_outputs] = [Some(own), other].map(|owner| owner.map(magnitude));
-        let is_depth =
-            |outputs: Option<(Id, Id)>| outputs.is_none_or(|(magnitude, depth)| magnitude == depth);
-        let magnitude_range = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
-            of.map_or(NOTHING, |(magnitude, _)| survey.slopes.get(magnitude).value)
-        };
-        let step = if is_depth(own_outputs) && is_depth(other_outputs) {
+        let magnitude_is_depth = |owner: &usize| regions[*owner].magnitude == regions[*owner].depth;
+        let magnitude_jump = if [Some(own), other].iter().flatten().all(magnitude_is_depth) {
             jump
         } else {
-            magnitude_range(self, own_outputs)
-                .plus(magnitude_range(self, other_outputs).negated())
-                .abs()
+            self.difference(meeting.pair, |region| region.magnitude)
         };
         let border = Border {
             sides: meeting.pair,
             curve: meeting.separation.curve,
             depth_jump: jump,
-            magnitude_jump: step,
+            magnitude_jump,
             direction_angle: turn_angle,
             direction_angle_on_surface: self.is_on_surface(meeting.pair).then_some(turn_angle),
             jump_point: meeting.jump_point,

@@ -160,7 +160,7 @@ impl<'t> Survey<'t> {
         let mut forms = Forms::new(&model.graph);
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
         let border_prover =
-            BorderProver::new(model, whole, &mut forms, (feet.is_some(), point_box_fraction));
+            BorderProver::new(model, whole, &mut forms, feet.is_some(), point_box_fraction);
         let direction_facts = |(index, region)| {
             DirectionFacts::new(direction::is_parallel(model, region, border_prover.depth(index)))
         };
@@ -251,7 +251,8 @@ impl<'t> Survey<'t> {
             return true;
         }
         let wrong = claims.iter().find(|claim| {
-            !self.border_prover.is_listed_owner(claim, (&mut self.cover, cell), self.check_overlaps)
+            let (prover, cover) = (&mut self.border_prover, &mut self.cover);
+            !prover.is_listed_owner(claim, cover, cell, self.check_overlaps)
         });
         if let (Some(claim), BoxSize::Last) = (wrong, box_size) {
             let statement = Statement::SingleOwner(self.region_name(claim.owner));
