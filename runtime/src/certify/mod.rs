@@ -55,6 +55,7 @@ use search::{QuerySetting, SearchState};
 use std::slice;
 use sweep::Sweeper;
 use tool_model::ToolModel;
+use tool_model::deepest::DeepestPoint;
 use tool_model::field::Field;
 use tool_model::owners::Owners;
 use tool_model::section::Section;
@@ -299,8 +300,9 @@ impl<'a> Certifier<'a> {
             ToolModel::Field(field) => {
                 let owners = Owners::of_regions(self.info, |_, of| of.surface.0 == surface);
                 match field.deepest(&owners, 0.0, 1.01) {
-                    Some(found) => found.map_or(0.0, |(.., bound)| bound),
-                    None => return Ok(None),
+                    DeepestPoint::Found { max_depth, .. } => max_depth,
+                    DeepestPoint::NoneDeeper => 0.0,
+                    DeepestPoint::BudgetSpent => return Ok(None),
                 }
             }
         };
