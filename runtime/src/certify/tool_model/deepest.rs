@@ -110,7 +110,58 @@ impl Field<'_> {
             Some((point, depth)) => {
                 DeepestPoint::Found { point, depth, max_depth: depth.value.max(max_remaining) }
             }
+            // Every box was discarded: none has an owner's point that is deeper.
+            None if cells.is_empty() => DeepestPoint::NoneDeeper,
             None => DeepestPoint::BudgetSpent,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::{Certifier, PoseVerdict, TriangleBvh};
+    use crate::mesh::shapes;
+    use crate::{Pose, Unit};
+    use fearless_simd::Level;
+    use nalgebra::{Point3, Vector3};
+
+    crate::tool! {
+        tool Sphere "a ball of radius 1" {
+            units mm;
+            tip z = -1;
+            curve sphere = hypot(d, z) - 1;
+            region sphere where sphere <= 0 {
+                depth: -sphere;
+                direction: away from (0, 0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_that_discards_every_box_proves_that_no_point_is_deeper() {
+        let field = Field::new(&Sphere, Level::new()).expect("a Lipschitz constant");
+        let of_regions = |is_owned: bool| Owners::of_regions(field.info(), |_, _| is_owned);
+        let DeepestPoint::Found { depth, max_depth, .. } =
+            field.deepest(&of_regions(true), 0.5, 1.01)
+        else {
+            panic!("the centre is 1 deep")
+        };
+        assert!(depth.value <= 1.0 && 1.0 <= max_depth && max_depth <= 1.01 * depth.value);
+        let deeper = field.deepest(&of_regions(true), 100.0, 1.01);
+        assert!(matches!(deeper, DeepestPoint::NoneDeeper));
+        let without_owners = field.deepest(&of_regions(false), 0.0, 1.01);
+        assert!(matches!(without_owners, DeepestPoint::NoneDeeper));
+    }
+
+    #[test]
+    fn a_tool_that_is_allowed_more_than_its_depth_is_clear()
+    -> Result<(), Box<dyn std::error::Error>> {
+        let (low, high) = (Point3::new(-5.0, -5.0, -5.0), Point3::new(5.0, 5.0, 0.0));
+        let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+        let mut certifier = Certifier::new(&block, &Sphere)?.with_allowance("sphere", 100.0)?;
+        let pose = Pose::from_axis(Point3::new(0.0, 0.0, 3.0), Vector3::z())?;
+        assert!(matches!(certifier.check_pose(&pose), PoseVerdict::Clear));
+        Ok(())
     }
 }
