@@ -11,18 +11,41 @@ use tools_library::Fig73;
 use touchoff::scenes::{POSES, ScenePath, tube};
 use touchoff::{Cloud, Part, Pose, Probe, Sampling};
 
-/// The thesis's values of a row: contacts (average and maximum) and query time (average, µs) on a 250 MHz R10000.
+/// The thesis's values for a path: contacts at a pose, and the mean time of a query in µs on a 250 MHz R10000.
+struct ThesisValues {
+    contacts_mean: f64,
+    contacts_max: u32,
+    query_time_us: f64,
+}
+
+/// The thesis's values for a number of points.
 struct Printed {
     points: usize,
-    outside: (f64, u32, f64),
-    inside: (f64, u32, f64),
+    outside: ThesisValues,
+    inside: ThesisValues,
 }
 
 const TABLE_7_1: [Printed; 4] = [
-    Printed { points: 1_000, outside: (1.86, 7, 453.7), inside: (3.98, 8, 466.3) },
-    Printed { points: 5_000, outside: (4.50, 15, 544.4), inside: (4.32, 14, 618.4) },
-    Printed { points: 10_000, outside: (7.83, 25, 694.7), inside: (13.42, 41, 887.3) },
-    Printed { points: 20_000, outside: (11.8, 88, 954.4), inside: (23.5, 65, 1382.3) },
+    Printed {
+        points: 1_000,
+        outside: ThesisValues { contacts_mean: 1.86, contacts_max: 7, query_time_us: 453.7 },
+        inside: ThesisValues { contacts_mean: 3.98, contacts_max: 8, query_time_us: 466.3 },
+    },
+    Printed {
+        points: 5_000,
+        outside: ThesisValues { contacts_mean: 4.50, contacts_max: 15, query_time_us: 544.4 },
+        inside: ThesisValues { contacts_mean: 4.32, contacts_max: 14, query_time_us: 618.4 },
+    },
+    Printed {
+        points: 10_000,
+        outside: ThesisValues { contacts_mean: 7.83, contacts_max: 25, query_time_us: 694.7 },
+        inside: ThesisValues { contacts_mean: 13.42, contacts_max: 41, query_time_us: 887.3 },
+    },
+    Printed {
+        points: 20_000,
+        outside: ThesisValues { contacts_mean: 11.8, contacts_max: 88, query_time_us: 954.4 },
+        inside: ThesisValues { contacts_mean: 23.5, contacts_max: 65, query_time_us: 1382.3 },
+    },
 ];
 
 #[derive(Serialize)]
@@ -93,7 +116,7 @@ fn measure(part: &Part, path: ScenePath, progress: &Progress) -> Row {
     }
 }
 
-fn table(out: &mut impl Write, rows: &[(Row, &(f64, u32, f64))]) -> std::io::Result<()> {
+fn table(out: &mut impl Write, rows: &[(Row, &ThesisValues)]) -> std::io::Result<()> {
     writeln!(out, "Ho (1999), table 7.1: the tool of fig. 7.3 along a tube, {POSES} poses a row.")?;
     writeln!(out, "Each query finds all contacts, force, torque and niceness.\n")?;
     writeln!(
@@ -108,20 +131,21 @@ fn table(out: &mut impl Write, rows: &[(Row, &(f64, u32, f64))]) -> std::io::Res
         out,
         "-----------------+-------------------------------+-------------------------------------"
     )?;
-    for (row, (thesis_avg, thesis_max, thesis_us)) in rows {
+    for (row, thesis) in rows {
         let us = |ns: f64| ns / 1e3;
         let times = &row.query_time_ns;
         let here = format!("{:.2} ({})", row.contacts_mean, row.contacts_max);
-        let there = format!("{thesis_avg:.2} ({thesis_max})");
+        let there = format!("{:.2} ({})", thesis.contacts_mean, thesis.contacts_max);
         writeln!(
             out,
-            "{:>7}  {:<7} | {here:>13} {there:>15} | {:>6.2} {:>6.2} {:>6.2} {thesis_us:>8.1} {:>7.0}",
+            "{:>7}  {:<7} | {here:>13} {there:>15} | {:>6.2} {:>6.2} {:>6.2} {:>8.1} {:>7.0}",
             row.points,
             row.path,
             us(times.mean),
             us(times.p50 as f64),
             us(times.p99 as f64),
-            thesis_us / us(times.mean),
+            thesis.query_time_us,
+            thesis.query_time_us / us(times.mean),
         )?;
     }
     writeln!(

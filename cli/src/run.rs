@@ -15,7 +15,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Instant;
 use touchoff::certify::{Certifier, Penetration, TriangleBvh};
 use touchoff::tool::ToolInfo;
-use touchoff::{Contact, Part, Probe, Unit, Wrench};
+use touchoff::{Contact, Interval, Part, Probe, Unit, Wrench};
 use touchoff_verify::ClData;
 use touchoff_verify::job::NO_INSIDE;
 
@@ -223,22 +223,37 @@ fn row<'a>(
 struct Summary {
     poses: usize,
     in_contact: usize,
-    /// Depth and line of the deepest pose.
-    deepest: Option<(f64, usize)>,
-    /// Per surface: number of poses in contact, greatest depth and its line.
-    surfaces: BTreeMap<String, (usize, f64, usize)>,
+    deepest: Option<DeepestPose>,
+    surfaces: BTreeMap<String, SurfaceSummary>,
     times: Vec<u64>,
     proved: Option<Proved>,
+}
+
+/// The deepest pose and its line.
+#[derive(Clone, Copy)]
+struct DeepestPose {
+    depth: f64,
+    line: usize,
+}
+
+/// The poses at which a surface is in contact.
+struct SurfaceSummary {
+    poses: usize,
+    deepest: DeepestPose,
 }
 
 /// Proved results along the path.
 #[derive(Default)]
 struct Proved {
     in_contact: usize,
-    /// Number of poses at which the tool is wholly inside the material, and the line of the first.
-    inside: (usize, usize),
-    /// An interval that contains the greatest depth, and its line.
-    deepest: ([f64; 2], usize),
+    /// Number of poses at which the tool is wholly inside the material.
+    inside: usize,
+    /// The line of the first of them.
+    first_inside_line: usize,
+    /// An interval that contains the greatest depth.
+    depth: Interval,
+    /// The line of the pose with the greatest depth.
+    deepest_line: usize,
     times: Vec<u64>,
 }
 
@@ -250,14 +265,17 @@ impl Summary {
             return;
         }
         self.in_contact += 1;
-        if self.deepest.is_none_or(|(depth, _)| evaluation.depth() > depth) {
-            self.deepest = Some((evaluation.depth(), line));
+        let depth = evaluation.depth();
+        if self.deepest.as_ref().is_none_or(|deepest| depth > deepest.depth) {
+            self.deepest = Some(DeepestPose { depth, line });
         }
         for (name, depth) in surfaces {
-            let entry = self.surfaces.entry((*name).to_owned()).or_insert((0, -1.0, line));
-            entry.0 += 1;
-            if *depth > entry.1 {
-                (entry.1, entry.2) = (*depth, line);
+            let pose = DeepestPose { depth: *depth, line };
+            let summary = self.surfaces.entry((*name).to_owned());
+            let summary = summary.or_insert(SurfaceSummary { poses: 0, deepest: pose });
+            summary.poses += 1;
+            if pose.depth > summary.deepest.depth {
+                summary.deepest = pose;
             }
         }
     }
@@ -267,17 +285,19 @@ impl Summary {
         proved.times.push(ns);
         proved.in_contact += usize::from(penetration.witness.is_some());
         if inside == Some(true) {
-            let (count, first) = proved.inside;
-            proved.inside = (count + 1, if count == 0 { line } else { first });
+            if proved.inside == 0 {
+                proved.first_inside_line = line;
+            }
+            proved.inside += 1;
         }
-        if penetration.depth.high > proved.deepest.0[1] {
-            proved.deepest = (penetration.depth.into(), line);
+        if penetration.depth.high > proved.depth.high {
+            (proved.depth, proved.deepest_line) = (penetration.depth, line);
         }
     }
 
     fn print(mut self, unit: Unit) {
         match self.deepest {
-            Some((depth, line)) => message!(
+            Some(DeepestPose { depth, line }) => message!(
                 "{} of {} poses in contact, deepest {} at line {line}",
                 self.in_contact,
                 self.poses,
@@ -285,10 +305,11 @@ impl Summary {
             ),
             None => message!("none of {} poses in contact", self.poses),
         }
-        for (name, (poses, depth, line)) in &self.surfaces {
+        for (name, SurfaceSummary { poses, deepest }) in &self.surfaces {
             message!(
-                "  {name:<12} {poses:>6} poses, deepest {} at line {line}",
-                unit.format(*depth)
+                "  {name:<12} {poses:>6} poses, deepest {} at line {}",
+                unit.format(deepest.depth),
+                deepest.line
             );
         }
         let timing = Timing::of(&mut self.times);
@@ -301,20 +322,23 @@ impl Summary {
         );
         if let Some(mut proved) = self.proved {
             let timing = Timing::of(&mut proved.times);
-            if let (count @ 1.., line) = proved.inside {
+            if proved.inside > 0 {
                 message!(
-                    "proved: wholly inside the material at {count} of {} poses, first at line {line}",
-                    self.poses
+                    "proved: wholly inside the material at {} of {} poses, first at line {}",
+                    proved.inside,
+                    self.poses,
+                    proved.first_inside_line
                 );
             }
-            let ([low, high], line) = proved.deepest;
+            let Interval { low, high } = proved.depth;
             message!(
-                "proved: {} of {} poses in contact, deepest {} to {} at line {line}; time: mean {:.2} µs, \
+                "proved: {} of {} poses in contact, deepest {} to {} at line {}; time: mean {:.2} µs, \
                  median {:.2}, p99 {:.2}, max {:.2}",
                 proved.in_contact,
                 self.poses,
                 unit.format_number(low),
                 unit.format(high),
+                proved.deepest_line,
                 timing.mean / 1e3,
                 timing.p50 as f64 / 1e3,
                 timing.p99 as f64 / 1e3,

@@ -57,6 +57,15 @@ pub(super) struct Holder {
     pub(super) sections: Vec<Section>,
 }
 
+/// A statement of a library.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stated {
+    /// The dimension.
+    pub what: &'static str,
+    /// Its value, in the unit of the tool; angles in degrees.
+    pub value: f64,
+}
+
 /// Something that a reader of the imported tool should know.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -65,10 +74,10 @@ pub enum Note {
     Unstated(&'static str, String),
     /// Two statements of the library contradict each other. The last text says which was taken.
     Contradiction {
-        /// The first statement and its value.
-        first: (&'static str, f64),
+        /// The first statement.
+        first: Stated,
         /// The second.
-        second: (&'static str, f64),
+        second: Stated,
         /// The one that was taken.
         taken: &'static str,
     },
@@ -126,10 +135,10 @@ impl fmt::Display for Note {
             Note::Contradiction { first, second, taken } => write!(
                 f,
                 "the {} is {}, but the {} is {}; taken: the {taken}",
-                first.0,
-                decimal(first.1),
-                second.0,
-                decimal(second.1)
+                first.what,
+                decimal(first.value),
+                second.what,
+                decimal(second.value)
             ),
             Note::FlutesInHolder { flutes, stickout } => write!(
                 f,
@@ -248,8 +257,11 @@ impl Entry {
             && cutter.whole_pitches(pitch) < f64::from(teeth)
         {
             notes.push(Note::Contradiction {
-                first: ("number of teeth", f64::from(teeth)),
-                second: ("number of pitches in the flute length", cutter.whole_pitches(pitch)),
+                first: Stated { what: "number of teeth", value: f64::from(teeth) },
+                second: Stated {
+                    what: "number of pitches in the flute length",
+                    value: cutter.whole_pitches(pitch),
+                },
                 taken: "teeth that fit",
             });
         }
@@ -264,8 +276,8 @@ impl Entry {
         }
         if let Some(width) = cutter.width_of_short_oval() {
             notes.push(Note::Contradiction {
-                first: ("diameter", cutter.diameter),
-                second: ("diameter at the end of the flutes", width),
+                first: Stated { what: "diameter", value: cutter.diameter },
+                second: Stated { what: "diameter at the end of the flutes", value: width },
                 taken: "radii and the flute length",
             });
         }

@@ -3,7 +3,7 @@
 //! A bit names one of FreeCAD's shapes and the values of its parameters, as texts with units, whose decimals follow a
 //! point or a comma. A bit whose shape was changed by its user cannot be told from one of FreeCAD's own.
 
-use super::entry::{Entry, Holder, Note, Section};
+use super::entry::{Entry, Holder, Note, Section, Stated};
 use super::fusion::tool_number;
 use super::shape::{Cutter, Shape};
 use super::{Found, Problem, bytes, text};
@@ -135,8 +135,8 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
         && let Some(angle) = of.optional_angle("TaperAngle")?.filter(|angle| *angle != 0.0)
     {
         notes.push(Note::Contradiction {
-            first: ("taper angle", angle),
-            second: ("taper angle of the shape", 0.0),
+            first: Stated { what: "taper angle", value: angle },
+            second: Stated { what: "taper angle of the shape", value: 0.0 },
             taken: "shape",
         });
     }
@@ -153,8 +153,11 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
             let wide = tip_diameter + 2.0 * flutes()? * half_angle.to_radians().tan();
             if (wide - diameter).abs() > 0.01 * diameter {
                 notes.push(Note::Contradiction {
-                    first: ("diameter", diameter),
-                    second: ("diameter at the end of the cone", super::term::rounded(wide)),
+                    first: Stated { what: "diameter", value: diameter },
+                    second: Stated {
+                        what: "diameter at the end of the cone",
+                        value: super::term::rounded(wide),
+                    },
                     taken: "cone",
                 });
             }

@@ -4,7 +4,7 @@
 //! the cutting end. `LB` is the length from the tip to the holder, `LCF` that of the flutes, `SFDM` the diameter of
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
-use super::entry::{Entry, Holder, Note, Section};
+use super::entry::{Entry, Holder, Note, Section, Stated};
 use super::shape::{Crest, Cutter, Shape, ShapeError};
 use super::{Found, Problem, form};
 use serde_json::{Map, Value};
@@ -48,8 +48,11 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         && last.upper_diameter != shank
     {
         entry.notes.push(Note::Contradiction {
-            first: ("shank diameter", shank),
-            second: ("diameter of the shaft's last segment", last.upper_diameter),
+            first: Stated { what: "shank diameter", value: shank },
+            second: Stated {
+                what: "diameter of the shaft's last segment",
+                value: last.upper_diameter,
+            },
             taken: "shaft's segments",
         });
     }
@@ -66,8 +69,8 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
             let sum = stickout + gauge * holder.unit.factor_to(unit);
             if stated > 0.0 && (sum - stated).abs() > 1e-4 * sum.abs() {
                 entry.notes.push(Note::Contradiction {
-                    first: ("gauge length of the assembly", stated),
-                    second: ("sum of stick-out and holder", sum),
+                    first: Stated { what: "gauge length of the assembly", value: stated },
+                    second: Stated { what: "sum of stick-out and holder", value: sum },
                     taken: "sum",
                 });
             }
@@ -95,8 +98,8 @@ fn cutter(
             let (radius, diameter) = (geometry.get("RE")?.unwrap_or(0.0), diameter()?);
             if radius > 0.0 && (2.0 * radius - diameter).abs() > 1e-6 * diameter {
                 notes.push(Note::Contradiction {
-                    first: ("corner radius", radius),
-                    second: ("diameter", diameter),
+                    first: Stated { what: "corner radius", value: radius },
+                    second: Stated { what: "diameter", value: diameter },
                     taken: "diameter",
                 });
             }

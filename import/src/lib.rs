@@ -39,7 +39,7 @@ mod term;
 #[cfg(test)]
 mod tests;
 
-pub use entry::{Entry, Note, Skipped};
+pub use entry::{Entry, Note, Skipped, Stated};
 pub use error::ImportError;
 pub use files::ToolFile;
 

@@ -4,9 +4,21 @@ use super::term::Term;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// A point of the half section: the distance from the axis, and along it from the tip.
+/// A point of the half section.
 #[derive(Clone, Debug)]
-pub(super) struct Point(pub(super) Term, pub(super) Term);
+pub(super) struct Point {
+    /// The distance from the axis.
+    pub(super) d: Term,
+    /// The height above the tip.
+    pub(super) z: Term,
+}
+
+impl Point {
+    /// Creates a point from its coordinates `[d, z]`.
+    fn new([d, z]: [&Term; 2]) -> Point {
+        Point { d: d.clone(), z: z.clone() }
+    }
+}
 
 /// The surface of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +68,7 @@ impl Outline {
         Outline {
             params: Vec::new(),
             lets: Vec::new(),
-            start: Point(zero.clone(), zero),
+            start: Point::new([&zero, &zero]),
             segments: Vec::new(),
         }
     }
@@ -95,55 +107,49 @@ impl Outline {
 
     /// Adds a straight segment, unless its ends are one point.
     pub(super) fn line(&mut self, d: &Term, z: &Term, surface: Surface) {
-        self.push(Point(d.clone(), z.clone()), None, surface);
+        self.push(Point::new([d, z]), None, surface);
     }
 
-    /// Adds a convex arc, unless its ends are one point.
-    pub(super) fn arc(&mut self, to: (&Term, &Term), centre: (&Term, &Term), surface: Surface) {
+    /// Adds a convex arc to a point `[d, z]` about another, unless its ends are one point.
+    pub(super) fn arc(&mut self, to: [&Term; 2], centre: [&Term; 2], surface: Surface) {
         self.arc_about(to, centre, false, surface);
     }
 
-    /// Adds a concave arc, unless its ends are one point.
-    pub(super) fn hollow(&mut self, to: (&Term, &Term), centre: (&Term, &Term), surface: Surface) {
+    /// Adds a concave arc to a point `[d, z]` about another, unless its ends are one point.
+    pub(super) fn hollow(&mut self, to: [&Term; 2], centre: [&Term; 2], surface: Surface) {
         self.arc_about(to, centre, true, surface);
     }
 
-    fn arc_about(
-        &mut self,
-        to: (&Term, &Term),
-        centre: (&Term, &Term),
-        concave: bool,
-        surface: Surface,
-    ) {
-        let centre = Circle::Centre(Point(centre.0.clone(), centre.1.clone()));
-        self.push(Point(to.0.clone(), to.1.clone()), Some((centre, concave)), surface);
+    fn arc_about(&mut self, to: [&Term; 2], centre: [&Term; 2], concave: bool, surface: Surface) {
+        let centre = Circle::Centre(Point::new(centre));
+        self.push(Point::new(to), Some((centre, concave)), surface);
     }
 
-    /// Adds an arc of a radius, of at most half a turn, unless its ends are one point.
+    /// Adds an arc to a point `[d, z]`, of a radius and of at most half a turn, unless its ends are one point.
     pub(super) fn arc_of_radius(
         &mut self,
-        to: (&Term, &Term),
+        to: [&Term; 2],
         radius: &Term,
         concave: bool,
         surface: Surface,
     ) {
         let arc = Some((Circle::Radius(radius.clone()), concave));
-        self.push(Point(to.0.clone(), to.1.clone()), arc, surface);
+        self.push(Point::new(to), arc, surface);
     }
 
     fn push(&mut self, to: Point, arc: Option<(Circle, bool)>, surface: Surface) {
         let end = self.end().clone();
-        let size = [&end.0, &end.1, &to.0, &to.1];
+        let size = [&end.d, &end.z, &to.d, &to.z];
         let size = size.map(|term| term.value().abs()).into_iter().fold(0.0, f64::max);
         let same = |a: &Term, b: &Term| (a.value() - b.value()).abs() <= SAME * size;
-        let is_same = [same(&end.0, &to.0), same(&end.1, &to.1)];
-        if is_same == [true, true] {
+        let (same_d, same_z) = (same(&end.d, &to.d), same(&end.z, &to.z));
+        if same_d && same_z {
             return;
         }
         // A straight segment along the axis, or across it, is so exactly.
-        let to = match (&arc, is_same) {
-            (None, [true, _]) => Point(end.0, to.1),
-            (None, [_, true]) => Point(to.0, end.1),
+        let to = match arc {
+            None if same_d => Point { d: end.d, ..to },
+            None if same_z => Point { z: end.z, ..to },
             _ => to,
         };
         self.segments.push(Segment { to, arc, surface });
@@ -152,16 +158,16 @@ impl Outline {
     /// Returns the height at which the last cutting segment ends.
     pub(super) fn cutting_end(&self) -> f64 {
         let cutting = self.segments.iter().filter(|segment| segment.surface.cutting);
-        cutting.map(|segment| segment.to.1.value()).fold(0.0, f64::max)
+        cutting.map(|segment| segment.to.z.value()).fold(0.0, f64::max)
     }
 
     /// Returns the names of the params and values that the segments need.
     fn used_names(&self) -> BTreeSet<&'static str> {
         let mut texts: Vec<String> = Vec::new();
         for Segment { to, arc, .. } in &self.segments {
-            texts.extend([to.0.to_string(), to.1.to_string()]);
+            texts.extend([to.d.to_string(), to.z.to_string()]);
             texts.extend(arc.iter().flat_map(|(circle, _)| match circle {
-                Circle::Centre(Point(d, z)) => vec![d.to_string(), z.to_string()],
+                Circle::Centre(Point { d, z }) => vec![d.to_string(), z.to_string()],
                 Circle::Radius(radius) => vec![radius.to_string()],
             }));
         }
@@ -191,16 +197,16 @@ impl Outline {
         for (name, term) in self.lets.iter().filter(|(name, _)| used.contains(name)) {
             let _ = writeln!(text, "    let {name} = {term};");
         }
-        let Point(d, z) = &self.start;
+        let Point { d, z } = &self.start;
         let _ = write!(text, "\n    profile {{\n        start ({d}, {z});\n");
         let mut rest = self.segments.as_slice();
         while let Some(first) = rest.first() {
             let name = first.surface.name;
             let mark = if first.surface.cutting { " cutting" } else { "" };
             if let Some((circle, concave)) = &first.arc {
-                let Point(to_d, to_z) = &first.to;
+                let Point { d: to_d, z: to_z } = &first.to;
                 let circle = match circle {
-                    Circle::Centre(Point(d, z)) => format!("center ({d}, {z})"),
+                    Circle::Centre(Point { d, z }) => format!("center ({d}, {z})"),
                     Circle::Radius(radius) => format!("radius {radius}"),
                 };
                 let concave = if *concave { " concave" } else { "" };
@@ -215,7 +221,7 @@ impl Outline {
                 |segment: &&Segment| segment.arc.is_none() && segment.surface == first.surface;
             let count = rest.iter().take_while(same).count();
             let points: Vec<String> =
-                rest[..count].iter().map(|s| format!("({}, {})", s.to.0, s.to.1)).collect();
+                rest[..count].iter().map(|s| format!("({}, {})", s.to.d, s.to.z)).collect();
             let _ = writeln!(text, "        line to {} as {name}{mark};", points.join(", "));
             rest = &rest[count..];
         }

@@ -1,6 +1,6 @@
 //! Imported tools against closed forms, and files that are no libraries.
 
-use super::{Entry, ImportError, Library, Note};
+use super::{Entry, ImportError, Library, Note, Stated};
 use serde_json::{Value, json};
 use touchoff::tool::{Interpreted, Tool};
 
@@ -138,7 +138,7 @@ fn an_assembly_has_the_corners_of_cutter_shaft_and_holder() {
     assert_eq!(names, ["cutter.face", "cutter.flute", "cutter.neck", "shaft.shaft", "holder.body"]);
     assert!(matches!(
         entry.notes[..],
-        [Note::Contradiction { first: ("shank diameter", 6.0), .. }]
+        [Note::Contradiction { first: Stated { what: "shank diameter", value: 6.0 }, .. }]
     ));
 }
 

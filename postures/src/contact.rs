@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
-use touchoff::tool::{Circle, ToolInfo};
+use touchoff::tool::{Circle, ProfileSegment, ToolInfo};
 
 /// Sites of the profile where a cutting surface is convex: arcs with their normals, and corners with the
 /// normals along which they may be touched.
@@ -41,52 +41,25 @@ const TOLERANCE: f64 = 1e-9;
 impl ContactSites {
     /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
     pub(crate) fn new(info: &ToolInfo, length: f64) -> ContactSites {
-        let cuts = |surface| info.surface(surface).cutting;
         let mut sites = Vec::new();
         // The profile continues beyond the axis as its mirror image.
         let mut previous = info.outline.first().map(|first| {
-            let [d, z] = unit_tangent(first.from, first.to, first.circle, 0);
-            ([d, -z], cuts(first.surface))
+            let [[d, z], _] = unit_tangents(first);
+            Previous { tangent: [d, -z], is_cutting: info.surface(first.surface).cutting }
         });
-        for piece in info.outline.iter() {
-            let [start, end] =
-                [0, 1].map(|end| unit_tangent(piece.from, piece.to, piece.circle, end));
-            let cutting = cuts(piece.surface);
-            if let Some((last, cut)) = previous
-                && cut
-                && cutting
-            {
-                let turn = cross(last, start).atan2(dot(last, start));
-                if turn > TOLERANCE {
-                    let from = normal(last);
-                    // The corner's material spans an angle of π less `turn` about the opposite of the mean
-                    // normal.
-                    let into = |side: f64| {
-                        let (sine, cosine) =
-                            (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
-                        [-cosine, -sine]
-                    };
-                    sites.push(ContactSite {
-                        centre: piece.from.map(|component| component * length),
-                        radius: 0.0,
-                        angles: [from, from + turn],
-                        inward: Some([into(1.0), into(-1.0)]),
-                    });
+        for segment in info.outline.iter() {
+            let tangents = unit_tangents(segment);
+            let is_cutting = info.surface(segment.surface).cutting;
+            if is_cutting {
+                if let Some(Previous { tangent, is_cutting: true }) = previous {
+                    let corner = [tangent, tangents[0]];
+                    sites.extend(ContactSite::corner(segment.from, corner, length));
+                }
+                if let Some(circle) = segment.circle.filter(|circle| circle.convex) {
+                    sites.push(ContactSite::arc(circle, tangents, length));
                 }
             }
-            if let Some(Circle { centre, radius, convex: true }) = piece.circle
-                && cutting
-            {
-                let from = normal(start);
-                let turn = (normal(end) - from).rem_euclid(2.0 * PI);
-                sites.push(ContactSite {
-                    centre: centre.map(|component| component * length),
-                    radius: radius * length,
-                    angles: [from, from + turn],
-                    inward: None,
-                });
-            }
-            previous = Some((end, cutting));
+            previous = Some(Previous { tangent: tangents[1], is_cutting });
         }
         ContactSites { sites, size: info.size() * length }
     }
@@ -98,20 +71,21 @@ impl ContactSites {
     }
 
     /// Returns the contacts between a tool with the given axis and a face. The face has a point `point` and an
-    /// outward normal; the tool's outward normal at the contact is the opposite.
+    /// outward normal; the tool's outward normal at the contact is the opposite. `normal` and `axis` are unit vectors.
     pub(crate) fn contacts(
         &self,
         point: Point3<f64>,
         normal: Vector3<f64>,
         axis: Vector3<f64>,
     ) -> impl Iterator<Item = Contact> {
+        // The tool's outward normal is [out, up] in the half plane. No `out` is below 0: the angle is from -π/2 to π/2.
         let up = -normal.dot(&axis);
         let across = -normal - axis * up;
         let out = across.norm();
         let angle = up.atan2(out);
         self.sites.iter().filter_map(move |site| {
             let [from, to] = site.angles;
-            // Both are angles of the half plane, or slightly beyond its ends.
+            // The angles of a site begin anywhere from -π to π and may end a turn later, so they are compared modulo a turn.
             let offset = (angle - from + TOLERANCE).rem_euclid(2.0 * PI) - TOLERANCE;
             if offset > to - from + TOLERANCE {
                 return None;
@@ -121,29 +95,76 @@ impl ContactSites {
             if out < TOLERANCE && touched[0] > TOLERANCE * self.size {
                 return None;
             }
-            let way = if out > 0.0 { across / out } else { across };
+            let radial = if out > 0.0 { across / out } else { across };
             let inward = site.inward.unwrap_or([[-out, -up]; 2]);
             Some(Contact {
-                tip: point - way * touched[0] - axis * touched[1],
-                within: inward
-                    .map(|way| [0, 1].map(|k| touched[k] + TOLERANCE * self.size * way[k])),
+                tip: point - radial * touched[0] - axis * touched[1],
+                within: inward.map(|direction| {
+                    [0, 1].map(|k| touched[k] + TOLERANCE * self.size * direction[k])
+                }),
             })
         })
     }
 }
 
-/// Returns the unit tangent at the beginning (`end` 0) or the end of a profile segment.
-fn unit_tangent(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> [f64; 2] {
-    let Some(Circle { centre, convex, .. }) = circle else {
-        return unit([to[0] - from[0], to[1] - from[1]]);
-    };
-    let at = if end == 0 { from } else { to };
-    let [d, z] = unit([at[0] - centre[0], at[1] - centre[1]]);
-    if convex { [-z, d] } else { [z, -d] }
+impl ContactSite {
+    /// Returns the site of a corner of the profile between two unit tangents; `None` if it is not convex. `length` is
+    /// the factor from the tool's unit of length to the part's.
+    fn corner(
+        corner: [f64; 2],
+        [before, after]: [[f64; 2]; 2],
+        length: f64,
+    ) -> Option<ContactSite> {
+        let turn = cross(before, after).atan2(dot(before, after));
+        let from = normal_angle(before);
+        // The corner's material spans an angle of π less `turn` about the opposite of the mean normal.
+        let into = |side: f64| {
+            let (sine, cosine) = (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
+            [-cosine, -sine]
+        };
+        (turn > TOLERANCE).then(|| ContactSite {
+            centre: corner.map(|component| component * length),
+            radius: 0.0,
+            angles: [from, from + turn],
+            inward: Some([into(1.0), into(-1.0)]),
+        })
+    }
+
+    /// Returns the site of a convex arc with these unit tangents at its ends. `length` is the factor from the tool's unit
+    /// of length to the part's.
+    fn arc(circle: Circle, tangents: [[f64; 2]; 2], length: f64) -> ContactSite {
+        let [from, to] = tangents.map(normal_angle);
+        ContactSite {
+            centre: circle.centre.map(|component| component * length),
+            radius: circle.radius * length,
+            angles: [from, from + (to - from).rem_euclid(2.0 * PI)],
+            inward: None,
+        }
+    }
 }
 
-/// Returns the angle of the outward normal for a direction of travel with the material on its left.
-fn normal([d, z]: [f64; 2]) -> f64 {
+/// The end of the profile's segment before the one that is examined.
+struct Previous {
+    /// Unit tangent.
+    tangent: [f64; 2],
+    is_cutting: bool,
+}
+
+/// Returns the unit tangents at the beginning and the end of a profile segment.
+fn unit_tangents(segment: &ProfileSegment) -> [[f64; 2]; 2] {
+    let ends = [segment.from, segment.to];
+    let Some(Circle { centre, convex, .. }) = segment.circle else {
+        let [from, to] = ends;
+        return [unit([to[0] - from[0], to[1] - from[1]]); 2];
+    };
+    ends.map(|end| {
+        let [d, z] = unit([end[0] - centre[0], end[1] - centre[1]]);
+        if convex { [-z, d] } else { [z, -d] }
+    })
+}
+
+/// Returns the angle of the outward normal for a direction of travel with the material on its left, from -π to π.
+fn normal_angle([d, z]: [f64; 2]) -> f64 {
     (-d).atan2(z)
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{BoxVisitor, TriangleBvh};
-use touchoff::tool::{ProfileSegment, ToolInfo};
+use touchoff::tool::{Circle, ProfileSegment, ToolInfo};
 
 /// The underside of a holder as a step function of the radius, upward from its nose. Lengths are in the part's
 /// unit.
@@ -37,35 +37,10 @@ impl Holder {
         };
         let first = mount(info.outline.first()?)?;
         let pieces = info.outline.iter().filter(|segment| mount(segment) != Some(first));
-        let mut corners: Vec<[f64; 2]> = Vec::new();
-        for segment in pieces {
-            // An arc is a single step with its largest radius and its lowest height.
-            let [from, to] = [segment.from, segment.to];
-            let count = if segment.circle.is_some() { 1 } else { STEPS_PER_SEGMENT };
-            for k in 0..count {
-                let at = |k: usize, part: usize| {
-                    from[part] + (to[part] - from[part]) * k as f64 / count as f64
-                };
-                let (low, high) = (at(k, 1).min(at(k + 1, 1)), at(k, 0).max(at(k + 1, 0)));
-                let bulge = segment.circle.filter(|arc| arc.convex);
-                let radius = bulge.map_or(high, |arc| high.max(arc.centre[0] + arc.radius));
-                // With the material on its left, an arc runs outward below its centre.
-                let below = bulge.filter(|arc| from[0] <= arc.centre[0] && arc.centre[0] <= to[0]);
-                let low = below.map_or(low, |arc| low.min(arc.centre[1] - arc.radius));
-                corners.push([radius * length, low * length]);
-            }
-        }
-        let nose = corners.iter().map(|corner| corner[1]).reduce(f64::min)?;
-        corners.sort_by(|a, b| b[0].total_cmp(&a[0]).then(a[1].total_cmp(&b[1])));
-        // From the widest inward, keep each corner that is lower than all wider ones.
-        let mut steps: Vec<[f64; 2]> = Vec::new();
-        for [radius, z] in corners {
-            let height = z - nose;
-            if steps.last().is_none_or(|[_, lowest]| height < *lowest) {
-                steps.push([radius, height]);
-            }
-        }
-        steps.reverse();
+        let corners: Vec<Corner> =
+            pieces.flat_map(|segment| ring_corners(segment, length)).collect();
+        let nose = corners.iter().map(|corner| corner.lowest).reduce(f64::min)?;
+        let steps = underside(corners, nose);
         let cutting_segments =
             info.outline.iter().filter(|segment| info.surface(segment.surface).cutting);
         let cutting = cutting_segments
@@ -139,6 +114,50 @@ impl Holder {
         }
         highest
     }
+}
+
+/// The lower outer corner of a ring of a holder, in the part's unit.
+struct Corner {
+    /// The largest distance of the ring's points from the axis.
+    radius: f64,
+    /// The height of its lowest point above the tip.
+    lowest: f64,
+}
+
+/// Returns the corners of rings that enclose a segment of the profile: one of an arc, several of a straight segment.
+/// `length` is the factor from the tool's unit of length to the part's.
+fn ring_corners(segment: &ProfileSegment, length: f64) -> impl Iterator<Item = Corner> {
+    let ProfileSegment { from, to, circle, .. } = *segment;
+    let count = if circle.is_some() { 1 } else { STEPS_PER_SEGMENT };
+    (0..count).map(move |k| {
+        let [start, end] = [k, k + 1].map(|k| {
+            [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * k as f64 / count as f64)
+        });
+        let (mut radius, mut lowest) = (start[0].max(end[0]), start[1].min(end[1]));
+        if let Some(Circle { centre, radius: arc_radius, .. }) = circle.filter(|arc| arc.convex) {
+            radius = radius.max(centre[0] + arc_radius);
+            // With the material on its left, an arc runs outward below its centre.
+            if from[0] <= centre[0] && centre[0] <= to[0] {
+                lowest = lowest.min(centre[1] - arc_radius);
+            }
+        }
+        Corner { radius: radius * length, lowest: lowest * length }
+    })
+}
+
+/// Returns the steps of the underside of rings, as radii and heights above the nose, both ascending.
+fn underside(mut corners: Vec<Corner>, nose: f64) -> Vec<[f64; 2]> {
+    corners.sort_by(|a, b| b.radius.total_cmp(&a.radius).then(a.lowest.total_cmp(&b.lowest)));
+    // From the widest inward, keep each corner that is lower than all wider ones.
+    let mut steps: Vec<[f64; 2]> = Vec::new();
+    for Corner { radius, lowest } in corners {
+        let height = lowest - nose;
+        if steps.last().is_none_or(|[_, last_height]| height < *last_height) {
+            steps.push([radius, height]);
+        }
+    }
+    steps.reverse();
+    steps
 }
 
 /// A search for the least stick-out of a holder at a pose.

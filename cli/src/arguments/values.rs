@@ -10,11 +10,13 @@ use std::ops::RangeInclusive;
 /// any value, it would also take the next option for one.
 pub(super) fn join_negative_numbers(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
-    let mut options = true;
+    let mut before_double_dash = true;
     for argument in arguments {
-        options &= argument != "--";
+        before_double_dash &= argument != "--";
         match joined.last_mut() {
-            Some(option) if options && is_negative(&argument) && is_long_option(option) => {
+            Some(option)
+                if before_double_dash && is_negative(&argument) && is_long_option(option) =>
+            {
                 option.push("=");
                 option.push(argument);
             }
@@ -63,7 +65,7 @@ pub(super) fn direction_count(text: &str) -> Result<u16, String> {
 /// Parses a number of postures to keep.
 pub(super) fn posture_count(text: &str) -> Result<NonZeroU16, String> {
     let value = whole(text, 1..=u16::MAX.into())?;
-    Ok(NonZeroU16::new(value as u16).unwrap_or(NonZeroU16::MIN))
+    Ok(NonZeroU16::new(value as u16).expect("the range begins at 1"))
 }
 
 fn whole(text: &str, range: RangeInclusive<u64>) -> Result<u64, String> {
@@ -76,34 +78,24 @@ fn whole(text: &str, range: RangeInclusive<u64>) -> Result<u64, String> {
 
 /// Parses a finite length of 0 or more.
 pub(super) fn length(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value >= 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a finite length of 0 or more, such as 0.01".to_owned()),
-    }
+    let is_valid = |value: f64| value >= 0.0 && value.is_finite();
+    number_if(is_valid, text, "give a finite length of 0 or more, such as 0.01")
 }
 
 /// Parses a finite length above 0.
 pub(super) fn positive_length(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a finite length above 0, such as 0.01".to_owned()),
-    }
+    number_if(is_finite_positive, text, "give a finite length above 0, such as 0.01")
 }
 
 /// Parses a finite number above 0.
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("give a finite number above 0".to_owned()),
-    }
+    number_if(is_finite_positive, text, "give a finite number above 0")
 }
 
 /// Parses a largest tilt in degrees.
 pub(super) fn tilt(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value > 0.0 && value <= 180.0 => Ok(value),
-        _ => Err("give an angle in degrees above 0 and up to 180, such as 90".to_owned()),
-    }
+    let is_valid = |value: f64| value > 0.0 && value <= 180.0;
+    number_if(is_valid, text, "give an angle in degrees above 0 and up to 180, such as 90")
 }
 
 /// Parses the number of a tool.
@@ -113,18 +105,13 @@ pub(super) fn tool_number(text: &str) -> Result<u32, String> {
 
 /// Parses a finite number.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        value if value.is_finite() => Ok(value),
-        _ => Err("give a finite number".to_owned()),
-    }
+    number_if(f64::is_finite, text, "give a finite number")
 }
 
 /// Parses a rate in Hz, from 1 to 100000.
 pub(super) fn rate(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        rate @ 1.0..=100_000.0 => Ok(rate),
-        _ => Err("give a rate of 1 to 100000 cycles per second".to_owned()),
-    }
+    let is_valid = |value: f64| (1.0..=100_000.0).contains(&value);
+    number_if(is_valid, text, "give a rate of 1 to 100000 cycles per second")
 }
 
 /// Parses a surface and its allowance, `SURFACE=LENGTH`.
@@ -156,6 +143,16 @@ pub(super) fn direction(text: &str) -> Result<Point3<f64>, String> {
         }
         point => Ok(point),
     }
+}
+
+fn is_finite_positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
+}
+
+/// Parses a number that meets a condition; `remedy` is the error if it does not.
+fn number_if(is_valid: impl Fn(f64) -> bool, text: &str, remedy: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if is_valid(value) { Ok(value) } else { Err(remedy.to_owned()) }
 }
 
 fn number(text: &str) -> Result<f64, String> {

@@ -31,9 +31,12 @@ pub(super) fn planning_rules(rules: &Rules) -> Rules {
 /// Proves programs of a tool.
 pub(super) struct Prover<'a> {
     verifier: Verifier<'a>,
-    /// The centre of the part's box, half its diagonal, and the radius of the sphere that holds the tips of all tools
-    /// that touch the part.
-    near: (Point3<f64>, f64, f64),
+    /// The centre of the part's box.
+    centre: Point3<f64>,
+    /// Half the diagonal of the part's box.
+    half_diagonal: f64,
+    /// The radius of the sphere about the centre that holds the tips of all tools that touch the part.
+    tip_radius: f64,
     /// Name of the output file.
     file: &'a str,
 }
@@ -62,9 +65,10 @@ impl<'a> Prover<'a> {
             verifier = verifier.with_allowance(&surface.name, allowed)?;
         }
         let [low, high] = bvh.bounds();
-        let half = 0.5 * (high - low).norm();
-        let near = half + verifier.reach();
-        Ok(Prover { verifier, near: (nalgebra::center(&low, &high), half, near), file })
+        let half_diagonal = 0.5 * (high - low).norm();
+        let tip_radius = half_diagonal + verifier.reach();
+        let centre = nalgebra::center(&low, &high);
+        Ok(Prover { verifier, centre, half_diagonal, tip_radius, file })
     }
 
     /// Proves a program, which `write` makes of cutter locations and reads back. In rapid traverse no surface may be
@@ -101,19 +105,17 @@ impl<'a> Prover<'a> {
     /// part in no direction. The latter is on a sphere about the part, twice as large as one that holds the tips of all
     /// tools that touch it. `None` for a pose beyond that.
     pub(super) fn away(&self, pose: &Pose) -> Option<[Pose; 2]> {
-        let (centre, half, near) = self.near;
-        let radius = 2.0 * near;
-        let (from, axis) = (pose.tip() - centre, pose.axis());
+        let radius = 2.0 * self.tip_radius;
+        let (from, axis) = (pose.tip() - self.centre, pose.axis());
         let height = from.dot(&axis);
         let exit = (height * height + radius * radius - from.norm_squared()).sqrt() - height;
-        let lead = pose.translated(axis * exit.min(LEAD * half)).ok()?;
+        let lead = pose.translated(axis * exit.min(LEAD * self.half_diagonal)).ok()?;
         Some([lead, pose.translated(axis * exit).ok()?])
     }
 
     /// Returns whether the tool reaches the part in no direction of its axis.
     pub(super) fn is_away(&self, pose: &Pose) -> bool {
-        let (centre, _, near) = self.near;
-        (pose.tip() - centre).norm() > near
+        (pose.tip() - self.centre).norm() > self.tip_radius
     }
 
     /// Returns the failure for a finding in the motion to a cutter location.

@@ -116,8 +116,10 @@ struct Content<'a> {
     comparison: Option<PartComparison>,
     files: Vec<InputFile>,
     shapes: Vec<ToolShape>,
-    /// The data of the 3-D view as JSON, and the rounding of its coordinates; `null` and `None` without a view.
-    scene: (String, Option<f64>),
+    /// The data of the 3-D view as JSON; `null` without a view.
+    scene_json: String,
+    /// The largest rounding error of a coordinate in the 3-D view, in the unit of the job; `None` without a view.
+    scene_rounding: Option<f64>,
     /// One picture per quantity.
     sheets: Vec<Picture>,
     /// The worst findings, by their index.
@@ -216,7 +218,8 @@ impl<'a> Content<'a> {
             files: files
                 .map(|(role, file)| InputFile::read(role, file))
                 .collect::<Result<_, _>>()?,
-            scene: (scene::json(&scene)?, scene.map(|scene| scene.rounding_error())),
+            scene_json: scene::json(&scene)?,
+            scene_rounding: scene.map(|scene| scene.rounding_error()),
             sheets,
             close_ups,
             has_place: places.iter().map(Option::is_some).collect(),

@@ -32,60 +32,59 @@ pub(super) enum Type {
     },
 }
 
+/// A segment of a cutting part, with its upper end.
+enum Side {
+    Line {
+        to: [f64; 2],
+    },
+    /// A convex arc.
+    Arc {
+        to: [f64; 2],
+        radius: f64,
+    },
+    /// A concave arc, which no type has.
+    Other,
+}
+
+impl Side {
+    fn of(segment: &ProfileSegment) -> Side {
+        let to = segment.to;
+        match segment.circle {
+            None => Side::Line { to },
+            Some(Circle { radius, convex: true, .. }) => Side::Arc { to, radius },
+            Some(Circle { convex: false, .. }) => Side::Other,
+        }
+    }
+}
+
 /// Returns the type of a cutting part, as its segments suggest it. The caller has to compare the outlines.
 pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
-    let line = |segment: &ProfileSegment| segment.circle.is_none().then_some(segment.to);
-    let arc = |segment: &ProfileSegment| {
-        let Circle { centre, radius, convex } = segment.circle?;
-        convex.then_some((segment.to, centre, radius))
-    };
-    let is_straight = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() <= 1e-9 * b[1].abs();
-    // The half angle of the cone from one point up to another.
-    let half_angle =
-        |from: [f64; 2], to: [f64; 2]| ((to[0] - from[0]) / (to[1] - from[1])).atan().to_degrees();
-    let point = |edge: [f64; 2]| {
-        let angle = 2.0 * half_angle([0.0; 2], edge);
-        Type::Point { diameter: 2.0 * edge[0], tip_diameter: 0.0, angle }
-    };
-    match cutting {
-        [tip, flute] if arc(tip).is_some() => {
-            let ((edge, _, radius), end) = (arc(tip)?, line(flute)?);
-            Some(if is_straight(edge, end) {
-                Type::Ball { diameter: 2.0 * radius }
-            } else {
-                Type::TaperedBall { radius, half_angle: half_angle(edge, end) }
-            })
+    use Side::{Arc, Line};
+    let sides: Vec<Side> = cutting.iter().map(Side::of).collect();
+    match *sides {
+        [Arc { radius, .. }] => Some(Type::Ball { diameter: 2.0 * radius }),
+        [Line { to: edge }] | [Line { to: edge }, Line { .. }] if edge[1] > 0.0 => {
+            Some(point(edge, 0.0, cone_half_angle([0.0; 2], edge)))
         }
-        [tip] => match arc(tip) {
-            Some((_, _, radius)) => Some(Type::Ball { diameter: 2.0 * radius }),
-            None => line(tip).filter(|edge| edge[1] > 0.0).map(point),
-        },
-        [face, flute] => {
-            let (edge, end) = (line(face)?, line(flute)?);
-            Some(if edge[1] > 0.0 {
-                point(edge)
-            } else if is_straight(edge, end) {
-                Type::End { diameter: 2.0 * edge[0], corner: 0.0 }
-            } else {
-                let half_angle = half_angle(edge, end);
-                Type::Taper { tip_diameter: 2.0 * edge[0], corner: 0.0, half_angle }
-            })
+        [Arc { to: edge, radius }, Line { to: end }] => Some(if is_straight(edge, end) {
+            Type::Ball { diameter: 2.0 * radius }
+        } else {
+            Type::TaperedBall { radius, half_angle: cone_half_angle(edge, end) }
+        }),
+        [Line { to: edge }, Line { to: end }] => Some(if is_straight(edge, end) {
+            Type::End { diameter: 2.0 * edge[0], corner: 0.0 }
+        } else {
+            let half_angle = cone_half_angle(edge, end);
+            Type::Taper { tip_diameter: 2.0 * edge[0], corner: 0.0, half_angle }
+        }),
+        [Line { to: face }, Line { to: wide }, Line { .. }] => {
+            Some(point(wide, 2.0 * face[0], cone_half_angle(face, wide)))
         }
-        [face, corner, flute] => {
-            let (face, end) = (line(face)?, line(flute)?);
-            let Some((edge, _, radius)) = arc(corner) else {
-                let wide = line(corner)?;
-                let (diameter, tip_diameter) = (2.0 * wide[0], 2.0 * face[0]);
-                return Some(Type::Point {
-                    diameter,
-                    tip_diameter,
-                    angle: 2.0 * half_angle(face, wide),
-                });
-            };
+        [Line { to: face }, Arc { to: edge, radius }, Line { to: end }] => {
             if is_straight(edge, end) {
                 return Some(Type::End { diameter: 2.0 * end[0], corner: radius });
             }
-            let half_angle = half_angle(edge, end);
+            let half_angle = cone_half_angle(edge, end);
             // The side, continued, meets the plane of the tip there.
             let (sin, cos) = half_angle.to_radians().sin_cos();
             let tip_diameter = 2.0 * (face[0] + radius * (1.0 - sin) / cos);
@@ -93,4 +92,19 @@ pub(super) fn recognise(cutting: &[ProfileSegment]) -> Option<Type> {
         }
         _ => None,
     }
+}
+
+/// Returns a point with its largest circle at `wide`, from half its angle in degrees.
+fn point(wide: [f64; 2], tip_diameter: f64, half_angle: f64) -> Type {
+    Type::Point { diameter: 2.0 * wide[0], tip_diameter, angle: 2.0 * half_angle }
+}
+
+/// Returns whether the line from one point up to another is parallel to the axis, to within 1e-9 of the upper one's height.
+fn is_straight(from: [f64; 2], to: [f64; 2]) -> bool {
+    (from[0] - to[0]).abs() <= 1e-9 * to[1].abs()
+}
+
+/// Returns half the angle of the cone from one point up to another, in degrees.
+fn cone_half_angle(from: [f64; 2], to: [f64; 2]) -> f64 {
+    ((to[0] - from[0]) / (to[1] - from[1])).atan().to_degrees()
 }

@@ -20,7 +20,7 @@ impl Cutter {
             let corner = outline.param("corner_radius", corner);
             let inner = radius.minus(&corner);
             outline.line(&inner, &zero, FACE);
-            outline.arc((radius, &corner), (&inner, &corner), CORNER);
+            outline.arc([radius, &corner], [&inner, &corner], CORNER);
         }
         self.flutes(outline, radius)
     }
@@ -28,7 +28,7 @@ impl Cutter {
     /// Draws a ball.
     pub(super) fn ball(&self, outline: &mut Outline, radius: &Term) -> Result<(), ShapeError> {
         let zero = Term::number(0.0);
-        outline.arc((radius, radius), (&zero, radius), cutting("ball"));
+        outline.arc([radius, radius], [&zero, radius], cutting("ball"));
         self.flutes(outline, radius)
     }
 
@@ -63,7 +63,7 @@ impl Cutter {
         let ball = outline.param("ball_radius", ball);
         let to_d = ball.times(&angle.cos());
         let to_z = ball.minus(&ball.times(&angle.sin()));
-        outline.arc((&to_d, &to_z), (&zero, &ball), cutting("ball"));
+        outline.arc([&to_d, &to_z], [&zero, &ball], cutting("ball"));
         let flute = self.flute_param(outline)?;
         let wide = to_d.plus(&flute.minus(&to_z).times(&angle.tan()));
         self.cone(outline, &wide, &flute)?;
@@ -175,7 +175,7 @@ impl Cutter {
             outline.line(&inner, &zero, FACE);
             edge = inner.plus(&corner.times(&angle.cos()));
             from = corner.plus(&corner.times(&angle.sin()));
-            outline.arc((&edge, &from), (&inner, &corner), CORNER);
+            outline.arc([&edge, &from], [&inner, &corner], CORNER);
         }
         let flute = self.flute_param(outline)?;
         let narrow = edge.minus(&flute.minus(&from).times(&angle.tan()));
@@ -195,7 +195,7 @@ impl Cutter {
         let zero = Term::number(0.0);
         let neck = self.neck_diameter();
         if neck >= self.diameter {
-            outline.arc((radius, radius), (&zero, radius), cutting("ball"));
+            outline.arc([radius, radius], [&zero, radius], cutting("ball"));
             return self.flutes(outline, radius);
         }
         positive("neck's diameter", neck)?;
@@ -228,14 +228,14 @@ impl Cutter {
         let inner = radius.minus(&corner);
         let upper = high.minus(&corner);
         outline.line(&inner, &zero, FACE);
-        outline.arc((radius, &corner), (&inner, &corner), CORNER);
+        outline.arc([radius, &corner], [&inner, &corner], CORNER);
         // Below a wider neck a rounded edge would leave a gap that narrows to nothing.
         if self.neck_diameter() / 2.0 > inner.value() {
             outline.line(radius, &high, FLUTE);
             return Ok(());
         }
         outline.line(radius, &upper, FLUTE);
-        outline.arc((&inner, &high), (&inner, &upper), CORNER);
+        outline.arc([&inner, &high], [&inner, &upper], CORNER);
         Ok(())
     }
 
@@ -255,7 +255,7 @@ impl Cutter {
         let corner = outline.param("corner_radius", corner);
         let centre = outline.define("wide", radius.plus(&corner));
         if max_diameter / 2.0 >= centre.value() {
-            outline.hollow((&centre, &corner), (&centre, &zero), CORNER);
+            outline.hollow([&centre, &corner], [&centre, &zero], CORNER);
             return self.flutes(outline, &centre);
         }
         let wide = outline.param("max_diameter", max_diameter).half();
@@ -268,7 +268,7 @@ impl Cutter {
             ));
         }
         let up = corner.squared().minus(&centre.minus(&wide).squared()).sqrt();
-        outline.hollow((&wide, &up), (&centre, &zero), CORNER);
+        outline.hollow([&wide, &up], [&centre, &zero], CORNER);
         self.flutes(outline, &wide)
     }
 }

@@ -275,7 +275,7 @@ impl Cutter {
         radius: &Term,
         surface: Surface,
     ) -> Result<(), ShapeError> {
-        if self.flute_length > outline.end().1.value() {
+        if self.flute_length > outline.end().z.value() {
             let flute = self.flute_param(outline)?;
             outline.line(radius, &flute, surface);
         }
@@ -311,17 +311,17 @@ impl Cutter {
         outline.line(&inner, &zero, FACE);
         let d = inner.plus(&corner.times(&angle.cos()));
         let z = corner.minus(&corner.times(&angle.sin()));
-        outline.arc((&d, &z), (&inner, &corner), CORNER);
+        outline.arc([&d, &z], [&inner, &corner], CORNER);
         Ok([d, z])
     }
 
     /// Draws the flutes as a cone.
     fn cone(&self, outline: &mut Outline, to: &Term, flute: &Term) -> Result<(), ShapeError> {
-        if flute.value() > outline.end().1.value() {
+        if flute.value() > outline.end().z.value() {
             outline.line(to, flute, FLUTE);
             Ok(())
         } else {
-            let tip = outline.end().1.value();
+            let tip = outline.end().z.value();
             Err(ShapeError::Contradiction("flute length", self.flute_length, "tip", tip))
         }
     }
@@ -332,7 +332,7 @@ impl Cutter {
         if matches!(self.shape, Shape::Form(_)) {
             return Ok(());
         }
-        let top = outline.end().1.value();
+        let top = outline.end().z.value();
         if top > self.length * (1.0 + 1e-9) {
             return Err(ShapeError::Contradiction(
                 "overall length",
@@ -343,7 +343,7 @@ impl Cutter {
         }
         let length = outline.param("length", self.length);
         if let Some((shoulder, diameter)) = self.shoulder
-            && shoulder > outline.end().1.value()
+            && shoulder > outline.end().z.value()
             && shoulder < self.length
         {
             let z = outline.param("shoulder_length", shoulder);
@@ -353,9 +353,9 @@ impl Cutter {
                     positive("shoulder diameter", diameter)?;
                     outline.known_or_param("shoulder_diameter", diameter).half()
                 }
-                None => from.0.clone(),
+                None => from.d.clone(),
             };
-            outline.line(&d, &from.1, NECK);
+            outline.line(&d, &from.z, NECK);
             outline.line(&d, &z, NECK);
         }
         let from = outline.end().clone();
@@ -363,15 +363,15 @@ impl Cutter {
             Some(diameter) => {
                 positive("shank diameter", diameter)?;
                 // A shank without a length would be a step that turns straight back.
-                if self.length - from.1.value() <= SAME * self.length {
-                    from.0.clone()
+                if self.length - from.z.value() <= SAME * self.length {
+                    from.d.clone()
                 } else {
                     outline.known_or_param("shank_diameter", diameter).half()
                 }
             }
-            None => from.0.clone(),
+            None => from.d.clone(),
         };
-        outline.line(&d, &from.1, SHANK);
+        outline.line(&d, &from.z, SHANK);
         outline.line(&d, &length, SHANK);
         outline.line(&Term::number(0.0), &length, SHANK);
         Ok(())
@@ -436,9 +436,9 @@ fn flat_tip(outline: &mut Outline, diameter: f64) -> Term {
 /// Draws a ball up to the neck that leaves it.
 fn ball_on_neck(outline: &mut Outline, radius: &Term, neck: &Term, surface: Surface) {
     let zero = Term::number(0.0);
-    outline.arc((radius, radius), (&zero, radius), surface);
+    outline.arc([radius, radius], [&zero, radius], surface);
     let up = radius.plus(&radius.squared().minus(&neck.squared()).sqrt());
-    outline.arc((neck, &up), (&zero, radius), surface);
+    outline.arc([neck, &up], [&zero, radius], surface);
 }
 
 fn positive(name: &'static str, value: f64) -> Result<(), ShapeError> {

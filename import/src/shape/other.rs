@@ -37,7 +37,7 @@ impl Cutter {
         let zero = Term::number(0.0);
         let stem = self.shank_diameter.unwrap_or(self.diameter);
         if stem >= self.diameter {
-            outline.arc((radius, radius), (&zero, radius), plain("ball"));
+            outline.arc([radius, radius], [&zero, radius], plain("ball"));
             return Ok(());
         }
         let stem = outline.param("shank_diameter", stem).half();
@@ -95,7 +95,7 @@ impl Cutter {
             ));
         }
         outline.line(&low[0], &low[0].times(&end.tan()), FACE);
-        outline.arc((&high[0], &high[1]), (&d, &z), CORNER);
+        outline.arc([&high[0], &high[1]], [&d, &z], CORNER);
         let wide = high[0].plus(&flute.minus(&high[1]).times(&side.tan()));
         self.cone(outline, &wide, &flute)
     }
@@ -109,7 +109,7 @@ pub(super) fn form(outline: &mut Outline, segments: &[FormSegment]) {
             None => outline.line(&d, &z, cutting("form")),
             Some((radius, concave)) => {
                 let radius = Term::number(radius);
-                outline.arc_of_radius((&d, &z), &radius, concave, cutting("form"));
+                outline.arc_of_radius([&d, &z], &radius, concave, cutting("form"));
             }
         }
     }

@@ -37,7 +37,7 @@ impl Cutter {
                 ));
             }
             outline.line(&touch_d, &touch_z, FLUTE);
-            outline.arc((&wide, &centre_z), (&centre_d, &centre_z), CORNER);
+            outline.arc([&wide, &centre_z], [&centre_d, &centre_z], CORNER);
         } else if wide.value() > d.value() {
             outline.line(&wide, &z.plus(&wide.minus(&d).over(&angle.tan())), FLUTE);
         }
@@ -92,7 +92,7 @@ impl Cutter {
             let (inner, touch, along) = edge(&lower, &waist.minus(&lower));
             let inner = outline.define("low", inner);
             outline.line(&inner, &zero, FACE);
-            outline.arc((&touch, &waist.minus(&along)), (&inner, &lower), CORNER);
+            outline.arc([&touch, &waist.minus(&along)], [&inner, &lower], CORNER);
         } else {
             let (inner, ..) = edge(&zero, &waist);
             outline.line(&inner, &zero, FACE);
@@ -105,11 +105,11 @@ impl Cutter {
             let upper = outline.param("upper_radius", upper);
             let (inner, touch, along) = edge(&upper, &top.minus(&waist).minus(&upper));
             let inner = outline.define("high", inner);
-            outline.arc((&touch, &waist.plus(&along)), (&axis, &waist), cutting("flank"));
-            outline.arc((&inner, &top), (&inner, &top.minus(&upper)), CORNER);
+            outline.arc([&touch, &waist.plus(&along)], [&axis, &waist], cutting("flank"));
+            outline.arc([&inner, &top], [&inner, &top.minus(&upper)], CORNER);
         } else {
             let (inner, ..) = edge(&zero, &top.minus(&waist));
-            outline.arc((&inner, &top), (&axis, &waist), cutting("flank"));
+            outline.arc([&inner, &top], [&axis, &waist], cutting("flank"));
         }
         Ok(())
     }
@@ -140,9 +140,9 @@ impl Cutter {
         let rise = outline.define("rise", inner.squared().minus(&ring.squared()).sqrt());
         let touch_d = ring.times(&face).over(&inner);
         let touch_z = face.minus(&rise.times(&face).over(&inner));
-        outline.arc((&touch_d, &touch_z), (&zero, &face), FACE);
+        outline.arc([&touch_d, &touch_z], [&zero, &face], FACE);
         let high = face.minus(&rise);
-        outline.arc((radius, &high), (&ring, &high), CORNER);
+        outline.arc([radius, &high], [&ring, &high], CORNER);
         self.flutes(outline, radius)
     }
 
@@ -173,7 +173,7 @@ impl Cutter {
         let touch_d = back.times(&flank).over(&apart).minus(&back);
         let centre_z = ball.plus(&high);
         let touch_z = centre_z.minus(&high.times(&flank).over(&apart));
-        outline.arc((&touch_d, &touch_z), (&zero, &ball), cutting("tip"));
+        outline.arc([&touch_d, &touch_z], [&zero, &ball], cutting("tip"));
         let axis = zero.minus(&back);
         if self.flute_length < centre_z.value() {
             // The flutes end below the widest point.
@@ -188,10 +188,10 @@ impl Cutter {
                     touch_z.value(),
                 ));
             }
-            outline.arc((&wide, &flute), (&axis, &centre_z), cutting("flank"));
+            outline.arc([&wide, &flute], [&axis, &centre_z], cutting("flank"));
             return Ok(());
         }
-        outline.arc((radius, &centre_z), (&axis, &centre_z), cutting("flank"));
+        outline.arc([radius, &centre_z], [&axis, &centre_z], cutting("flank"));
         self.flutes(outline, radius)
     }
 
@@ -267,15 +267,15 @@ impl Cutter {
         let sin = outline.define("low_sin", one.minus(&cos.squared()).sqrt());
         let from_d = tip.plus(&lower.times(&cos));
         let from_z = lower.minus(&lower.times(&sin));
-        outline.arc((&from_d, &from_z), (&tip, &lower), cutting("tip"));
+        outline.arc([&from_d, &from_z], [&tip, &lower], cutting("tip"));
         let centre_d = outline.define("flank_center", tip.minus(&below.times(&cos)));
         let centre_z = outline.define("flank_height", lower.plus(&below.times(&sin)));
         let to_d = centre_d.plus(&flank.times(&angle.cos()));
         let to_z = centre_z.minus(&flank.times(&angle.sin()));
-        outline.arc((&to_d, &to_z), (&centre_d, &centre_z), cutting("flank"));
+        outline.arc([&to_d, &to_z], [&centre_d, &centre_z], cutting("flank"));
         let edge = radius.minus(&upper);
         let end = outline.define("high", centre_z.minus(&above.times(&angle.sin())));
-        outline.arc((radius, &end), (&edge, &end), CORNER);
+        outline.arc([radius, &end], [&edge, &end], CORNER);
         if end.value() > self.flute_length * (1.0 + SAME) {
             return Err(ShapeError::Contradiction(
                 "flute length",

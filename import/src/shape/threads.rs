@@ -197,14 +197,14 @@ impl Cutter {
             outline.line(&root, &zero, NECK);
             outline.line(&arcs.touch, &middle.minus(&arcs.rise), THREAD);
             let to = middle.plus(&arcs.rise);
-            outline.arc((&arcs.touch, &to), (&arcs.centre, &middle), THREAD);
+            outline.arc([&arcs.touch, &to], [&arcs.centre, &middle], THREAD);
             outline.line(&root, &teeth.pitch, THREAD);
         } else {
             rounded_teeth(outline, teeth, &arcs, &root);
         }
         // A whole root would touch the end of the flutes.
         let end = self.flute_param(outline)?.minus(&arcs.rise);
-        if end.value() > outline.end().1.value() {
+        if end.value() > outline.end().z.value() {
             outline.line(&root, &end, NECK);
         }
         Ok(())
@@ -300,14 +300,14 @@ fn rounded_teeth(outline: &mut Outline, teeth: &Teeth, arcs: &Arcs, root: &Term)
         let top = teeth.pitches(f64::from(tooth) + 0.5);
         let middle = top.minus(&arcs.rise);
         outline.line(&arcs.touch, &middle.minus(&arcs.rise), THREAD);
-        outline.arc((&arcs.touch, &top), (&arcs.centre, &middle), THREAD);
+        outline.arc([&arcs.touch, &top], [&arcs.centre, &middle], THREAD);
         let end = teeth.pitches(f64::from(tooth) + 1.0);
         let bottom = end.minus(&arcs.rise);
         outline.line(&low, &bottom.minus(&arcs.rise), THREAD);
         if tooth + 1 == teeth.count {
-            outline.hollow((root, &bottom), (&groove, &bottom), NECK);
+            outline.hollow([root, &bottom], [&groove, &bottom], NECK);
         } else {
-            outline.hollow((&low, &end), (&groove, &bottom), NECK);
+            outline.hollow([&low, &end], [&groove, &bottom], NECK);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Entries as files of other programs have them, against the same tools in plain notation.
 
-use super::super::{ImportError, Library, Note};
+use super::super::{ImportError, Library, Note, Stated};
 use super::{corners, fusion, library};
 use serde_json::{Value, json};
 use touchoff::tool::Tool;
@@ -130,7 +130,10 @@ fn freecad_has_commas_and_names_of_other_releases() {
     // A vendor's tapered ball on the shape of a straight one.
     let tapered = bit("ballend", r#""CuttingEdgeHeight": "15 mm", "TaperAngle": "5.000 °""#);
     let notes = &tapered.tools()[0].entry.notes;
-    assert!(matches!(notes[..], [Note::Contradiction { first: ("taper angle", 5.0), .. }]));
+    assert!(matches!(
+        notes[..],
+        [Note::Contradiction { first: Stated { what: "taper angle", value: 5.0 }, .. }]
+    ));
     let insert =
         parse("b.fctb", r#"{ "shape": "Iso_shape_C.fcstd", "parameter": { "TipAngle": "80 °" } }"#);
     assert_eq!(reasons(&insert), ["it is a turning insert, which is no solid of revolution"]);

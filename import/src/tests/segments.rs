@@ -1,7 +1,7 @@
 //! Circle-segment mills against closed forms.
 
 use super::{fusion, library, loaded};
-use crate::Note;
+use crate::{Note, Stated};
 use serde_json::{Value, json};
 use touchoff::tool::{Interpreted, ProfileSegment, Tool};
 
@@ -85,8 +85,8 @@ fn an_oval_that_ends_below_its_widest_point_is_noted() {
     let [first, Note::Contradiction { first: diameter, second, .. }] = &entry.notes[..] else {
         panic!("{:?}", entry.notes)
     };
-    assert_eq!((first, *diameter), (&arcs_note(), ("diameter", 12.0)));
-    assert!((second.1 - 2.0 * wide).abs() < 1e-9, "{second:?}");
+    assert_eq!((first, *diameter), (&arcs_note(), Stated { what: "diameter", value: 12.0 }));
+    assert!((second.value - 2.0 * wide).abs() < 1e-9, "{second:?}");
 }
 
 /// Returns the dimensions of a circle-segment taper, with the tip's diameter, the radii of the tip, the flank and the

@@ -1,7 +1,7 @@
 //! Thread mills with flat and round crests against closed forms.
 
 use super::{assert_corners, fusion, library, loaded};
-use crate::{Library, Note};
+use crate::{Library, Note, Stated};
 use serde_json::{Value, json};
 use touchoff::tool::{Circle, ProfileSegment, Tool};
 
@@ -223,8 +223,8 @@ fn unstated_crests_are_points_with_a_note() {
 #[test]
 fn teeth_that_do_not_fit_the_flutes_are_noted() {
     let taken = |fit: f64| Note::Contradiction {
-        first: ("number of teeth", 3.0),
-        second: ("number of pitches in the flute length", fit),
+        first: Stated { what: "number of teeth", value: 3.0 },
+        second: Stated { what: "number of pitches in the flute length", value: fit },
         taken: "teeth that fit",
     };
     assert_eq!(notes(&mill(&json!({ "NT": 3 }))), [taken(2.0)]);

@@ -4,6 +4,7 @@
 use crate::certify::part::Location;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
+use crate::certify::tool_model::deepest::DeepestPoint;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::{ToolModel, interior};
 use crate::id::SurfaceId;
@@ -96,11 +97,14 @@ impl CorePoints {
                         continue;
                     }
                     let owners = Owners::of_regions(info, |other, _| one || other == index);
-                    let deepest = field.deepest(&owners, limit + tolerance, 2.0)?;
-                    core_points.extend(deepest.map(|(point, depth, _)| Core {
-                        point,
-                        surface: tool_model.surface(depth.feature),
-                    }));
+                    match field.deepest(&owners, limit + tolerance, 2.0) {
+                        DeepestPoint::Found { point, depth, .. } => {
+                            core_points
+                                .push(Core { point, surface: tool_model.surface(depth.feature) });
+                        }
+                        DeepestPoint::NoneDeeper => {}
+                        DeepestPoint::BudgetSpent => return None,
+                    }
                 }
                 Some(core_points)
             }

@@ -55,6 +55,7 @@ use search::{QuerySetting, SearchState};
 use std::slice;
 use sweep::Sweeper;
 use tool_model::ToolModel;
+use tool_model::deepest::DeepestPoint;
 use tool_model::field::Field;
 use tool_model::owners::Owners;
 use tool_model::section::Section;
@@ -222,7 +223,7 @@ impl<'a> Certifier<'a> {
     /// spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole_query, state, budget, .. } = self;
-        penetration(setting, whole_query, state, pose, (tolerance, *budget))
+        penetration(setting, whole_query, state, pose, tolerance, *budget)
     }
 
     /// Computes the deepest penetration where one surface is the nearest.
@@ -241,7 +242,7 @@ impl<'a> Certifier<'a> {
         let Certifier { setting, surface_queries, state, budget, .. } = self;
         let query = surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
-        Ok(penetration(setting, query, state, pose, (tolerance, *budget)))
+        Ok(penetration(setting, query, state, pose, tolerance, *budget))
     }
 
     /// Checks whether the tool is clear of the part, or at most as deep in it as is
@@ -299,8 +300,9 @@ impl<'a> Certifier<'a> {
             ToolModel::Field(field) => {
                 let owners = Owners::of_regions(self.info, |_, of| of.surface.0 == surface);
                 match field.deepest(&owners, 0.0, 1.01) {
-                    Some(found) => found.map_or(0.0, |(.., bound)| bound),
-                    None => return Ok(None),
+                    DeepestPoint::Found { max_depth, .. } => max_depth,
+                    DeepestPoint::NoneDeeper => 0.0,
+                    DeepestPoint::BudgetSpent => return Ok(None),
                 }
             }
         };
@@ -402,13 +404,14 @@ fn touches(
     undecided.map_or(ContactVerdict::No, |high| ContactVerdict::Undecided(high * setting.length))
 }
 
-/// Computes the deepest penetration of a query.
+/// Computes the deepest penetration of a query. The tolerance is in the part's unit.
 fn penetration(
     setting: &QuerySetting<'_>,
     query: &DepthQuery,
     state: &mut SearchState,
     pose: &Pose,
-    (tolerance, budget): (f64, u32),
+    tolerance: f64,
+    budget: u32,
 ) -> Penetration {
     // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);

@@ -23,7 +23,7 @@ use crate::tool::{Symmetry, ToolInfo};
 use std::slice;
 
 /// Returns the error bound of a point of the tool along a motion, in the tool's unit: `rounding` derives it.
-pub(super) fn error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
+fn motion_error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
     let turned = if motion.has_spin() { setting.error } else { 0.5 * setting.error };
     setting.error
         + turned
@@ -35,6 +35,18 @@ pub(super) fn error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
 pub(super) fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
     info.symmetry == Symmetry::Revolved || motion.has_spin()
 }
+
+/// The tolerance of a sweep is at least this times the error bound of a point. A point is found to be too deep from 2 error
+/// bounds above the limit, and a bound rules it out up to 1 below the tolerance: 3 would leave no point undecided. The rest is
+/// for the displacements in an interval of time, which need not become as short as the errors.
+const MIN_SWEEP_TOLERANCE: f64 = 16.0;
+
+/// The tolerance of a motion's greatest depth is at least this times the error bound of a point: half of it is the
+/// tolerance of a sweep.
+const MIN_DEPTH_TOLERANCE: f64 = 2.0 * MIN_SWEEP_TOLERANCE;
+
+/// Depths at single times are computed to within the tolerance divided by this: no finer than the error bound of a point.
+const CLIMB_DIVISOR: f64 = MIN_DEPTH_TOLERANCE;
 
 /// The maximum number of sweeps for something deeper than the deepest point known.
 const MAX_ROUNDS: u32 = 16;
@@ -54,8 +66,8 @@ const MIN_TIME_STEP: f64 = 1e-12;
 
 impl Certifier<'_> {
     /// Checks whether the tool stays clear of the part along a whole motion, or exceeds the depth that is
-    /// [allowed](Certifier::with_allowance) by no more than a tolerance, in the part's unit. A tolerance below the
-    /// rounding error bound, or NaN, is replaced by that bound.
+    /// [allowed](Certifier::with_allowance) by no more than a tolerance, in the part's unit. A tolerance below 16
+    /// times the rounding error bound, or NaN, is replaced by that.
     ///
     /// The verdict is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for
     /// tools and parts larger than some 1e15 of the tool's unit.
@@ -106,9 +118,9 @@ impl Certifier<'_> {
             ..
         } = self;
         let queries = allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
-        let error = self::error(setting, motion);
+        let error = motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
-        let tolerance = (16.0 * error).max(tolerance / setting.length);
+        let tolerance = (MIN_SWEEP_TOLERANCE * error).max(tolerance / setting.length);
         let mut first: Option<SweepEnd> = None;
         // A margin no larger than the tolerance requires no check.
         for query in
@@ -116,11 +128,11 @@ impl Certifier<'_> {
         {
             let limit = query.limit;
             let task = SweepTask { setting, query, motion, limit, error, tolerance };
-            let stop = sweeper.run(&task, *budget);
-            first = match (first, stop) {
-                (Some(first), Some(stop)) if stop.before(&first) => Some(stop),
-                (first, stop) => first.or(stop),
-            };
+            if let Some(end) = sweeper.run(&task, *budget)
+                && first.as_ref().is_none_or(|first| end.before(first))
+            {
+                first = Some(end);
+            }
         }
         match first {
             Some(SweepEnd::Deeper { at, best }) => {
@@ -148,10 +160,10 @@ impl Certifier<'_> {
         MotionVerdict::Undecided(from)
     }
 
-    /// Computes the greatest depth of a surface along a motion, at points to which it is the nearest surface. If it exceeds `allowed` by more than a tolerance, the result has the deepest
-    /// point found and an upper bound. Both lengths are in the part's unit; a tolerance below the rounding error
-    /// bound is replaced by that bound. A negative `allowed` is a margin: the distance that the surface has to keep
-    /// from all of the part.
+    /// Computes the greatest depth of a surface along a motion, at points to which it is the nearest surface. If it
+    /// exceeds `allowed` by more than a tolerance, the result has the deepest point found and an upper bound. Both
+    /// lengths are in the part's unit; a tolerance below 32 times the rounding error bound, or NaN, is replaced by that.
+    /// A negative `allowed` is a margin: the distance that the surface has to keep from all of the part.
     ///
     /// [Allowances](Certifier::with_allowance) of the certifier do not count, and an `allowed` of NaN counts as 0.
     /// The result is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for a
@@ -204,9 +216,9 @@ impl Certifier<'_> {
             return Ok(MotionDepth::Undecided(0.0));
         }
         let new_query = |limit| setting.depth_query(limit, |other| other == surface);
-        let error = error(setting, motion);
+        let min_tolerance = MIN_DEPTH_TOLERANCE * motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
-        let tolerance = (32.0 * error).max(tolerance / setting.length);
+        let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let inside_query = surface_queries[surface].get_or_insert_with(|| new_query(0.0));
         let depth = allowed.max(0.0);
@@ -271,10 +283,8 @@ struct DepthPeak {
 impl MotionSearch<'_, '_> {
     fn deepest(&mut self, allowed: f64) -> MotionDepth {
         let times = (0..=INITIAL_TIMES).map(|k| f64::from(k) / f64::from(INITIAL_TIMES));
-        let first_peak = times.filter_map(|at| self.peak_at(at)).collect::<Vec<DepthPeak>>();
-        let first_peak =
-            first_peak.into_iter().filter(|peak| peak.depth.low > allowed).reduce(deeper);
-        let first = match first_peak {
+        let probed = times.filter_map(|at| self.peak_at(at));
+        let first = match probed.filter(|peak| peak.depth.low > allowed).reduce(deeper) {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
                 None => return self.within(),
@@ -282,8 +292,8 @@ impl MotionSearch<'_, '_> {
                 Some(SweepEnd::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
                     let depth = Interval::new(allowed, allowed + self.tolerance);
-                    let first_peak = DepthPeak { depth, at, witness };
-                    self.peak_at(at).map_or(first_peak, |peak| deeper(first_peak, peak))
+                    let swept = DepthPeak { depth, at, witness };
+                    self.peak_at(at).map_or(swept, |probed| deeper(swept, probed))
                 }
             },
         };
@@ -327,7 +337,7 @@ impl MotionSearch<'_, '_> {
         if self.query.limit < 0.0 && limit + tolerance >= 0.0 {
             return None;
         }
-        let error = error(setting, motion);
+        let error = motion_error(setting, motion);
         let task = SweepTask { setting, query, motion, limit, error, tolerance };
         self.sweeper.run(&task, budget)
     }
@@ -364,7 +374,7 @@ impl MotionSearch<'_, '_> {
 
     /// Returns the tolerance of depths at single times.
     fn climb_tolerance(&self) -> f64 {
-        self.tolerance / 32.0
+        self.tolerance / CLIMB_DIVISOR
     }
 
     /// Returns the depth at a fraction of the motion, if there is any.
@@ -373,8 +383,8 @@ impl MotionSearch<'_, '_> {
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
         if query.limit >= 0.0 {
-            let goal = (tolerance * setting.length, budget);
-            let found = penetration(setting, query, state, &pose, goal);
+            let tolerance = tolerance * setting.length;
+            let found = penetration(setting, query, state, &pose, tolerance, budget);
             let Interval { low, high } = found.depth;
             let depth = Interval::new(low / setting.length, high / setting.length);
             return found.witness.map(|witness| DepthPeak { depth, at, witness });
@@ -383,7 +393,7 @@ impl MotionSearch<'_, '_> {
         let goal = Goal { min_depth: query.limit, tolerance, stop_depth: f64::INFINITY, budget };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
-        let (found, more) = (state.search.best, error(setting, self.motion) + state.skew);
+        let (found, more) = (state.search.best, motion_error(setting, self.motion) + state.skew);
         let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),

@@ -360,8 +360,8 @@ impl SearchState {
         let before = if cached { None } else { self.search.lower(triangle.skew) };
         for line in triangle.search_lines().chain(levels) {
             let found = match side {
-                Side::Inside => self.search.inside((section, owners, triangle.skew), &line),
-                Side::Outside => self.search.outside((section, owners), &line),
+                Side::Inside => self.search.inside(section, owners, triangle.skew, &line),
+                Side::Outside => self.search.outside(section, owners, &line),
             };
             if let Some(LineMaximum { t, feature }) = found {
                 self.best = Some(DeepestCandidate { point: line.point(t), feature, index });

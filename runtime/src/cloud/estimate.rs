@@ -38,54 +38,31 @@ pub(super) fn estimate(
     let tree = NeighbourBvh::new(positions);
     let weight = |index: u32| distinct.count(index).min(MAX_SHARED);
     let lists = parallel::ranges(positions.len(), POINTS_PER_TASK, |range| {
-        let (mut found, mut cell, mut cut) = (vec![], vec![], vec![]);
-        let (mut areas, mut radius) = (Vec::with_capacity(range.len()), Some(0f64));
-        for site in range {
-            let (position, site) = (positions[site], site as u32);
+        let (mut neighbours, mut cell) = (vec![], SideCell::default());
+        let (mut areas, mut max_radius) = (Vec::with_capacity(range.len()), Some(0f64));
+        for index in range {
+            let (position, site) = (positions[index], index as u32);
             let neighbour_count = (weight(site) * (1 + NEIGHBOURS)).min(points.len());
             let spacing = (PI * tree.distance_to_weight(position.into(), neighbour_count, weight)
                 / NEIGHBOURS as f64)
                 .sqrt();
-            tree.within(position.into(), 2.0 * CELL_RADII[0] * spacing, &mut found);
+            let max_distance = 2.0 * CELL_RADII[0] * spacing;
+            tree.within(position.into(), max_distance, &mut neighbours);
             for side in distinct.sides(site) {
-                let normal = &side.normal;
-                let facing = |other: &Side| other.normal.dot(normal);
-                // Coincident points that face the same side share one cell.
-                let sides = distinct.sides(site);
-                let step = sides.len().div_ceil(MAX_SIDES);
-                let facing_sides =
-                    sides.iter().step_by(step).filter(|other| facing(other) > SAME_SIDE);
-                let shared =
-                    facing_sides.map(|other| step * other.points.len()).sum::<usize>().max(1);
-                for reach in CELL_RADII {
-                    cell.clear();
-                    cell.extend(polygon(normal, reach * spacing));
-                    for &(squared, other) in &found {
-                        let mut sides = distinct.sides(other).iter();
-                        if squared > 0.0 && sides.any(|other| facing(other) > SAME_SIDE) {
-                            let toward = positions[other as usize] - position;
-                            clip(&mut cell, &mut cut, toward, squared / 2.0, other);
-                        }
-                    }
-                    if cell.iter().all(|(_, other)| *other != EDGE) {
-                        break;
-                    }
-                }
-                areas.push(area(&cell, normal) / shared as f64);
+                cell.cut(&distinct, site, side, &neighbours, spacing);
+                // Coincident points that face the same way share one cell.
+                let sharing = distinct.count_facing(site, side).max(1);
+                areas.push(area(&cell.corners, &side.normal) / sharing as f64);
                 // Near an edge the plane continues where the surface does not.
-                let is_nearby = |squared: f64| squared < (CELL_RADII[0] * spacing).powi(2);
-                let edge = found.iter().take_while(|(squared, _)| is_nearby(*squared)).any(
-                    |(_, other)| {
-                        let mut sides = distinct.sides(*other).iter();
-                        sides.any(|other| (SAME_SIDE..EDGE_COSINE).contains(&facing(other)))
-                    },
-                );
-                let corners = cell.iter().map(|(corner, _)| corner.norm()).fold(0.0, f64::max);
-                let cell_radius = if edge { corners.min(CELL_RADII[1] * spacing) } else { corners };
-                radius = radius.filter(|_| spacing > 0.0).map(|radius| radius.max(cell_radius));
+                let radius = match distinct.is_near_edge(side, &neighbours, spacing) {
+                    true => cell.radius().min(CELL_RADII[1] * spacing),
+                    false => cell.radius(),
+                };
+                // A spacing of 0, between coincident points only, says nothing about the rest of the surface.
+                max_radius = max_radius.filter(|_| spacing > 0.0).map(|max| max.max(radius));
             }
         }
-        (areas, radius)
+        (areas, max_radius)
     });
     let radius = lists.iter().map(|(_, radius)| *radius).reduce(|a, b| Some(a?.max(b?)));
     let mut areas = vec![0.0; points.len()];
@@ -109,6 +86,55 @@ struct Side {
     normal: Vector3<f64>,
     /// The range of their indices in [`DistinctPoints::points`].
     points: Range<usize>,
+}
+
+impl Side {
+    /// Returns whether another side faces the same way.
+    fn faces_same_way(&self, other: &Side) -> bool {
+        other.normal.dot(&self.normal) > SAME_SIDE
+    }
+}
+
+/// The cell of a side, relative to its position, with memory kept between cells.
+#[derive(Default)]
+struct SideCell {
+    corners: Vec<Corner>,
+    /// Memory of [`clip`].
+    clipped: Vec<Corner>,
+}
+
+impl SideCell {
+    /// Cuts a cell out of the plane of a side, halfway to each neighbour that faces the same way. It begins as the smaller
+    /// polygon if the neighbours do not enclose it within the larger one.
+    fn cut(
+        &mut self,
+        distinct: &DistinctPoints,
+        site: u32,
+        side: &Side,
+        neighbours: &[(f64, u32)],
+        spacing: f64,
+    ) {
+        for radius in CELL_RADII {
+            self.corners.clear();
+            self.corners.extend(polygon(&side.normal, radius * spacing));
+            for &(squared, neighbour) in neighbours {
+                let mut sides = distinct.sides(neighbour).iter();
+                if squared > 0.0 && sides.any(|other| side.faces_same_way(other)) {
+                    let [from, to] = [site, neighbour].map(|k| distinct.positions[k as usize]);
+                    let SideCell { corners, clipped } = self;
+                    clip(corners, clipped, to - from, squared / 2.0, neighbour);
+                }
+            }
+            if self.corners.iter().all(|(_, neighbour)| *neighbour != EDGE) {
+                return;
+            }
+        }
+    }
+
+    /// Returns the largest distance of a corner from the position.
+    fn radius(&self) -> f64 {
+        self.corners.iter().map(|(corner, _)| corner.norm()).fold(0.0, f64::max)
+    }
 }
 
 impl DistinctPoints {
@@ -145,6 +171,24 @@ impl DistinctPoints {
         let index = index as usize;
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         &self.sides[start..self.ends[index]]
+    }
+
+    /// Returns the number of points at a position that face the same way as one of its sides, from a subsample if the
+    /// position has many sides.
+    fn count_facing(&self, site: u32, side: &Side) -> usize {
+        let sides = self.sides(site);
+        let step = sides.len().div_ceil(MAX_SIDES);
+        let sampled = sides.iter().step_by(step).filter(|other| side.faces_same_way(other));
+        sampled.map(|other| step * other.points.len()).sum()
+    }
+
+    /// Returns whether a neighbour within the larger radius of a cell lies beyond an edge, but not on the opposite side of
+    /// something thin. The neighbours are in the order of their distances.
+    fn is_near_edge(&self, side: &Side, neighbours: &[(f64, u32)], spacing: f64) -> bool {
+        let max_squared = (CELL_RADII[0] * spacing).powi(2);
+        let near = neighbours.iter().take_while(|(squared, _)| *squared < max_squared);
+        near.flat_map(|(_, neighbour)| self.sides(*neighbour))
+            .any(|other| (SAME_SIDE..EDGE_COSINE).contains(&other.normal.dot(&side.normal)))
     }
 
     /// Returns the number of points at a position.

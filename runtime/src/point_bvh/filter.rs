@@ -21,7 +21,7 @@ pub(crate) fn filter(
 #[inline(always)]
 fn filter_on<S: Simd>(
     simd: S,
-    (tree, setup, view): TraversalInput<'_>,
+    TraversalInput { tree, setup, view }: TraversalInput<'_>,
     leaves: &Nodes,
     attributes: bool,
     candidates: &mut Candidates,

@@ -19,7 +19,7 @@ mod traverse;
 
 pub(crate) use candidates::Candidates;
 pub(crate) use filter::filter;
-pub(crate) use traverse::Traversal;
+pub(crate) use traverse::{Traversal, TraversalInput};
 
 use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};
 use crate::cloud::{Cloud, CoveringRadius};

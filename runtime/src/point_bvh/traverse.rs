@@ -95,12 +95,12 @@ impl Traversal {
         input: TraversalInput<'_>,
         max_nodes: usize,
     ) -> Option<usize> {
-        self.down(level, input, input.0.levels.len(), max_nodes)
+        self.down(level, input, input.tree.levels.len(), max_nodes)
     }
 
     /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
     pub(crate) fn nodes(&mut self, level: Level, input: TraversalInput<'_>) -> usize {
-        self.down(level, input, input.0.levels.len() - 1, usize::MAX);
+        self.down(level, input, input.tree.levels.len() - 1, usize::MAX);
         self.nodes[1 - self.leaves].count
     }
 
@@ -108,19 +108,14 @@ impl Traversal {
     fn down(
         &mut self,
         level: Level,
-        (tree, setup, view): TraversalInput<'_>,
+        input: TraversalInput<'_>,
         levels: usize,
         max_nodes: usize,
     ) -> Option<usize> {
+        let TraversalInput { tree, setup, .. } = input;
         self.leaves = tree.levels.len() % 2;
         if setup.fits {
-            return descend(
-                level,
-                &mut self.nodes,
-                &tree.levels[..levels],
-                (setup, view),
-                max_nodes,
-            );
+            return descend(level, &mut self.nodes, input, levels, max_nodes);
         }
         let count = tree.levels.get(levels).map_or(tree.leaves.len(), |boxes| boxes.len());
         (count <= max_nodes).then(|| {
@@ -130,24 +125,21 @@ impl Traversal {
     }
 
     /// Finds the leaves under one of the nodes found.
-    pub(crate) fn under(
-        &mut self,
-        level: Level,
-        (tree, setup, view): TraversalInput<'_>,
-        node: usize,
-    ) {
+    pub(crate) fn under(&mut self, level: Level, input: TraversalInput<'_>, node: usize) {
+        let tree = input.tree;
         let [even, odd] = &mut self.nodes;
         let (nodes, leaves) = if self.leaves == 0 { (odd, even) } else { (even, odd) };
-        if setup.fits {
+        if input.setup.fits {
             let boxes = &tree.levels[tree.levels.len() - 1];
-            below(level, boxes, (setup, view), (nodes, node..node + 1), leaves);
+            children(level, input, boxes, nodes, node..node + 1, leaves);
         } else {
             leaves.set_all(tree.leaves.len());
         }
     }
 
     /// Selects a single leaf.
-    pub(crate) fn only(&mut self, leaf: u32, (tree, setup, view): TraversalInput<'_>) {
+    pub(crate) fn only(&mut self, leaf: u32, input: TraversalInput<'_>) {
+        let TraversalInput { tree, setup, view } = input;
         let leaves = &mut self.nodes[self.leaves];
         leaves.make_room(1);
         leaves.count = 1;
@@ -167,7 +159,12 @@ impl Traversal {
 }
 
 /// A tree, the setup of its queries, and the pose.
-pub(super) type TraversalInput<'a> = (&'a PointBvh, &'a QuerySetup, &'a PoseTransform);
+#[derive(Clone, Copy)]
+pub(crate) struct TraversalInput<'a> {
+    pub(crate) tree: &'a PointBvh,
+    pub(crate) setup: &'a QuerySetup,
+    pub(crate) view: &'a PoseTransform,
+}
 
 /// Tests boxes, given their centres and half extents along the tool's axes, against the tool's reach. Returns a mask of
 /// the lanes that the tool may reach, and for each lane a mask of those among `slabs` that may reach it.
@@ -203,38 +200,38 @@ pub(super) fn within<S: Simd>(
     (hit.to_bitmask() as u32, by)
 }
 
-/// Descends some levels from the root, visiting at most `max_nodes` nodes and children. Returns the number visited; `None`
+/// Descends `levels` levels from the root, visiting at most `max_nodes` nodes and children. Returns the number visited; `None`
 /// if that limit does not suffice.
 fn descend(
     level: Level,
     nodes: &mut [Nodes; 2],
-    levels: &[Vec<Boxes>],
-    input: (&QuerySetup, &PoseTransform),
+    input: TraversalInput<'_>,
+    levels: usize,
     max_nodes: usize,
 ) -> Option<usize> {
-    dispatch!(level, simd => descend_on(simd, nodes, levels, input, max_nodes))
+    dispatch!(level, simd => descend_on(simd, nodes, input, levels, max_nodes))
 }
 
 #[inline(always)]
 fn descend_on<S: Simd>(
     simd: S,
     nodes: &mut [Nodes; 2],
-    levels: &[Vec<Boxes>],
-    (setup, view): (&QuerySetup, &PoseTransform),
+    input: TraversalInput<'_>,
+    levels: usize,
     max_nodes: usize,
 ) -> Option<usize> {
     let [even, odd] = nodes;
     even.make_room(1);
     even.count = 1;
     even.index[0] = 0;
-    even.slabs[0] = setup.reach.all;
+    even.slabs[0] = input.setup.reach.all;
     let mut spent = 1;
     if spent > max_nodes {
         return None;
     }
-    for (level, boxes) in levels.iter().enumerate() {
+    for (level, boxes) in input.tree.levels[..levels].iter().enumerate() {
         let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
-        below_on(simd, boxes, (setup, view), (from, 0..from.count), to);
+        children_on(simd, input, boxes, from, 0..from.count, to);
         spent += to.count;
         if spent > max_nodes {
             return None;
@@ -243,28 +240,32 @@ fn descend_on<S: Simd>(
     Some(spent)
 }
 
-/// Finds the children of some nodes that the tool may reach. Slots behind the last leaf are NaN and fail the test.
-fn below(
+/// Finds the children that the tool may reach of the nodes at some positions of a list. `boxes` has the children of each
+/// node of the level; slots behind the last leaf are NaN and fail the test.
+fn children(
     level: Level,
+    input: TraversalInput<'_>,
     boxes: &[Boxes],
-    input: (&QuerySetup, &PoseTransform),
-    nodes: (&Nodes, Range<usize>),
+    nodes: &Nodes,
+    positions: Range<usize>,
     kept: &mut Nodes,
 ) {
-    dispatch!(level, simd => below_on(simd, boxes, input, nodes, kept));
+    dispatch!(level, simd => children_on(simd, input, boxes, nodes, positions, kept));
 }
 
 #[inline(always)]
-fn below_on<S: Simd>(
+fn children_on<S: Simd>(
     simd: S,
+    input: TraversalInput<'_>,
     boxes: &[Boxes],
-    (setup, view): (&QuerySetup, &PoseTransform),
-    (nodes, some): (&Nodes, Range<usize>),
+    nodes: &Nodes,
+    positions: Range<usize>,
     kept: &mut Nodes,
 ) {
-    kept.make_room(some.len() * WIDTH);
+    let TraversalInput { setup, view, .. } = input;
+    kept.make_room(positions.len() * WIDTH);
     let mut count = 0;
-    for position in some {
+    for position in positions {
         let node = nodes.index[position];
         let children = &boxes[node as usize];
         let centre: LaneVector<f32x16<S>> = load(simd, &children.centre);

@@ -2,7 +2,7 @@
 
 use crate::bvh::{PoseTransform, QuerySetup};
 use crate::interval::Interval;
-use crate::point_bvh::{Candidates, PointBvh, Traversal, filter};
+use crate::point_bvh::{Candidates, PointBvh, Traversal, TraversalInput, filter};
 use crate::pose::Pose;
 use crate::tool::{EnvelopeSlab, Evaluations, Outputs, Symmetry, Tool, ToolInfo};
 use crate::unit::Unit;
@@ -91,7 +91,7 @@ impl InsideQuery {
         if !setup.set_pose(&tree.frame, pose, &mut self.view) {
             return;
         }
-        let (level, input) = (Level::new(), (tree, setup, &self.view));
+        let (level, input) = (Level::new(), TraversalInput { tree, setup, view: &self.view });
         self.traversal.leaves(level, input, usize::MAX);
         filter(level, input, self.traversal.found(), false, &mut self.candidates);
         let (candidates, evaluations) = (&self.candidates, &mut self.evaluations);
@@ -118,7 +118,7 @@ impl InsideQuery {
         if !envelope.setup.set_pose(&tree.frame, pose, &mut self.view) {
             return true;
         }
-        let input = (tree, &envelope.setup, &self.view);
+        let input = TraversalInput { tree, setup: &envelope.setup, view: &self.view };
         let visited = self.traversal.leaves(Level::new(), input, MAX_REACH_NODES);
         visited.is_some() && self.traversal.found().len() == 0
     }

@@ -8,7 +8,7 @@
 //! Only [`QueryState::evaluate`] depends on the tool's type, so everything else is compiled once, in this crate.
 
 use crate::bvh::{PoseTransform, QuerySetup, WIDTH};
-use crate::point_bvh::{Candidates, PointBvh, Traversal, filter};
+use crate::point_bvh::{Candidates, PointBvh, Traversal, TraversalInput, filter};
 use crate::pose::Pose;
 use crate::probe::contacts::Contact;
 use crate::probe::law::{Law, Weights};
@@ -82,29 +82,32 @@ impl<'a> QueryState<'a> {
     /// Finds the leaves that the tool may reach, visiting at most `max_nodes` nodes and leaves. Returns their number;
     /// `None` if that limit does not suffice.
     pub(super) fn traverse(&mut self, max_nodes: usize) -> Option<usize> {
-        let input = (self.tree, &self.setup, &self.view);
+        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
         self.traversal.leaves(self.level, input, max_nodes)
     }
 
     /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
     pub(super) fn traverse_to_nodes(&mut self) -> usize {
-        self.traversal.nodes(self.level, (self.tree, &self.setup, &self.view))
+        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        self.traversal.nodes(self.level, input)
     }
 
     /// Finds the leaves that the tool may reach under one of these nodes.
     pub(super) fn traverse_under(&mut self, node: usize) {
-        self.traversal.under(self.level, (self.tree, &self.setup, &self.view), node);
+        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        self.traversal.under(self.level, input, node);
     }
 
     /// Selects the leaf that was hit last, and no other.
     pub(super) fn traverse_to_last_hit(&mut self) {
-        self.traversal.only(self.hit, (self.tree, &self.setup, &self.view));
+        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
+        self.traversal.only(self.hit, input);
     }
 
     /// Finds the points that may be inside among those of the leaves found last; with `attributes`, their normals and
     /// weights too.
     pub(super) fn filter(&mut self, attributes: bool) {
-        let input = (self.tree, &self.setup, &self.view);
+        let input = TraversalInput { tree: self.tree, setup: &self.setup, view: &self.view };
         filter(self.level, input, self.traversal.found(), attributes, &mut self.candidates);
     }
 

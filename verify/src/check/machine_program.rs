@@ -508,7 +508,7 @@ struct MoveFrame {
     unit: Unit,
 }
 
-/// Returns the moves of a step.
+/// Returns the moves of a step. `from` is the line of the move before, if there is one.
 fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usize>) -> Vec<Move> {
     let path = |motion: JointMotion, error: f64| match frame.link {
         Some(link) => {
@@ -529,6 +529,12 @@ fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usi
         let pose = path(motion, 0.0).pose(at);
         Motion::with_spin(&pose, &pose).ok().map(MovePath::Straight)
     };
+    // Where no move comes before, the tool is checked at rest first.
+    let start = |motion: JointMotion| match from {
+        None => rest(motion, 0.0).map(|path| as_move(None, path)),
+        Some(_) => None,
+    };
+    let arriving = |path: MovePath| as_move(Some(from.unwrap_or(step.line)), path);
     match resolved {
         Resolved::Unknown(_) | Resolved::ToolChange => Vec::new(),
         Resolved::AnyRapid(any) => {
@@ -537,26 +543,21 @@ fn moves_of(step: &Step, resolved: &Resolved, frame: MoveFrame, from: Option<usi
             let Some(edges) = edges else {
                 return moves_of(step, &Resolved::Motions(vec![(straight, 0.0)]), frame, from);
             };
-            let start = from.is_none().then(|| rest(straight, 0.0)).flatten();
-            let start = start.map(|path| as_move(None, path));
             let corner = path(straight, 0.0).pose(0.0);
             let way = |edge: &JointMotion| path(*edge, 0.0).pose(1.0).tip() - corner.tip();
             let ways = edges.iter().map(way).collect();
             let all = MovePath::Box(Box::new(RapidBox::new(corner, ways)));
-            start.into_iter().chain([as_move(Some(from.unwrap_or(step.line)), all)]).collect()
+            start(straight).into_iter().chain([arriving(all)]).collect()
         }
         Resolved::Arrival(motion, _) => {
             rest(**motion, 1.0).map(|path| as_move(None, path)).into_iter().collect()
         }
         Resolved::Motions(motions) => {
-            let start = motions.first().filter(|_| from.is_none());
-            let start = start.and_then(|(motion, _)| rest(*motion, 0.0));
-            let start = start.map(|path| as_move(None, path));
-            let motions = motions.iter().map(|(motion, error)| {
-                let path = MovePath::Joints(Box::new(path(*motion, *error)));
-                as_move(Some(from.unwrap_or(step.line)), path)
-            });
-            start.into_iter().chain(motions).collect()
+            let first = motions.first().and_then(|(motion, _)| start(*motion));
+            let motions = motions
+                .iter()
+                .map(|(motion, error)| arriving(MovePath::Joints(Box::new(path(*motion, *error)))));
+            first.into_iter().chain(motions).collect()
         }
     }
 }

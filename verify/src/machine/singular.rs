@@ -50,18 +50,10 @@ impl JointMotion {
         let constant = d1.dot(&d2) * d2.z;
         let amplitude = d1.cross(&d2).norm() * d2.cross(&z).norm();
         let [start, _] = self.rotary_ends(second.letter);
-        let nearest = match amplitude > 0.0 {
-            true => angle_about(&d2, &z, &d1),
-            false => 0.0,
-        };
+        // Without an amplitude the sensitivity is constant, and any angle will do.
+        let nearest = if amplitude > 0.0 { angle_about(&d2, &z, &d1) } else { 0.0 };
         let cosine = SINGULAR_ANGLE.to_radians().cos();
         let mut longest: Option<[f64; 2]> = None;
-        let mut consider = |fractions: [f64; 2]| {
-            let [from, to] = fractions.map(|fraction| fraction.clamp(0.0, 1.0));
-            if longest.is_none_or(|[a, b]| to - from > b - a) {
-                longest = Some([from, to]);
-            }
-        };
         // Near d₁: c + s cos x ≥ cos 5°. Near −d₁: −c + s cos(x − 180°) ≥ cos 5°.
         for (centre, offset) in [(nearest, constant), (nearest + 180.0, -constant)] {
             if amplitude + offset < cosine {
@@ -77,7 +69,7 @@ impl JointMotion {
             let whole = |angle: f64| 360.0 * ((angle - centre) / 360.0).round();
             if tilt == 0.0 || half_width.is_infinite() {
                 if half_width.is_infinite() || is_near(whole(start)) {
-                    consider([0.0, 1.0]);
+                    longest = longer(longest, [0.0, 1.0]);
                 }
                 continue;
             }
@@ -89,7 +81,7 @@ impl JointMotion {
                 let fractions =
                     [-reach, reach].map(|offset| (centre + turns + offset - start) / tilt);
                 if fractions[1] > 0.0 && fractions[0] < 1.0 {
-                    consider(fractions);
+                    longest = longer(longest, fractions);
                 }
             }
         }
@@ -106,4 +98,10 @@ impl JointMotion {
             angle: angle.min(180.0 - angle),
         })
     }
+}
+
+/// Returns the longer of two parts of a motion, the first if they are equally long. The second may reach beyond the motion.
+fn longer(longest: Option<[f64; 2]>, fractions: [f64; 2]) -> Option<[f64; 2]> {
+    let [from, to] = fractions.map(|fraction| fraction.clamp(0.0, 1.0));
+    if longest.is_none_or(|[a, b]| to - from > b - a) { Some([from, to]) } else { longest }
 }

@@ -98,7 +98,7 @@ fn lines(content: &Content<'_>) -> Vec<String> {
          and acceleration are not modelled."
             .to_owned(),
     );
-    lines.push(match content.scene.1 {
+    lines.push(match content.scene_rounding {
         Some(error) => format!("The 3-D view rounds coordinates by at most {error:.1e} {unit}."),
         None => {
             "The part has too many triangles for a 3-D view; pictures stand in for it.".to_owned()

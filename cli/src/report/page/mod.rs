@@ -17,7 +17,7 @@ use touchoff::Escaped;
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("viewer.js");
 
-/// Returns the policy of the page: nothing is loaded, and no script runs but its own, not even one in the name of a file.
+/// Returns the policy of the page: nothing is loaded. Text of files cannot run as a script, since no hash allows it.
 fn policy() -> String {
     let [style, script] =
         [STYLE, SCRIPT].map(|text| base64(Sha256::digest(text.as_bytes()).into_iter()));
@@ -34,7 +34,7 @@ pub(super) fn html(content: &Content<'_>) -> Result<String, Failure> {
     let job = &content.inputs.file;
     let title = plain(&format!("{} on {}", file_name(&job.program), file_name(&job.part)));
     let findings = content.checked.findings().iter();
-    let findings: Vec<_> = findings.map(|finding| content.checked.row(finding)).collect();
+    let rows: Vec<_> = findings.map(|finding| content.checked.row(finding)).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -55,8 +55,8 @@ pub(super) fn html(content: &Content<'_>) -> Result<String, Failure> {
                     (assumptions::section(content))
                     (program::timing(content)?)
                 }
-                script type="application/json" id="findings" { (PreEscaped(json(&findings)?)) }
-                script type="application/json" id="scene" { (PreEscaped(&content.scene.0)) }
+                script type="application/json" id="findings" { (PreEscaped(json(&rows)?)) }
+                script type="application/json" id="scene" { (PreEscaped(&content.scene_json)) }
                 script { (PreEscaped(SCRIPT)) }
             }
         }

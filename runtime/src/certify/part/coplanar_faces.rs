@@ -154,23 +154,40 @@ impl Face {
     /// Returns the rectangle of least area among those with a side along an edge of the face's first triangle.
     fn around(face: &[u32], corners: &[[Point; 3]], normal: Point) -> Face {
         let [a, b, c] = corners[face[0] as usize];
-        let points = || face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
-        let along = |side: Point| {
-            let out = dot(side, normal);
-            let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
-            let v = unit(cross(normal, u))?;
-            let ends = |direction: Point| {
-                points()
-                    .map(|p| dot(direction, p))
-                    .fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
-            };
-            let ([u0, u1], [v0, v1]) = (ends(u), ends(v));
-            let corner = |x: f64, y: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k]);
-            let corners = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
-            Some(((u1 - u0) * (v1 - v0), corners))
+        let points = face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
+        let edges = [minus(b, a), minus(c, b), minus(a, c)].into_iter();
+        let least = edges
+            .filter_map(|edge| Rectangle::along(edge, normal, &points))
+            .min_by(|p, q| p.area.total_cmp(&q.area))
+            .expect("a triangle with a normal has sides");
+        Face { from: a, corners: least.corners }
+    }
+}
+
+/// A rectangle around points of a plane.
+struct Rectangle {
+    area: f64,
+    corners: [Point; 4],
+}
+
+impl Rectangle {
+    /// Returns the rectangle around points and the origin, all in the plane through the origin with a unit normal, that has
+    /// a side along a vector; `None` if the vector has no length in the plane.
+    fn along(
+        side: Point,
+        normal: Point,
+        points: &(impl Iterator<Item = Point> + Clone),
+    ) -> Option<Rectangle> {
+        let out = dot(side, normal);
+        let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
+        let v = unit(cross(normal, u))?;
+        let extent = |direction: Point| {
+            let positions = points.clone().map(|p| dot(direction, p));
+            positions.fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
         };
-        let sides = [minus(b, a), minus(c, b), minus(a, c)];
-        let least = sides.into_iter().filter_map(along).min_by(|p, q| p.0.total_cmp(&q.0));
-        Face { from: a, corners: least.expect("a triangle with a normal has sides").1 }
+        let ([u0, u1], [v0, v1]) = (extent(u), extent(v));
+        let corner = |x: f64, y: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k]);
+        let corners = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
+        Some(Rectangle { area: (u1 - u0) * (v1 - v0), corners })
     }
 }

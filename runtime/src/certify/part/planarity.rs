@@ -43,6 +43,38 @@ impl Plane {
     }
 }
 
+/// The box and the plane of a node, in the tree's frame and unit.
+struct NodeBounds {
+    centre: Point,
+    half: Point,
+    plane: Plane,
+}
+
+impl NodeBounds {
+    /// Returns the extent of the node along a direction of the tree's frame, for a position of `origin` at the frame's
+    /// origin. Its component normal to the plane is bounded tightly, the rest by the box; the box alone may be tighter.
+    #[inline]
+    fn extent(&self, direction: Point, origin: f64) -> [f64; 2] {
+        let NodeBounds { centre, half, plane: Plane { normal, ends } } = *self;
+        let part = dot(direction, normal);
+        let rest = [0, 1, 2].map(|k| direction[k] - part * normal[k]);
+        let wide = dot(rest.map(f64::abs), half);
+        let middle = origin + dot(rest, centre);
+        let [a, b] = ends.map(|end| part * end);
+        let flat = [middle + a.min(b) - wide, middle + a.max(b) + wide];
+        let boxed = [-1.0, 1.0].map(|side| {
+            origin + dot(direction, centre) + side * dot(direction.map(f64::abs), half)
+        });
+        [flat[0].max(boxed[0]), flat[1].min(boxed[1])]
+    }
+}
+
+/// Returns the least magnitude in a range.
+#[inline]
+fn least_magnitude([low, high]: [f64; 2]) -> f64 {
+    low.max(-high).max(0.0)
+}
+
 impl TriangleBvh {
     /// Returns the ring about the tool's axis that contains a node, from its box and its plane. Returns `None` for
     /// the root, which has no box.
@@ -56,30 +88,16 @@ impl TriangleBvh {
         let lane = index % WIDTH;
         let centre = [0, 1, 2].map(|axis| f64::from(boxes.centre[axis][lane]));
         let half = [0, 1, 2].map(|axis| f64::from(boxes.half[axis][lane]));
-        let Plane { normal, ends } = self.planes[level][index];
+        let node = NodeBounds { centre, half, plane: self.planes[level][index] };
         let (rows, origin) = view.exactly();
-        // The extent of the node along a direction, given in the tree's frame. Its component normal to the plane is
-        // bounded tightly.
-        let along = |way: Point, from: f64| {
-            let part = dot(way, normal);
-            let rest = [0, 1, 2].map(|k| way[k] - part * normal[k]);
-            let wide = dot(rest.map(f64::abs), half);
-            let middle = from + dot(rest, centre);
-            let [a, b] = ends.map(|end| part * end);
-            let flat = [middle + a.min(b) - wide, middle + a.max(b) + wide];
-            let boxed = [-1.0, 1.0]
-                .map(|side| from + dot(way, centre) + side * dot(way.map(f64::abs), half));
-            [flat[0].max(boxed[0]), flat[1].min(boxed[1])]
-        };
-        let [low, high] = along(rows[2], origin[2]);
-        let apart = |[low, high]: [f64; 2]| low.max(-high).max(0.0);
-        let [x, y] = [0, 1].map(|axis| apart(along(rows[axis], origin[axis])));
+        let [low, high] = node.extent(rows[2], origin[2]);
+        let [x, y] = [0, 1].map(|axis| least_magnitude(node.extent(rows[axis], origin[axis])));
         // The distance toward the axis along the plane's normal.
-        let [u, v] = [dot(rows[0], normal), dot(rows[1], normal)];
-        let level = (u * u + v * v).sqrt();
-        let inward = if level > 0.0 {
-            let way = [0, 1, 2].map(|k| (u * rows[0][k] + v * rows[1][k]) / level);
-            apart(along(way, (u * origin[0] + v * origin[1]) / level))
+        let [u, v] = [0, 1].map(|axis| dot(rows[axis], node.plane.normal));
+        let length = (u * u + v * v).sqrt();
+        let inward = if length > 0.0 {
+            let direction = [0, 1, 2].map(|k| (u * rows[0][k] + v * rows[1][k]) / length);
+            least_magnitude(node.extent(direction, (u * origin[0] + v * origin[1]) / length))
         } else {
             0.0
         };

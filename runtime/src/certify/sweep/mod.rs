@@ -264,35 +264,40 @@ impl Sweeper {
         };
         let triangle = LocalTriangle::new(corners);
         if query.owners.all() || task.limit < 0.0 {
-            return self.check_lines(task, (section, &query.owners), &triangle, displacement);
+            return self.check_lines(task, section, &query.owners, &triangle, displacement);
         }
         // If no surface at all is too deep, the owners need not be told apart.
-        match self.check_lines(task, (section, &Owners::default()), &triangle, displacement) {
+        match self.check_lines(task, section, &Owners::default(), &triangle, displacement) {
             TriangleVerdict::OtherOwner => self.check_subdivided(task, corners, displacement),
             decided => decided,
         }
     }
 
-    /// The same, by searching the lines of a triangle on which the depth is greatest or the distance least.
+    /// Examines a triangle by searching its lines on which the depth is greatest or the distance least.
     fn check_lines(
         &mut self,
         task: &SweepTask<'_>,
-        model: (&Section, &Owners),
+        section: &Section,
+        owners: &Owners,
         triangle: &LocalTriangle,
         displacement: f64,
     ) -> TriangleVerdict {
         let displacement = displacement + triangle.skew + task.error;
         let min_depth = task.threshold() - displacement;
-        let (tolerance, stop_depth, budget) = (0.25 * displacement, f64::INFINITY, self.budget);
-        self.search.begin(Goal { min_depth, tolerance, stop_depth, budget });
+        self.search.begin(Goal {
+            min_depth,
+            tolerance: 0.25 * displacement,
+            stop_depth: f64::INFINITY,
+            budget: self.budget,
+        });
         let mut found = None;
-        let heights = model.0.circles.iter().chain(&model.1.peaks);
+        let heights = section.circles.iter().chain(&owners.peaks);
         let peaks = heights.filter_map(|height| triangle.level(*height));
         for line in triangle.search_lines().chain(peaks) {
             let maximum = if min_depth < 0.0 {
-                self.search.outside(model, &line)
+                self.search.outside(section, owners, &line)
             } else {
-                self.search.inside((model.0, model.1, triangle.skew), &line)
+                self.search.inside(section, owners, triangle.skew, &line)
             };
             found = maximum.map(|maximum| line.point(maximum.t)).or(found);
         }
@@ -314,7 +319,7 @@ impl Sweeper {
         }
     }
 
-    /// The same, by subdivision: the triangle is halved until all pieces pass, or a piece that does not is small
+    /// Examines a triangle by subdivision: it is halved until all pieces pass, or a piece that does not is small
     /// compared with the displacement.
     fn check_subdivided(
         &mut self,

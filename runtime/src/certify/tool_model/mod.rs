@@ -1,7 +1,7 @@
 //! The model of a tool: its profile, or its depth function with a bound on the function's rate of change.
 
 mod circles;
-mod deepest;
+pub(crate) mod deepest;
 mod enclosed;
 pub(crate) mod feature;
 pub(crate) mod field;

@@ -173,7 +173,7 @@ impl Section {
     pub(crate) fn depth_at(&self, owners: &Owners, p: MeridianPoint) -> Option<Depth> {
         // Several slabs are at a height where the profile overhangs, or where slabs meet.
         let slabs = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
-        let depths = slabs.map(|slab| self.depth((owners, 0.0), slab, p));
+        let depths = slabs.map(|slab| self.depth(owners, 0.0, slab, p));
         depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
 
@@ -209,7 +209,8 @@ impl Section {
     #[inline]
     pub(crate) fn depth(
         &self,
-        (owners, slack): (&Owners, f64),
+        owners: &Owners,
+        slack: f64,
         slab: &SectionSlab,
         p: MeridianPoint,
     ) -> Depth {
@@ -255,7 +256,8 @@ impl Section {
     #[inline]
     pub(crate) fn at_most(
         &self,
-        (owners, slack): (&Owners, f64),
+        owners: &Owners,
+        slack: f64,
         slab: &SectionSlab,
         triangle: &Triangle,
         threshold: f64,

@@ -269,7 +269,9 @@ impl DepthSearch {
     /// Points within `slack` of owned points count as owned.
     pub(crate) fn inside(
         &mut self,
-        (section, owners, slack): (&Section, &Owners, f64),
+        section: &Section,
+        owners: &Owners,
+        slack: f64,
         line: &SearchLine,
     ) -> Option<LineMaximum> {
         let mut found = None;
@@ -282,9 +284,9 @@ impl DepthSearch {
                 }
                 if let Some([from, to]) = line.within(half, heights) {
                     let bound = |triangle: &Triangle, stop_depth| {
-                        section.at_most((owners, slack), slab, triangle, stop_depth)
+                        section.at_most(owners, slack, slab, triangle, stop_depth)
                     };
-                    let depth = |point| section.depth((owners, slack), slab, point);
+                    let depth = |point| section.depth(owners, slack, slab, point);
                     self.run(line, line.interval(from, to), bound, depth, &mut found);
                 }
             }
@@ -296,7 +298,8 @@ impl DepthSearch {
     /// owners, points inside count as 0.
     pub(crate) fn outside(
         &mut self,
-        (section, owners): (&Section, &Owners),
+        section: &Section,
+        owners: &Owners,
         line: &SearchLine,
     ) -> Option<LineMaximum> {
         let mut found = None;

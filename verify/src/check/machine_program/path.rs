@@ -5,8 +5,15 @@ use crate::gcode::StepPath;
 use crate::machine::{LinearPath, Plane};
 use nalgebra::{Matrix3, Vector3};
 
-/// Largest distance between an arc and its chords, in mm, where the arc's plane is not parallel to two axes.
+/// Distance between an arc and its chords that their angle is chosen for, in mm, where the arc's plane is not parallel to two
+/// axes. From a radius of 160 mm on, [`MIN_CHORD_ANGLE`] allows a larger one, which [`Segment::error`] states.
 const CHORD_TOLERANCE: f64 = 2e-5;
+
+/// Least angle of a chord that the tolerance may ask for, in radians.
+const MIN_CHORD_ANGLE: f64 = 1e-3;
+
+/// Largest angle of a chord, in radians. It holds for radii below 0.00064 mm.
+const MAX_CHORD_ANGLE: f64 = 0.5;
 
 /// Largest number of chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
@@ -60,7 +67,8 @@ pub(super) fn map(
             end: to,
             plane,
             centre: [middle[first], middle[second]],
-            sweep: sweep.copysign(sweep * normal[axis]),
+            // Seen from the other side of the plane, the arc turns the other way.
+            sweep: if normal[axis] < 0.0 { -sweep } else { sweep },
         };
         return Ok(vec![Segment { fractions: [0.0, 1.0], path, error: 0.0 }]);
     }
@@ -77,24 +85,26 @@ fn chords(
     map: &Map,
 ) -> Result<Vec<Segment>, StepFault> {
     let ([first, second], normal) = (plane.axes(), plane.normal());
-    let radius =
+    let radius_at =
         |position: [f64; 3]| (position[first] - centre[0]).hypot(position[second] - centre[1]);
-    let [from, to] = [start, end].map(radius);
-    let largest = from.max(to);
-    let angle = (8.0 * CHORD_TOLERANCE / largest).sqrt().clamp(1e-3, 0.5);
+    let [start_radius, end_radius] = [start, end].map(radius_at);
+    let max_radius = start_radius.max(end_radius);
+    let angle = (8.0 * CHORD_TOLERANCE / max_radius).sqrt().clamp(MIN_CHORD_ANGLE, MAX_CHORD_ANGLE);
     let count = (sweep.abs() / angle).ceil().max(1.0);
     if count > MAX_CHORDS {
         let [degrees, limit] = [sweep.abs(), MAX_CHORDS * angle].map(f64::to_degrees);
         return Err(StepFault::LongArc { degrees, limit });
     }
-    let begin = (start[second] - centre[1]).atan2(start[first] - centre[0]);
-    let position = |k: f64| {
-        let at = k / count;
-        if k == count {
+    let chords = count as u32;
+    let fraction = |k: u32| f64::from(k) / count;
+    let start_angle = (start[second] - centre[1]).atan2(start[first] - centre[0]);
+    let position = |k: u32| {
+        if k == chords {
             return map.apply(end);
         }
-        let (sine, cosine) = (begin + at * sweep).sin_cos();
-        let radius = from + at * (to - from);
+        let at = fraction(k);
+        let (sine, cosine) = (start_angle + at * sweep).sin_cos();
+        let radius = start_radius + at * (end_radius - start_radius);
         let mut position = start;
         position[first] = centre[0] + radius * cosine;
         position[second] = centre[1] + radius * sine;
@@ -103,13 +113,11 @@ fn chords(
     };
     // The change of the radius adds 2 |r'| Δ to the second derivative.
     let step = sweep.abs() / count;
-    let error = step * (largest * step + 2.0 * (to - from).abs() / count) / 8.0;
-    let mut segments = Vec::new();
-    let mut k = 0.0;
-    while k < count {
-        let path = LinearPath::Line { start: position(k), end: position(k + 1.0) };
-        segments.push(Segment { fractions: [k / count, (k + 1.0) / count], path, error });
-        k += 1.0;
-    }
-    Ok(segments)
+    let error = step * (max_radius * step + 2.0 * (end_radius - start_radius).abs() / count) / 8.0;
+    let chord = |k: u32| Segment {
+        fractions: [fraction(k), fraction(k + 1)],
+        path: LinearPath::Line { start: position(k), end: position(k + 1) },
+        error,
+    };
+    Ok((0..chords).map(chord).collect())
 }

@@ -209,6 +209,12 @@ struct Frame {
     has_unknown_lever: bool,
 }
 
+/// A value that follows from the program, unless only the machine knows it.
+enum Located<T> {
+    Known(T),
+    Unknown(UnknownCause),
+}
+
 /// The length of the tool in the spindle and the length offset, in mm.
 struct Lengths {
     length: f64,
@@ -275,95 +281,137 @@ impl<'a> Resolver<'a> {
             return Ok(self.lose(UnknownCause::TurnedTable));
         }
         let frame = match self.frame(step)? {
-            Ok(frame) => frame,
-            Err(cause) => {
-                // Only the machine knows what positions mean. If it also is where nothing tells, that is the cause.
-                let is_lost = self.joints[2].is_none() && !step.commanded[2];
-                self.joints[..3].fill(None);
-                // Angles do not depend on lengths.
-                for k in (3..6).filter(|k| step.commanded[*k]) {
-                    let terms =
-                        [step.end[k], self.rotary_origin(&step.state, k), step.state.shift[k]];
-                    self.joints[k] = terms.into_iter().sum();
-                }
-                self.cause = if is_lost { self.cause } else { cause };
-                return Ok(Resolved::Unknown(self.cause));
-            }
+            Located::Known(frame) => frame,
+            Located::Unknown(cause) => return Ok(self.lose_linear(step, cause)),
         };
         if matches!(step.path, StepPath::Align) {
             return self.align(&frame, &step.state);
         }
         let current = self.current_position(&frame);
-        let mut ends = [step.start, step.end];
-        for k in 0..6 {
-            // The machine knows where it is, also where the program does not.
-            ends[0][k] = current[k].or(ends[0][k]);
-            if ends[1][k].is_none() && !step.commanded[k] {
-                ends[1][k] = ends[0][k];
-            }
-        }
-        if let (Some(axis), Some(end)) = (step.tool_vector, linear_only(&ends[1])) {
-            let near = self.joints.map(Option::unwrap_or_default);
-            let tip = Point3::from(frame.map.apply([end[0], end[1], end[2]]));
-            let found = frame.chain.solutions(&tip, &Vector3::from(axis), &near)?;
-            if !self.is_one_choice(&found) {
-                return Ok(self.lose(UnknownCause::TwoPositions));
-            }
-            (3..6).for_each(|k| ends[1][k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
-        }
-        let mut way = self.turn_endless(step, &mut ends);
+        let mut ends = match self.ends(step, &frame, &current)? {
+            Located::Known(ends) => ends,
+            Located::Unknown(cause) => return Ok(self.lose(cause)),
+        };
+        let mut unknown_path = self.turn_endless(step, &mut ends);
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
             return Ok(Resolved::Unknown(self.unknown_end(step, &current)));
         };
-        let turns = |side: Side| {
-            let is_turned = |position: [f64; 6]| {
-                self.rotary(side).any(|k| position[k] + frame.rotary[k - 3] != 0.0)
-            };
-            is_turned(end) || start.is_some_and(is_turned)
-        };
-        if !frame.is_tip && self.part_position_unknown && turns(Side::Table) {
-            return Err(StepFault::NoPartPosition);
-        }
-        if !frame.is_tip && frame.has_unknown_lever && turns(Side::Tool) {
-            return Err(StepFault::NoLength);
-        }
-        let turned = |start: [f64; 6]| (3..6).any(|k| start[k] != end[k]);
+        self.refuse_unknown_levers(&frame, start, end)?;
         if step.state.tcp == Tcp::Transformation
-            && start.is_some_and(turned)
+            && start.is_some_and(|start| start[3..] != end[3..])
             && self.ask(Rule::ToolOrientation, step) == Some(Choice::GreatCircle)
         {
-            way = Some(UnknownCause::GreatCircle);
+            unknown_path = Some(UnknownCause::GreatCircle);
         }
-        let is_determined = !matches!(step.path, StepPath::Undetermined) && way.is_none();
+        let is_determined = !matches!(step.path, StepPath::Undetermined) && unknown_path.is_none();
         let resolved = match start.filter(|_| is_determined) {
-            // In an aligned plane the rotary axes rest, and the others move each by itself.
-            Some(start) if step.rapid && step.state.tcp == Tcp::Off => {
-                let joints = match frame.is_tip {
-                    true => {
-                        let (motion, _) =
-                            frame.motions(&StepPath::Line, [start, end])?.swap_remove(0);
-                        [motion.joints(0.0), motion.joints(1.0)]
-                    }
-                    false => [start, end].map(|position| frame.joints(position)),
-                };
-                let resolved = self.rapid(&frame.chain, joints)?;
-                if matches!((&self.rapid, &resolved), (RapidPath::Rates(_), Resolved::Motions(all)) if all.len() > 1)
-                {
-                    self.ask(Rule::Rapid, step);
-                }
-                resolved
-            }
-            Some(start) => Resolved::Motions(frame.motions(&step.path, [start, end])?),
+            Some(start) => self.motion(step, &frame, [start, end])?,
             None => {
-                let mut motions = frame.motions(&StepPath::Line, [end, end])?;
-                let (rest, _) = motions.swap_remove(0);
-                let cause = way.unwrap_or(self.cause);
-                Resolved::Arrival(Box::new(rest), cause)
+                let (rest, _) = frame.motions(&StepPath::Line, [end, end])?.swap_remove(0);
+                Resolved::Arrival(Box::new(rest), unknown_path.unwrap_or(self.cause))
             }
         };
-        let last = match &resolved {
+        self.arrive(&frame, &resolved);
+        Ok(resolved)
+    }
+
+    /// Resolves a step whose coordinates only the machine knows. Angles stay known: they do not depend on lengths.
+    fn lose_linear(&mut self, step: &Step, cause: UnknownCause) -> Resolved {
+        // If the position was not known before either, that is the cause.
+        if self.joints[2].is_some() || step.commanded[2] {
+            self.cause = cause;
+        }
+        self.joints[..3].fill(None);
+        for k in (3..6).filter(|k| step.commanded[*k]) {
+            let terms = [step.end[k], self.rotary_origin(&step.state, k), step.state.shift[k]];
+            self.joints[k] = terms.into_iter().sum();
+        }
+        Resolved::Unknown(self.cause)
+    }
+
+    /// Returns the start and the end of a step in program coordinates, as far as they are known. `current` is the position
+    /// of the machine.
+    fn ends(
+        &self,
+        step: &Step,
+        frame: &Frame,
+        current: &Position,
+    ) -> Result<Located<[Position; 2]>, StepFault> {
+        let (mut start, mut end) = (step.start, step.end);
+        for k in 0..6 {
+            // The machine knows where it is, also where the program does not.
+            start[k] = current[k].or(start[k]);
+            if end[k].is_none() && !step.commanded[k] {
+                end[k] = start[k];
+            }
+        }
+        if let (Some(axis), Some([x, y, z, ..])) = (step.tool_vector, linear_only(&end)) {
+            let near = self.joints.map(Option::unwrap_or_default);
+            let tip = Point3::from(frame.map.apply([x, y, z]));
+            let found = frame.chain.solutions(&tip, &Vector3::from(axis), &near)?;
+            if !self.is_one_choice(&found) {
+                return Ok(Located::Unknown(UnknownCause::TwoPositions));
+            }
+            (3..6).for_each(|k| end[k] = Some(found[0].joints[k] - frame.rotary[k - 3]));
+        }
+        Ok(Located::Known([start, end]))
+    }
+
+    /// Refuses a step in which a rotary axis is not at 0 and turns the part, or the tool, about a distance that is unknown.
+    /// Positions of the tip do not depend on it.
+    fn refuse_unknown_levers(
+        &self,
+        frame: &Frame,
+        start: Option<Joints>,
+        end: Joints,
+    ) -> Result<(), StepFault> {
+        let is_turned = |side: Side| {
+            start
+                .iter()
+                .chain([&end])
+                .any(|position| self.rotary(side).any(|k| position[k] + frame.rotary[k - 3] != 0.0))
+        };
+        if !frame.is_tip && self.part_position_unknown && is_turned(Side::Table) {
+            return Err(StepFault::NoPartPosition);
+        }
+        if !frame.is_tip && frame.has_unknown_lever && is_turned(Side::Tool) {
+            return Err(StepFault::NoLength);
+        }
+        Ok(())
+    }
+
+    /// Resolves the motion of a step between two positions in program coordinates.
+    fn motion(
+        &mut self,
+        step: &Step,
+        frame: &Frame,
+        ends: [Joints; 2],
+    ) -> Result<Resolved, StepFault> {
+        if !step.rapid || step.state.tcp != Tcp::Off {
+            return Ok(Resolved::Motions(frame.motions(&step.path, ends)?));
+        }
+        let joints = if frame.is_tip {
+            // In an aligned plane the rotary axes rest, and the others move each by itself.
+            let (motion, _) = frame.motions(&StepPath::Line, ends)?.swap_remove(0);
+            [0.0, 1.0].map(|at| motion.joints(at))
+        } else {
+            ends.map(|position| frame.joints(position))
+        };
+        let resolved = self.rapid(&frame.chain, joints)?;
+        // Several motions are those of axes that arrive at different times, which they do not on a straight path.
+        if matches!(self.rapid, RapidPath::Rates(_))
+            && matches!(&resolved, Resolved::Motions(motions) if motions.len() > 1)
+        {
+            self.ask(Rule::Rapid, step);
+        }
+        Ok(resolved)
+    }
+
+    /// Notes the joints at the end of a motion.
+    fn arrive(&mut self, frame: &Frame, resolved: &Resolved) {
+        let last = match resolved {
             Resolved::Motions(motions) => motions.last().map(|(motion, _)| motion),
             Resolved::AnyRapid(any) => Some(&any.straight),
             Resolved::Arrival(rest, _) => Some(&**rest),
@@ -376,7 +424,6 @@ impl<'a> Resolver<'a> {
             self.joints[..3].fill(None);
             self.cause = UnknownCause::NoLever;
         }
-        Ok(resolved)
     }
 
     /// Returns the cause for which the end of a step is unknown that starts at `current`, and keeps that of later ones.
@@ -575,15 +622,15 @@ impl<'a> Resolver<'a> {
     }
 
     /// Returns the mapping of a state's coordinates; the cause if only the machine knows it.
-    fn frame(&mut self, step: &Step) -> Result<Result<Frame, UnknownCause>, StepFault> {
+    fn frame(&mut self, step: &Step) -> Result<Located<Frame>, StepFault> {
         let state = &*step.state;
         let is_tip = state.turns_with_workpiece();
         let Lengths { length, offset, is_known } = match self.lengths(state)? {
-            Ok(lengths) => lengths,
-            Err(cause) => return Ok(Err(cause)),
+            Located::Known(lengths) => lengths,
+            Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
         };
         let Some(shift) = self.known_in_machine(&state.shift) else {
-            return Ok(Err(UnknownCause::Shift));
+            return Ok(Located::Unknown(UnknownCause::Shift));
         };
         let chain = match &self.chain {
             Some((known, chain)) if *known == length => *chain,
@@ -619,11 +666,11 @@ impl<'a> Resolver<'a> {
         let about = about + Vector3::new(shift[0], shift[1], shift[2]);
         let mut linear = Vector3::new(origin[0], origin[1], origin[2]);
         if is_tip {
-            let is_turned = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
+            let has_rotary_offset = origin[3..] != self.origin[3..] || shift[3..] != [0.0; 3];
             // The part stands at the offset, if it is taken with the table as it stands.
             let is_table_turned = self.rotary(Side::Table).any(|k| origin[k] != 0.0)
                 && self.ask(Rule::TcpStart, step) != Some(Choice::TableAsItStands);
-            if state.origin_rotation != 0.0 || is_turned || is_table_turned {
+            if state.origin_rotation != 0.0 || has_rotary_offset || is_table_turned {
                 return Err(StepFault::TurnedOffset { offset: offset_name() });
             }
             linear -= Vector3::new(self.origin[0], self.origin[1], self.origin[2]);
@@ -633,12 +680,12 @@ impl<'a> Resolver<'a> {
         let map = if state.origin_rotation == 0.0 {
             Map { rotation: turn, origin: about + linear }
         } else {
-            let turned = gcode::about(2, state.origin_rotation);
-            Map { rotation: turned * turn, origin: turned * about + linear }
+            let origin_turn = gcode::about(2, state.origin_rotation);
+            Map { rotation: origin_turn * turn, origin: origin_turn * about + linear }
         };
         let rotary = [3, 4, 5].map(|k| origin[k] + shift[k]);
         let has_unknown_lever = self.has_head && !is_known;
-        Ok(Ok(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
+        Ok(Located::Known(Frame { chain, map, rotary, is_tip, has_unknown_lever }))
     }
 
     /// Returns the coordinates, if those of all axes of the machine are known. Others are 0.
@@ -655,18 +702,18 @@ impl<'a> Resolver<'a> {
     /// Returns the length of the tool in the spindle and the length offset; the cause if only the machine knows where the
     /// tip is. If neither is known, both count as 0: the tip is then where the program says. Without an offset this holds
     /// for a program that names no tool: Z of the work offset is then that of the tip.
-    fn lengths(&self, state: &ControlState) -> Result<Result<Lengths, UnknownCause>, StepFault> {
+    fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
         let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
         let of = |length: f64, offset: f64, is_known: bool| Lengths { length, offset, is_known };
         let lengths = match (state.length, known) {
             (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {
-                return Ok(Err(UnknownCause::TcpWithoutLength));
+                return Ok(Located::Unknown(UnknownCause::TcpWithoutLength));
             }
             (LengthOffset::Off, Some(length)) => of(length, 0.0, true),
             (LengthOffset::Off, None) => match tool {
                 Some(tool) if !self.off_is_tip => {
-                    return Ok(Err(UnknownCause::NoOffset { tool }));
+                    return Ok(Located::Unknown(UnknownCause::NoOffset { tool }));
                 }
                 _ => of(0.0, 0.0, false),
             },
@@ -675,7 +722,7 @@ impl<'a> Resolver<'a> {
             }
             (LengthOffset::On { register, length: offset }, length) => {
                 if let Some(tool) = tool.filter(|tool| *tool != register) {
-                    return Ok(Err(UnknownCause::OtherOffset { tool, register }));
+                    return Ok(Located::Unknown(UnknownCause::OtherOffset { tool, register }));
                 }
                 let known = offset.or(length);
                 of(known.unwrap_or(0.0), known.unwrap_or(0.0), known.is_some())
@@ -688,7 +735,7 @@ impl<'a> Resolver<'a> {
         {
             return Err(StepFault::Length { register, offset, tool, length });
         }
-        Ok(Ok(lengths))
+        Ok(Located::Known(lengths))
     }
 
     /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.
