@@ -190,16 +190,11 @@ impl Polynomial {
     /// Returns the restriction to a straight line, with one coordinate less; `None` if the other polynomial
     /// is not linear in one.
     pub(crate) fn on_line(&self, line: &Polynomial) -> Option<Polynomial> {
-        let degree = |monomial: &Monomial| monomial.iter().sum::<u8>();
-        let linear = line.0.keys().all(|monomial| degree(monomial) <= 1);
-        let steep =
-            |(_, a): &(&Monomial, &Number), (_, b): &(&Monomial, &Number)| a.abs().cmp(&b.abs());
-        let sloped = line.0.iter().filter(|(monomial, _)| degree(monomial) == 1);
-        let (leading, factor) = sloped.max_by(steep).filter(|_| linear)?;
+        let (leading, factor) = line.leading_term()?;
         let axis = leading.iter().position(|exponent| *exponent == 1)?;
         // leader = -(the rest) / factor
         let mut rest = line.clone();
-        rest.0.remove(leading);
+        rest.0.remove(&leading);
         let rest = rest.scaled(&Number::int(-1).checked_div(factor)?);
         let mut remainder = Polynomial::zero();
         for (monomial, value) in &self.0 {
@@ -215,6 +210,14 @@ impl Polynomial {
         let largest = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
         remainder.0.retain(|_, value| value.to_f64().abs() > largest * ROUNDING);
         Some(remainder)
+    }
+
+    /// Returns the term of degree 1 with the largest coefficient, whose coordinate [`Polynomial::on_line`] replaces, or
+    /// the last of several; `None` if the polynomial is constant or not linear.
+    fn leading_term(&self) -> Option<(Monomial, &Number)> {
+        let sloped = self.0.iter().filter(|(monomial, _)| monomial.iter().sum::<u8>() == 1);
+        let (monomial, factor) = sloped.max_by(|(_, a), (_, b)| a.abs().cmp(&b.abs()))?;
+        self.is_linear().then_some((*monomial, factor))
     }
 
     /// Encloses the values over a box.
@@ -275,7 +278,8 @@ impl Polynomial {
         }
         let extreme = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
         let [of_d, of_z, rest] = [D, Z, [0; 4]].map(|monomial| line.factor(monomial));
-        Some(if of_d.abs() > of_z.abs() {
+        // The coordinate that is left, not the one of the leading term, is `extreme`.
+        Some(if line.leading_term()?.0 == D {
             [-(rest + of_z * extreme) / of_d, extreme]
         } else {
             [extreme, -(rest + of_d * extreme) / of_z]
@@ -416,5 +420,26 @@ impl Polynomial {
     /// Returns the monomials with their coefficients.
     pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
         self.0.iter().map(|(monomial, value)| (*monomial, value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polynomial(terms: &[(Monomial, f64)]) -> Polynomial {
+        let number = |value: f64| Number::from_f64(value).expect("a finite number");
+        Polynomial(terms.iter().map(|(monomial, value)| (*monomial, number(*value))).collect())
+    }
+
+    /// The parabola z² - d + 1 is negative on one side of its tangent with these coefficients of d and z only.
+    #[test]
+    fn a_tangent_at_45_degrees_is_clear_below() {
+        let parabola = polynomial(&[([0, 0, 0, 2], 1.0), (D, -1.0), ([0; 4], 1.0)]);
+        for of_z in [1.0, -1.0] {
+            let tangent = polynomial(&[(D, 1.0), (Z, of_z), ([0; 4], -0.75)]);
+            let side = parabola.clear_side_of(&tangent).expect("it touches");
+            assert!(side.is_below && side.is_positive, "{of_z}");
+        }
     }
 }

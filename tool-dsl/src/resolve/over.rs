@@ -185,12 +185,12 @@ fn fans<'t>(
         }
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
-    let graph = &mut lowering.graph;
+    let (graph, frame) = (&mut lowering.graph, &lowering.frame);
     let undivided = |Undivided([d, z]): Undivided| {
         Diagnostic::new(
             span,
             RegionKind::SmoothDivisionFailed {
-                location: Domain::HalfPlane.format_point([d, 0.0, z]),
+                location: Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]),
             },
         )
     };

@@ -84,7 +84,9 @@ impl Field<'_> {
             let Cell { low, high, bound } = cell;
             if bound <= min_depth || (deepest > min_depth && bound <= factor * deepest) {
                 return match best.filter(|_| deepest > min_depth) {
-                    Some((point, depth)) => DeepestPoint::Found { point, depth, max_depth: bound },
+                    Some((point, depth)) => {
+                        DeepestPoint::Found { point, depth, max_depth: depth.value.max(bound) }
+                    }
                     None => DeepestPoint::NoneDeeper,
                 };
             }
