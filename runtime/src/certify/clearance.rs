@@ -87,7 +87,7 @@ fn distance(
     state.inside(setting, inside, pose, goal);
     if let Some(best) = &state.best {
         let witness = setting.witness(best, pose);
-        let high = if state.search.best > touch { 0.0 } else { 2.0 * touch + state.skew };
+        let high = if state.search.is_done() { 0.0 } else { 2.0 * touch + state.search.skew };
         let distance = Interval::new(0.0, high * setting.length);
         return Clearance { distance, witness: Some(witness) };
     }
@@ -98,7 +98,7 @@ fn distance(
     let tolerance = (4.0 * error).max(tolerance / setting.length);
     let [min_depth, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
     state.outside(setting, outside, pose, Goal { min_depth, tolerance, stop_depth, budget });
-    let more = error + state.skew;
+    let more = error + state.search.skew;
     let low = -state.search.threshold().max(state.search.open_bound) - more;
     let low = if unsure { 0.0 } else { low.max(0.0) };
     // For a point outside, a depth field gives only a lower bound of the distance.

@@ -392,12 +392,13 @@ fn touches(
             state.inside(setting, query, pose, goal);
         }
         if let Some(best) = &state.best
-            && state.search.best > goal.stop_depth + state.skew
+            && state.search.is_done()
         {
             return ContactVerdict::Yes(setting.witness(best, pose));
         }
         if state.best.is_some() || state.search.has_open() {
-            let high = state.search.open_bound.max(state.search.threshold()) + touch + state.skew;
+            let high =
+                state.search.open_bound.max(state.search.threshold()) + touch + state.search.skew;
             undecided = Some(undecided.unwrap_or(0.0).max(high - query.limit));
         }
     }
@@ -417,7 +418,7 @@ fn penetration(
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
     let goal = Goal { min_depth: setting.error, tolerance, stop_depth: f64::INFINITY, budget };
     state.inside(setting, query, pose, goal);
-    let more = setting.error + state.skew;
+    let more = setting.error + state.search.skew;
     let (low, high) = match state.best {
         // Slabs are widened by the error, so a point outside may be measured as that deep.
         Some(_) => (state.search.best - more - setting.error, state.search.best + tolerance),

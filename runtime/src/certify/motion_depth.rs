@@ -393,7 +393,8 @@ impl MotionSearch<'_, '_> {
         let goal = Goal { min_depth: query.limit, tolerance, stop_depth: f64::INFINITY, budget };
         state.outside(setting, query, &pose, goal);
         let best = state.best?;
-        let (found, more) = (state.search.best, motion_error(setting, self.motion) + state.skew);
+        let (found, more) =
+            (state.search.best, motion_error(setting, self.motion) + state.search.skew);
         let high = (found + tolerance).max(state.search.open_bound) + more;
         Some(DepthPeak {
             depth: Interval::new(found - more, high),

@@ -80,8 +80,6 @@ pub(crate) struct SearchState {
     faces: Faces,
     scratch: Scratch,
     pub(crate) best: Option<DeepestCandidate>,
-    /// The largest skew of a triangle examined.
-    pub(crate) skew: f64,
     /// The triangle at which the last query ended.
     last: Option<u32>,
 }
@@ -157,7 +155,6 @@ impl SearchState {
         goal: Goal,
     ) {
         self.best = None;
-        self.skew = 0.0;
         self.search.begin(goal);
         self.descent.clear();
         if !of.set_pose(self, pose) {
@@ -349,7 +346,7 @@ impl SearchState {
             ToolModel::Field(_) => return self.scratch.hold(corners, index),
         };
         let triangle = LocalTriangle::new(corners);
-        self.skew = self.skew.max(triangle.skew);
+        self.search.skew = self.search.skew.max(triangle.skew);
         let owners = &query.owners;
         let heights = section.circles.iter().chain(&owners.peaks);
         let levels = heights.filter_map(|height| triangle.level(*height));

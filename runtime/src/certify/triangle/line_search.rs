@@ -145,7 +145,7 @@ pub(crate) struct LineMaximum {
 }
 
 /// The goal of a search. Depths up to `min_depth` are ignored. The search ends within `tolerance` of the greatest
-/// depth, at a depth above `stop_depth`, or when the budget is spent.
+/// depth, at a depth that is above `stop_depth` for certain, or when the budget is spent.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {
     pub(crate) min_depth: f64,
@@ -171,6 +171,8 @@ pub(crate) struct DepthSearch {
     tolerance: f64,
     /// The depth above which the search ends.
     stop_depth: f64,
+    /// The largest skew of a triangle examined, by which a depth found may be too large.
+    pub(crate) skew: f64,
     /// The greatest bound of the regions left open because the budget was spent or they could not be divided.
     pub(crate) open_bound: f64,
     /// True if a point was found.
@@ -186,14 +188,15 @@ impl DepthSearch {
         self.best = min_depth;
         self.tolerance = tolerance;
         self.stop_depth = stop_depth;
+        self.skew = 0.0;
         self.open_bound = f64::NEG_INFINITY;
         self.found = false;
         self.budget = budget;
     }
 
-    /// Returns whether the depth found ends the search.
+    /// Returns whether the depth found ends the search: whatever is left cannot change the verdict.
     pub(crate) fn is_done(&self) -> bool {
-        self.best > self.stop_depth
+        self.best > self.stop_depth + self.skew
     }
 
     /// Returns the depth up to which regions can be pruned. The tolerance is added only once a point was found.
