@@ -1,9 +1,11 @@
 //! Oracles that share no code with the project, and the scenes and tools that the tests use.
 
-pub mod accuracy;
 pub mod count;
+pub mod evaluations;
 pub mod fixtures;
 pub mod haptics;
 pub mod libraries;
 pub mod library;
 pub mod oracle;
+pub mod profiles;
+pub mod turns;

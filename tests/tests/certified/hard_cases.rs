@@ -6,7 +6,8 @@ use crate::poses::bumpy;
 use crate::{UP, plate, pose, soup, tool};
 use nalgebra::Point3;
 use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
-use touchoff::{Interval, Level, Mesh, Pose, TriangleId, Unit};
+use touchoff::{Interval, Mesh, Pose, TriangleId, Unit};
+use touchoff_tests::evaluations::levels;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::rng::Rng;
 
@@ -14,20 +15,6 @@ fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
     let bvh = TriangleBvh::new(mesh);
     let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
     certifier.deepest(pose, tolerance).depth.into()
-}
-
-/// Returns all SIMD levels of this machine.
-fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![best, Level::baseline()];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        levels.extend(best.as_sse2().map(Level::Sse2));
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-        levels.extend(best.as_avx2().map(Level::Avx2));
-        levels.extend(best.as_avx512().map(Level::Avx512));
-    }
-    levels
 }
 
 #[test]
@@ -115,7 +102,7 @@ fn every_simd_level_gives_a_valid_interval() {
             let brute = BruteForce::new(&mesh, &oracle, 1.0);
             let mut certifiers: Vec<_> = levels
                 .iter()
-                .map(|level| {
+                .map(|(_, level)| {
                     Certifier::new(&bvh, tool(tool_name)).expect("a profile").with_level(*level)
                 })
                 .collect();

@@ -7,13 +7,14 @@ use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Outputs, PointBatch};
-use touchoff_tests::accuracy::{owners, tools};
+use touchoff::tool::PointEvaluation;
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::profiles::{owners, tools};
 
 fn checked(source: &Source) -> Box<CheckedTool> {
     let compiled = compile(source);
@@ -230,7 +231,6 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
         let mut counts = vec![0; proved.regions.len()];
         let mut rng = Rng::new(11);
         let [x, _, z] = tool.extent.cell().sides;
-        let mut list = PointBatch::default();
         let points: Vec<[f64; 3]> = (0..40_000)
             .map(|_| {
                 let (d, turn) =
@@ -238,19 +238,12 @@ fn rounding_is_below_its_bound_and_above_a_tenth_of_it() {
                 [d * turn.cos(), d * turn.sin(), rng.between(z.low, z.high)]
             })
             .collect();
-        points.iter().for_each(|p| list.push(*p));
-        let mut evaluation = Evaluations::default();
-        compiled.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
-        for (k, p) in points.iter().enumerate() {
-            if evaluation.inside[k / 8] >> (k % 8) & 1 == 0 {
-                continue;
-            }
-            let region = evaluation.region[k] as usize;
-
+        let evaluations = evaluate_points(compiled, Level::new(), &points);
+        for (p, evaluation) in points.iter().zip(evaluations) {
+            let Some(PointEvaluation { region, depth, .. }) = evaluation else { continue };
             let at = QueryPoint::new(*p);
             let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
-            let off =
-                exact.map(|exact| (&Big::exactly(evaluation.depth[k]) - &exact).abs().to_f64());
+            let off = exact.map(|exact| (&Big::exactly(depth) - &exact).abs().to_f64());
             let off = off.fold(f64::INFINITY, f64::min);
             worst[region] = worst[region].max(off);
             counts[region] += 1;

@@ -8,9 +8,9 @@ use crate::points::points;
 use crate::truth::Profiled;
 use crate::validator::{DEPTH, Validator};
 use rayon::prelude::*;
-use touchoff_tests::accuracy::tools;
 use touchoff_tests::count::case_count;
 use touchoff_tests::oracle::Nearest;
+use touchoff_tests::profiles::tools;
 
 /// Number of points that are evaluated at a time, so that a million take no gigabytes.
 const POINTS_PER_CHUNK: usize = 1 << 15;

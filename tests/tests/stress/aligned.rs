@@ -5,30 +5,11 @@
 use crate::scene::{PointSet, Scene, format_pose, pose};
 use crate::{check_tools, extent};
 use nalgebra::{Point3, Vector3};
-use std::f64::consts::FRAC_1_SQRT_2;
 use touchoff::Pose;
+use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 
 /// Spacing of the coordinates' grid, so that its multiples keep all bits near the tips used here.
 const GRID: f64 = 1.0 / 1024.0;
-
-/// Quaternions of quarter and half turns whose rotations are not rounded.
-const EXACT_TURNS: [[f64; 4]; 7] = [
-    [0.0, 0.0, 0.0, 1.0],
-    [1.0, 0.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0, 0.0],
-    [0.0, 0.0, 1.0, 0.0],
-    [0.5, 0.5, 0.5, 0.5],
-    [-0.5, 0.5, 0.5, 0.5],
-    [0.5, -0.5, 0.5, 0.5],
-];
-
-/// Quaternions of quarter and half turns with rounding.
-const ROUNDED_TURNS: [[f64; 4]; 4] = [
-    [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2],
-    [0.0, FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2],
-    [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2],
-    [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0],
-];
 
 #[test]
 fn aligned_poses_are_exact() {

@@ -8,8 +8,9 @@
 use crate::borders::{Bracket, brackets, rotated_copies};
 use crate::checks::Checks;
 use crate::truth::{Subject, to_exact};
-use crate::validator::{PointEvaluation, Validator};
+use crate::validator::Validator;
 use crate::{check_tools, extent};
+use touchoff::tool::PointEvaluation;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::rng::Rng;
 

@@ -20,7 +20,7 @@ struct Quantity {
     cases: usize,
     /// The largest value; infinite if a value was NaN.
     worst: f64,
-    /// Where the worst value occurred, to the last bit.
+    /// The place of the worst value, to the last bit.
     place: String,
 }
 

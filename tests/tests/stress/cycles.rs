@@ -8,6 +8,7 @@ use nalgebra::Point3;
 use std::ops::Range;
 use std::thread;
 use touchoff::{Level, Part, Probe};
+use touchoff_tests::evaluations::levels;
 use touchoff_tests::oracle::rng::Rng;
 
 #[test]
@@ -24,7 +25,8 @@ fn cycles_have_the_same_bits_on_all_threads_and_levels() {
             [first.join().expect("no cycle panics"), second].concat()
         });
         let mut runs = vec![("two threads", on_two_threads)];
-        for (name, level) in other_levels() {
+        // The first level is that of `expected`.
+        for (name, level) in levels().into_iter().skip(1) {
             runs.push((name, cycles.run(level, 0..count)));
         }
         for (name, actual) in runs {
@@ -33,20 +35,6 @@ fn cycles_have_the_same_bits_on_all_threads_and_levels() {
             checks.never("other bits", different.is_some() || actual.len() != count, place);
         }
     });
-}
-
-/// Returns all SIMD levels of this machine below the best, which [`Level::new`] returns.
-fn other_levels() -> Vec<(&'static str, Level)> {
-    let mut levels = vec![("baseline", Level::baseline())];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        let best = Level::new();
-        levels.extend(best.as_avx512().map(|level| ("AVX-512", Level::Avx512(level))));
-        levels.extend(best.as_avx2().map(|level| ("AVX2", Level::Avx2(level))));
-        levels.extend(best.as_sse4_2().map(|level| ("SSE4.2", Level::Sse4_2(level))));
-        levels.extend(best.as_sse2().map(|level| ("SSE2", Level::Sse2(level))));
-    }
-    levels
 }
 
 /// Poses of a tool near a part. The number of a cycle gives its pose.

@@ -12,12 +12,13 @@
 use crate::checks::Checks;
 use crate::text::{hand_written_text, power_of_two, profile_text, with_plain_names};
 use crate::truth::{ExactPoint, Profiled, RegionValues, Subject, Truth};
-use crate::validator::{PointEvaluation, Validator, evaluate_points};
+use crate::validator::Validator;
 use crate::{check_tools, extent};
 use std::f64::consts::TAU;
 use tool_dsl::source::Source;
 use touchoff::Level;
-use touchoff::tool::{Interpreted, ToolError};
+use touchoff::tool::{Interpreted, PointEvaluation, ToolError};
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::displaced;
 use touchoff_tests::oracle::restated::{self, Segment};

@@ -2,8 +2,9 @@
 
 use crate::checks::Checks;
 use crate::truth::{RegionValues, Truth, to_exact};
-use touchoff::tool::{Evaluations, Outputs, PointBatch};
+use touchoff::tool::PointEvaluation;
 use touchoff::{Level, Tool};
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::big::Big;
 
 /// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
@@ -14,50 +15,16 @@ pub(crate) const WRONG_SIDE: &str = "wrong side";
 const WRONG_OWNER: &str = "wrong owner";
 const SENSELESS_NUMBER: &str = "senseless number";
 
-/// The evaluation of a tool at a point inside.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PointEvaluation {
-    /// The index of the region.
-    pub(crate) region: usize,
-    pub(crate) depth: f64,
-    pub(crate) magnitude: f64,
-    pub(crate) niceness: f64,
-    pub(crate) direction: [f64; 3],
-    pub(crate) gradient: [f64; 3],
+/// Returns all numbers of an evaluation.
+fn numbers(evaluation: &PointEvaluation) -> [f64; 9] {
+    let ([ux, uy, uz], [gx, gy, gz]) = (evaluation.direction, evaluation.gradient);
+    let PointEvaluation { depth, magnitude, niceness, .. } = *evaluation;
+    [depth, magnitude, niceness, ux, uy, uz, gx, gy, gz]
 }
 
-impl PointEvaluation {
-    /// Returns all numbers.
-    fn numbers(&self) -> [f64; 9] {
-        let ([ux, uy, uz], [gx, gy, gz]) = (self.direction, self.gradient);
-        [self.depth, self.magnitude, self.niceness, ux, uy, uz, gx, gy, gz]
-    }
-
-    /// Returns the region, and the bits of all numbers.
-    fn bits(&self) -> (usize, [u64; 9]) {
-        (self.region, self.numbers().map(f64::to_bits))
-    }
-}
-
-/// Evaluates a tool at points, at a SIMD level. The result is `None` for points outside.
-pub(crate) fn evaluate_points(
-    tool: &dyn Tool,
-    level: Level,
-    points: &[[f64; 3]],
-) -> Vec<Option<PointEvaluation>> {
-    let (mut batch, mut evaluation) = (PointBatch::default(), Evaluations::default());
-    points.iter().for_each(|p| batch.push(*p));
-    tool.evaluate(level, Outputs::EVERYTHING, &batch, 1.0, &mut evaluation);
-    let at = |i: usize| PointEvaluation {
-        region: evaluation.region[i] as usize,
-        depth: evaluation.depth[i],
-        magnitude: evaluation.magnitude[i],
-        niceness: evaluation.niceness[i],
-        direction: [0, 1, 2].map(|axis| evaluation.direction[axis][i]),
-        gradient: [0, 1, 2].map(|axis| evaluation.gradient[axis][i]),
-    };
-    let is_inside = |i: usize| evaluation.inside[i / 8] >> (i % 8) & 1 == 1;
-    (0..points.len()).map(|i| is_inside(i).then(|| at(i))).collect()
+/// Returns the region of an evaluation, and the bits of all numbers.
+fn bits(evaluation: &PointEvaluation) -> (usize, [u64; 9]) {
+    (evaluation.region, numbers(evaluation).map(f64::to_bits))
 }
 
 /// A tool, its true values, and the limits of its errors.
@@ -66,7 +33,7 @@ pub(crate) struct Validator<'a> {
     pub(crate) truth: &'a dyn Truth,
     /// Limit of the errors of depths, and of distances outside, in ulp(S).
     pub(crate) limit: f64,
-    /// Whether directions one ulp beside a singular point are accepted there: a centre on the axis need not be a double.
+    /// True if directions one ulp beside a singular point are accepted there: a centre on the axis need not be a double.
     pub(crate) centres_are_rounded: bool,
 }
 
@@ -90,7 +57,7 @@ impl<'a> Validator<'a> {
         let lanes = evaluate_points(self.tool, Level::new(), points);
         let baseline = evaluate_points(self.tool, Level::baseline(), points);
         for ((p, lane), baseline) in points.iter().zip(&lanes).zip(&baseline) {
-            let [a, b] = [lane, baseline].map(|e| e.as_ref().map(PointEvaluation::bits));
+            let [a, b] = [lane, baseline].map(|e| e.as_ref().map(bits));
             checks.never("unlike bits", a != b, || format!("{p:?}"));
             self.validate_point(*p, lane.as_ref(), checks);
         }
@@ -114,7 +81,7 @@ impl<'a> Validator<'a> {
         let place = || format!("{p:?} in `{}`", self.tool.info().regions[evaluation.region].name);
         checks.never(WRONG_SIDE, is_wrong_side, place);
         let PointEvaluation { region, depth, magnitude, niceness, .. } = *evaluation;
-        let is_finite = evaluation.numbers().iter().all(|v| v.is_finite());
+        let is_finite = numbers(evaluation).iter().all(|v| v.is_finite());
         let is_sensible = is_finite && [depth, magnitude, niceness].iter().all(|v| *v >= 0.0);
         checks.never(SENSELESS_NUMBER, !is_sensible, place);
         if !is_finite {

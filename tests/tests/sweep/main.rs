@@ -47,7 +47,7 @@ struct ComparisonSettings<'a> {
     seed: u64,
 }
 
-/// What brute force says of a verdict of the sweep. The texts have triangle, tool, direction and the verdicts of brute
+/// The answer of brute force to a verdict of the sweep. The texts have triangle, tool, direction and the verdicts of brute
 /// force.
 enum Outcome {
     /// It agrees.

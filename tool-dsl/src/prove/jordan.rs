@@ -73,7 +73,7 @@ impl Profile {
         let sharpest = closed_curve().zip(closed_curve().cycle().skip(1)).map(|(before, after)| {
             let [before, after] = [before.tangent(true), after.tangent(false)];
             // A turn to the left is positive. The outside angle is β = π + turn, and sin(β/2) = cos(turn/2).
-            // Where that is more than π, the corner is nearer to points on the bisector than its sides are.
+            // The corner, if that is more than π, is nearer to points on the bisector than its sides are.
             let turn = cross(before, after).atan2(dot(before, after));
             (0.5 * turn.min(0.0)).cos()
         });

@@ -199,7 +199,7 @@ impl<'o> Section<'o> {
         let mut stop = Stop { radius: f64::INFINITY, obstacle: Obstacle::Far };
         for obstacle in [Obstacle::Far, Obstacle::Axis, Obstacle::Centre] {
             let radius = self.growth_to(feature, foot_point, obstacle);
-            // Of two obstacles at the same distance, the arc's own centre counts.
+            // The arc's own centre counts before another obstacle at the same distance.
             let is_centre = obstacle == Obstacle::Centre && radius.is_finite();
             if radius < stop.radius || (is_centre && radius <= stop.radius) {
                 stop = Stop { radius, obstacle };

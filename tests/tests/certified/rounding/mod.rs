@@ -228,7 +228,7 @@ impl Validation<'_> {
     }
 }
 
-/// What the certifier may add to an interval at either end.
+/// The most that the certifier may add to an interval at either end.
 struct Widening {
     /// 64 ε of the tool's reach plus the part's size.
     rounding: f64,

@@ -3,9 +3,10 @@
 //! largest coordinate, and ρ the distance to the nearest point at which the direction does not exist.
 
 use super::points::{format_point, scale};
-use super::{LENGTHS, at, batch, evaluate};
+use super::{LENGTHS, evaluate};
 use touchoff::Level;
 use touchoff::tool::{Outputs, PointEvaluation, Tool};
+use touchoff_tests::evaluations::{at, batch};
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 

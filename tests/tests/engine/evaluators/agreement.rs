@@ -1,11 +1,12 @@
 //! All evaluators of a tool have the bits of the reference, which follows the text region by region.
 
 use super::points::{format_point, scale};
-use super::{LENGTHS, at, batch, evaluate, is_inside};
+use super::{LENGTHS, evaluate};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
 use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff_tests::evaluations::{at, batch, is_inside, levels};
 use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
@@ -55,22 +56,8 @@ pub(crate) fn of(
         "{:20} {:7} points: code, tape and lanes at {} alike; reference too, but for {corners} answers at corners",
         tool.info().name,
         points.len(),
-        levels().map(|(name, _)| name).collect::<Vec<_>>().join(", "),
+        levels().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
     );
-}
-
-/// Returns every SIMD level of this machine, the best among them twice.
-fn levels() -> impl Iterator<Item = (&'static str, Level)> {
-    let best = Level::new();
-    let mut levels = vec![("best", best)];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        levels.extend(best.as_sse2().map(|token| ("sse2", Level::Sse2(token))));
-        levels.extend(best.as_sse4_2().map(|token| ("sse4.2", Level::Sse4_2(token))));
-        levels.extend(best.as_avx2().map(|token| ("avx2", Level::Avx2(token))));
-        levels.extend(best.as_avx512().map(|token| ("avx512", Level::Avx512(token))));
-    }
-    levels.into_iter()
 }
 
 /// Returns all outputs of a tool, after a check that a request for fewer outputs gives the same values.

@@ -13,7 +13,7 @@ use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
 use tools_library::TOOLS;
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, PointEvaluation, Tool};
+use touchoff::tool::{Evaluations, Interpreted, Outputs, PointBatch, Tool};
 use touchoff_tests::library;
 use touchoff_tests::oracle::{self, Nearest, Oracle, restated};
 
@@ -43,28 +43,6 @@ fn evaluate(
     let mut evaluations = Evaluations::default();
     tool.evaluate(level, outputs, points, length, &mut evaluations);
     evaluations
-}
-
-fn is_inside(evaluations: &Evaluations, i: usize) -> bool {
-    evaluations.inside[i / 8] >> (i % 8) & 1 == 1
-}
-
-/// Returns all outputs at a point; `None` outside.
-fn at(evaluations: &Evaluations, i: usize) -> Option<PointEvaluation> {
-    is_inside(evaluations, i).then(|| PointEvaluation {
-        region: evaluations.region[i] as usize,
-        depth: evaluations.depth[i],
-        magnitude: evaluations.magnitude[i],
-        niceness: evaluations.niceness[i],
-        direction: [0, 1, 2].map(|k| evaluations.direction[k][i]),
-        gradient: [0, 1, 2].map(|k| evaluations.gradient[k][i]),
-    })
-}
-
-fn batch(points: &[[f64; 3]]) -> PointBatch {
-    let mut batch = PointBatch::default();
-    points.iter().for_each(|p| batch.push(*p));
-    batch
 }
 
 /// Runs a check on every tool of the library, each in a thread that has the tool's name, as its messages then do.

@@ -4,7 +4,7 @@
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use touchoff::Level;
-use touchoff::tool::{Evaluations, Outputs, PointBatch, Tool};
+use touchoff_tests::evaluations::evaluate_points;
 use touchoff_tests::oracle::rng::Rng;
 
 /// Returns a rod of radius 5 from z = 0 to 20 with these regions, which all have the same depth and direction.
@@ -22,20 +22,15 @@ fn agree(source: &Source) {
     let (checked, tape) = (super::checked(source), super::interpreted(source));
     let mut reference = Interpreter::new(&checked);
     let mut rng = Rng::new(9);
-    let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());
-    let mut list = Vec::new();
+    let mut points = Vec::new();
     for _ in 0..20_000 {
         let mut across = || rng.between(-5.5, 5.5);
-        let p = [across(), across(), rng.between(-1.0, 21.0)];
-        points.push(p);
-        list.push(p);
+        points.push([across(), across(), rng.between(-1.0, 21.0)]);
     }
-    tape.evaluate(Level::baseline(), Outputs::EVERYTHING, &points, 1.0, &mut evaluation);
-    for (i, p) in list.iter().enumerate() {
-        let inside = evaluation.inside[i / 8] >> (i % 8) & 1 == 1;
-        let owner = inside.then_some(evaluation.region[i] as usize);
+    let evaluations = evaluate_points(&tape, Level::baseline(), &points);
+    for (p, evaluation) in points.iter().zip(evaluations) {
         assert_eq!(
-            owner,
+            evaluation.map(|evaluation| evaluation.region),
             reference.evaluate(*p, 1.0).map(|evaluation| evaluation.region),
             "{p:?} of {}",
             source.text

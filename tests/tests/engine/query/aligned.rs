@@ -4,6 +4,7 @@ use super::compare::{Case, tools};
 use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
+use touchoff_tests::turns::{EXACT_TURNS, ROUNDED_TURNS};
 
 /// Returns a grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at
 /// once.
@@ -22,23 +23,6 @@ fn grid(half: i32) -> Part {
     parts::of(points, normals.collect(), vec![0.25; count])
 }
 
-/// Returns quarter and half turns; half of them have rotations without rounding.
-fn quaternions() -> [[f64; 4]; 10] {
-    let s = std::f64::consts::FRAC_1_SQRT_2;
-    [
-        [0.0, 0.0, 0.0, 1.0],
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, 1.0, 0.0],
-        [0.5, 0.5, 0.5, 0.5],
-        [-0.5, 0.5, 0.5, 0.5],
-        [s, 0.0, 0.0, s],
-        [0.0, s, 0.0, -s],
-        [0.0, 0.0, s, s],
-        [s, s, 0.0, 0.0],
-    ]
-}
-
 fn tips() -> [Point3<f64>; 3] {
     [Point3::origin(), Point3::new(0.5, -1.0, -2.0), Point3::new(0.25, 0.125, -3.0)]
 }
@@ -50,11 +34,12 @@ fn quarter_and_half_turns_agree_with_the_oracle() {
         let mut case = Case::new(&part, tool, &*oracle);
         let mut k = 0;
         for tip in tips() {
-            let turns = quaternions().map(|q| Pose::from_quaternion(tip, q));
+            let turns = EXACT_TURNS.into_iter().chain(ROUNDED_TURNS);
+            let turns = turns.map(|turn| Pose::from_quaternion(tip, turn));
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let axes = axes.into_iter().flat_map(|axis| [axis, -axis]);
             let axes = axes.map(|axis| Pose::from_axis(tip, axis));
-            for pose in turns.into_iter().chain(axes).map(|pose| pose.expect("a pose")) {
+            for pose in turns.chain(axes).map(|pose| pose.expect("a pose")) {
                 let before = case.statistics.disputed;
                 assert!(case.check(&pose, k) > 0);
                 k += 1;

@@ -3,10 +3,10 @@
 use nalgebra::{Point3, Vector3};
 use touchoff::TriangleId;
 use touchoff::{Cloud, Interval, Part, Pose, Probe};
-use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::rng::Rng;
+use touchoff_tests::profiles::tools;
 
 #[test]
 fn depths_keep_the_stated_error_bound() {

@@ -8,9 +8,9 @@ mod solids;
 pub(crate) use profile::Profiled;
 
 use touchoff::Tool;
-use touchoff_tests::accuracy;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::{Block, Fig73, LBracket, Nearest, Oracle, restated};
+use touchoff_tests::profiles;
 
 /// A point of the tool's frame.
 pub(crate) type ExactPoint = [Big; 3];
@@ -81,7 +81,7 @@ pub(crate) fn to_exact(p: [f64; 3]) -> ExactPoint {
 /// If the library lacks a tool that is restated.
 pub(crate) fn subjects() -> Vec<Subject> {
     let find = |name: &str| tools_library::find(name).expect("a tool of the library");
-    let mut subjects: Vec<Subject> = accuracy::tools()
+    let mut subjects: Vec<Subject> = profiles::tools()
         .into_iter()
         .map(|(tool, restated)| Subject {
             tool,

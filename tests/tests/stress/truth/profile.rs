@@ -2,11 +2,11 @@
 
 use super::{ExactPoint, RegionValues, Truth};
 use touchoff::Tool;
-use touchoff_tests::accuracy::owners;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::reference::{QueryPoint, Reference};
 use touchoff_tests::oracle::restated::Restated;
+use touchoff_tests::profiles::owners;
 
 /// The true values of a profile tool, from its restatement.
 pub(crate) struct Profiled {
