@@ -6,7 +6,6 @@ mod output;
 mod arguments;
 mod check;
 mod controls;
-mod demo;
 mod draw;
 mod expand;
 mod explain;
@@ -35,12 +34,11 @@ fn main() -> ExitCode {
     let Arguments { command, json } = Arguments::read();
     // A program that could not be checked must not look like one with findings.
     let min_status = match command {
-        Some(Command::Verify(_) | Command::Report(_)) => verify::NOT_CHECKED,
+        Command::Verify(_) | Command::Report(_) => verify::NOT_CHECKED,
         _ => 1,
     };
     let success = |()| ExitCode::SUCCESS;
-    let result = match command.unwrap_or(Command::Demo) {
-        Command::Demo => demo::demo(json).map(success),
+    let result = match command {
         Command::Run(arguments) => run::run(&arguments, json).map(success),
         Command::Verify(arguments) => verify::verify(*arguments, json),
         Command::Report(arguments) => report::report(*arguments, json),

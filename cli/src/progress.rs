@@ -12,7 +12,7 @@ impl Progress {
         if json {
             return Progress::hidden();
         }
-        let template = format!("{{wide_bar}} {{pos}}/{{len}} {steps} {{msg}} {{eta}} left");
+        let template = format!("{{wide_bar}} {{pos}}/{{len}} {steps} {{eta}} left");
         Progress(ProgressBar::new(count as u64).with_style(style(&template)))
     }
 
@@ -34,11 +34,6 @@ impl Progress {
     /// Counts steps that are done.
     pub(crate) fn advance(&self, steps: usize) {
         self.0.inc(steps as u64);
-    }
-
-    /// Shows what the steps are about.
-    pub(crate) fn describe(&self, message: String) {
-        self.0.set_message(message);
     }
 
     /// Clears the bar while `print` writes lines.

@@ -1,12 +1,5 @@
 //! The examples at the end of each command's help text. A test takes them from there and runs them.
 
-pub(super) const DEMO: &str = "\
-Examples:
-  Contacts and query times for clouds of 1,000 to 20,000 points:
-    touchoff demo
-  The same as JSON, one object per row:
-    touchoff demo --json";
-
 pub(super) const RUN: &str = "\
 Examples:
   Depth, force and surfaces in contact at each pose, lengths in mm:

@@ -34,13 +34,12 @@ Exit status:
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
 disk, is a failure. A file is replaced once it is whole: one that cannot be written is left as it was.";
 
-/// Compute, render and verify the contact of cutting tools with a workpiece, at any pose. Without a command, run
-/// `touchoff demo`.
+/// Compute, render and verify the contact of cutting tools with a workpiece, at any pose.
 #[derive(Parser)]
 #[command(version, after_help = AFTER_HELP)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(crate) command: Option<Command>,
+    pub(crate) command: Command,
     /// Print JSON, one object per row: per pose, per tool or per line of a table. `report`, `sample`, `expand` and
     /// `draw` print no rows.
     #[arg(long, global = true)]
@@ -49,9 +48,6 @@ pub(crate) struct Arguments {
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Measure table 7.1 of Ho (1999) on this machine, and print it beside the thesis's own figures.
-    #[command(after_help = examples::DEMO)]
-    Demo,
     /// Compute depth, force, torque and niceness of a tool in a part, at each pose of a program.
     #[command(after_help = examples::RUN)]
     Run(Box<Run>),

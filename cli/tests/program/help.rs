@@ -4,9 +4,9 @@ use crate::bench::{Bench, stderr, stdout, touchoff};
 use crate::import::LIBRARY;
 use std::process::{Command, Output};
 
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 19] = [
     // `sweep` makes the map that `map` and `path` read.
-    "sweep", "map", "path", "demo", "run", "verify", "report", "haptic", "live", "sample", "import",
+    "sweep", "map", "path", "run", "verify", "report", "haptic", "live", "sample", "import",
     "export", "tools", "controls", "machines", "check", "explain", "fmt", "expand", "draw",
 ];
 
@@ -35,8 +35,8 @@ fn examples(help: &str) -> Vec<Vec<&str>> {
 /// Runs a command in the folder of a bench. Of a partial command, and of one that runs for seconds or until it is ended, clap parses the
 /// options and then shows the help text.
 pub(super) fn parsed(bench: &Bench, mut arguments: Vec<&str>, partial: bool) -> Output {
-    let command = arguments.first().copied().unwrap_or("demo");
-    if partial || ["demo", "haptic", "live"].contains(&command) {
+    let command = arguments.first().copied().unwrap_or_default();
+    if partial || ["haptic", "live"].contains(&command) {
         arguments.push("--help");
     }
     let mut program = Command::new(env!("CARGO_BIN_EXE_touchoff"));

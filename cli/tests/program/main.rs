@@ -126,25 +126,6 @@ fn law_weights_and_centre_change_the_wrench() {
 }
 
 #[test]
-fn the_demonstration_has_its_eight_rows() {
-    let rows = rows(&touchoff(&["demo", "--json"]));
-    assert_eq!(rows.len(), 8);
-    for row in &rows {
-        assert_eq!(row["poses"], 10_000);
-        for key in ["points", "path", "contacts_mean", "contacts_max"] {
-            assert!(row.get(key).is_some(), "{key}");
-        }
-        for key in ["mean", "p50", "p99", "max"] {
-            assert!(row["query_time_ns"][key].is_number(), "{key}");
-        }
-    }
-    let dense = &rows[6];
-    assert_eq!((&dense["points"], &dense["path"]), (&Value::from(20_000), &Value::from("outside")));
-    let colliding = dense["contacts_mean"].as_f64().expect("a number");
-    assert!((9.0..15.0).contains(&colliding), "{colliding}");
-}
-
-#[test]
 fn tools_are_listed() {
     let rows = rows(&touchoff(&["tools", "--json"]));
     let names: Vec<&str> = rows.iter().filter_map(|row| row["name"].as_str()).collect();

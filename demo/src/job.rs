@@ -1,6 +1,7 @@
-//! A job built in memory: `cargo run --release -p touchoff-verify --example check_job`.
+//! A job built in memory: a G-code program on a 3-axis machine, a part of twelve triangles, a clamp and stock.
 
 use nalgebra::Point3;
+use std::error::Error;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
@@ -21,10 +22,11 @@ touchoff::tool! {
 }
 
 /// A pass along the wall, one point of it 0.05 mm in the wall, and a retract that is too low to cross it.
-const PROGRAM: &str = "G21 G90 G54\nT1 M6\nS2000 M3\nG0 X-12. Y-70.\nG43 H1 Z12.\nG1 X-6. F800.\nY0.\nX-5.95 Y40.\n\
+const PROGRAM: &str = "G21 G90 G54 G61\nT1 M6\nS2000 M3\nG0 X-12. Y-70.\nG43 H1 Z12.\nG1 X-6. F800.\nY0.\nX-5.95 Y40.\n\
                        X-6. Y80.\nG0 Z25.\nX40. Y0.\nG0 Z90.\nM30\n";
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// Checks the program, and prints findings, what was not checked, and the verdict.
+pub(crate) fn check() -> Result<(), Box<dyn Error>> {
     // A wall from its vertices and triangles, a clamp beyond it, and the box that both are cut from.
     let vertices = [0., 20.].map(|x| [-60., 60.].map(|y| [0., 30.].map(|z| Point3::new(x, y, z))));
     let triangles = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]];
