@@ -7,8 +7,10 @@ fn a_program_is_checked_and_the_table_has_its_rows() {
     let output = Command::new(env!("CARGO_BIN_EXE_touchoff-demo")).output().expect("it runs");
     assert!(output.status.success(), "{output:?}");
     let text = String::from_utf8(output.stdout).expect("text");
-    let gouge =
-        text.lines().find(|line| line.starts_with("wall.nc:8: T1 flute is 0.05")).expect("the gouge");
+    let gouge = text
+        .lines()
+        .find(|line| line.starts_with("wall.nc:8: T1 flute is 0.05"))
+        .expect("the gouge");
     assert!(gouge.contains("deep in the part"), "{gouge}");
     assert!(text.contains("\nFindings: "), "{text}");
 

@@ -238,6 +238,7 @@ fn clearance(tool: &CheckedTool) -> TokenStream {
 }
 
 /// Formats the code for people, without the drawing in its documentation.
+#[cfg(feature = "source-code")]
 pub fn source_code(tool: &CheckedTool) -> String {
     let tokens = code(tool, &quote! {});
     match syn::parse2(tokens.clone()) {

@@ -43,7 +43,7 @@ fn read(text: String) -> Result<(), String> {
         let compiled = compile(&source);
         match compiled.tool() {
             Some(tool) => {
-                assert!(!emit::source_code(tool).is_empty() && !emit::dot(tool).is_empty());
+                assert!(!emit::emit(tool).is_empty() && !emit::dot(tool).is_empty());
                 Ok(())
             }
             None => Err(error(&compiled)),
