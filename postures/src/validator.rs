@@ -148,8 +148,9 @@ impl<'a> Validator<'a> {
         rules: &Rules,
     ) -> Result<Validator<'a>, ValidatorError> {
         let surfaces = &tool.info().surfaces;
-        let own = |(name, _): &&(String, f64)| surfaces.iter().any(|own| own.name == *name);
-        let allowed: Vec<(String, f64)> = rules.allowed.iter().filter(own).cloned().collect();
+        let own =
+            rules.allowed.iter().filter(|(name, _)| surfaces.iter().any(|own| own.name == *name));
+        let allowed: Vec<(String, f64)> = own.cloned().collect();
         Rules { allowed: allowed.clone(), ..*rules }.check(&[tool])?;
         let mut certifier = Certifier::new(bvh, tool)?;
         if let Symmetry::Solid { .. } = tool.info().symmetry {
@@ -159,6 +160,7 @@ impl<'a> Validator<'a> {
             let depth = if surface.cutting { rules.tolerance } else { 0.0 };
             certifier = certifier.with_allowance(&surface.name, depth)?;
         }
+        // After the defaults: the last allowance of a surface holds.
         for (surface, depth) in &allowed {
             certifier = certifier.with_allowance(surface, *depth)?;
         }
