@@ -1,7 +1,7 @@
 //! `touchoff path`: a program over all that a tool reaches.
 
-use super::left_out;
 use super::map::read_part;
+use super::picture;
 use super::post::{Post, Words};
 use super::prove::{Location, Prover, planning_rules};
 use crate::arguments::postures::Path as Arguments;
@@ -154,9 +154,10 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         feed: arguments.feed,
         decimals: Some(Decimals::of(unit)),
     };
-    let written = |locations: &[Location]| {
+    let (locations, text) = prover.settle(mem::take(&mut path.locations), |locations| {
         let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
         let mut text = Vec::new();
+        // Its text follows below, where each motion of the machine is proved again.
         if post.is_some() {
             return Ok((program, text));
         }
@@ -166,8 +167,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
             program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
         }
         Ok((ClData::parse(&text, &name)?, text))
-    };
-    let (locations, text) = prover.settle(mem::take(&mut path.locations), written)?;
+    })?;
     let (text, locations) = match &post {
         Some(post) => {
             let (text, locations) = post.program(&prover, &locations, &name)?;
@@ -176,7 +176,6 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         None => (text, locations),
     };
     drop(progress);
-    let below = |(pose, _): &Location| pose.axis().z < 0.0;
     let [before, after] = path.turns.map(f64::to_degrees);
     let [feed_length, rapid_length] = lengths(&locations);
     let summary = Summary {
@@ -192,12 +191,12 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         turn_degrees: after,
         feed_length,
         rapid_length,
-        upside_down_locations: locations.iter().filter(|location| below(location)).count(),
-        first_upside_down_location: locations.iter().position(below),
+        upside_down_locations: locations.iter().filter(|location| is_upside_down(location)).count(),
+        first_upside_down_location: locations.iter().position(is_upside_down),
     };
     write_file(&arguments.output, text)?;
     if let Some(file) = &arguments.picture {
-        let picture = left_out::picture(&mesh, &arguments.part, &tool.info().name, &path)?;
+        let picture = picture::of_left_out(&mesh, &arguments.part, &tool.info().name, &path)?;
         write_file(file, picture)?;
     }
     let mut out = Output::lines();
@@ -246,6 +245,11 @@ fn print_text(out: &mut impl Write, output: &Path, summary: &Summary) -> std::io
         )?;
     }
     Ok(())
+}
+
+/// Returns whether the spindle is below the tip, if z points up.
+fn is_upside_down(location: &Location) -> bool {
+    location.0.axis().z < 0.0
 }
 
 /// Returns the length of the tip's path in feed and in rapid traverse.

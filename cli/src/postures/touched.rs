@@ -107,32 +107,28 @@ fn read(text: &str, mesh: &Mesh, tools: &[&dyn Tool]) -> Result<Vec<Touched>, (u
             format!("the columns are not `{COLUMNS}`: export the table from the page"),
         ));
     }
-    let row = |(line, row): (usize, &str)| {
-        let wrong = |reason: String| (line, reason);
-        let cells: Vec<&str> = row.trim_end().split(',').collect();
-        let [triangle, _, tool, pose @ ..] = &cells[..] else {
-            return Err(wrong("the row is too short".to_owned()));
-        };
-        let triangle =
-            triangle.parse::<usize>().ok().filter(|id| mesh.triangles().get(*id).is_some());
-        let triangle = triangle.ok_or_else(|| {
-            wrong(format!(
-                "the part has no triangle `{}`: name the part that was touched",
-                cells[0]
-            ))
-        })?;
-        let position = tools.iter().position(|known| known.info().name == **tool);
-        let position = position.ok_or_else(|| {
-            wrong(format!("the tool `{}` is none of `--tool`: name it, too", cells[2]))
-        })?;
-        let numbers: Result<Vec<f64>, _> = pose.iter().map(|cell| cell.parse::<f64>()).collect();
-        let numbers = numbers.ok().and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
-        let [x, y, z, rotation @ ..] =
-            numbers.ok_or_else(|| wrong("the pose is not seven numbers".to_owned()))?;
-        let pose = Pose::from_quaternion([x, y, z].into(), rotation);
-        let pose = pose.map_err(|error| wrong(error.to_string()))?;
-        let triangle = TriangleId(triangle as u32);
-        Ok(Touched { triangle, tool: position as u16, pose })
+    let rows = lines.filter(|(_, row)| !row.trim().is_empty());
+    rows.map(|(line, row)| read_row(row, mesh, tools).map_err(|reason| (line, reason))).collect()
+}
+
+/// Reads a row of the table; an error is the reason.
+fn read_row(row: &str, mesh: &Mesh, tools: &[&dyn Tool]) -> Result<Touched, String> {
+    let cells: Vec<&str> = row.trim_end().split(',').collect();
+    // Niceness is computed anew, so the page's is passed over.
+    let [triangle, _, tool, pose @ ..] = &cells[..] else {
+        return Err("the row is too short".to_owned());
     };
-    lines.filter(|(_, row)| !row.trim().is_empty()).map(row).collect()
+    let id = triangle.parse::<usize>().ok().filter(|id| mesh.triangles().get(*id).is_some());
+    let id = id.ok_or_else(|| {
+        format!("the part has no triangle `{triangle}`: name the part that was touched")
+    })?;
+    let position = tools.iter().position(|known| known.info().name == **tool);
+    let position =
+        position.ok_or_else(|| format!("the tool `{tool}` is none of `--tool`: name it, too"))?;
+    let numbers: Result<Vec<f64>, _> = pose.iter().map(|cell| cell.parse::<f64>()).collect();
+    let numbers = numbers.ok().and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
+    let [x, y, z, rotation @ ..] = numbers.ok_or("the pose is not seven numbers")?;
+    let pose = Pose::from_quaternion([x, y, z].into(), rotation);
+    let pose = pose.map_err(|error| error.to_string())?;
+    Ok(Touched { triangle: TriangleId(id as u32), tool: position as u16, pose })
 }

@@ -1,12 +1,10 @@
 //! The camera on each finding.
 
-use super::body::Shown;
-use super::tool_shape::ToolShape;
-use crate::picture::camera::Camera;
+use super::shapes::{Shown, ToolShape};
+use crate::picture::render::Camera;
 use crate::verify::Inputs;
 use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
-use touchoff::certify::Witness;
 use touchoff_verify::job::{FindingDetail, JobFinding};
 use touchoff_verify::{FindingKind, JobReport};
 
@@ -59,8 +57,9 @@ impl Place {
                     | FindingKind::Ambiguous(_) => None,
                 };
                 let axis = finding.pose.axis();
-                let normal = |witness: Witness| inputs.bodies[body].mesh.normal(witness.triangle);
-                let normal = witness.and_then(normal).unwrap_or(axis);
+                let mesh = &inputs.bodies[body].mesh;
+                let normal = witness.and_then(|witness| mesh.normal(witness.triangle));
+                let normal = normal.unwrap_or(axis);
                 // From the side of the tool, a little from above, and more from outside the material.
                 let side = axis.cross(&normal).try_normalize(1e-3);
                 let side = side.unwrap_or_else(|| axis.cross(&Vector3::x()));
@@ -81,6 +80,7 @@ impl Place {
 
     /// Returns the camera. What stands in front of the place is cut away.
     pub(super) fn camera(&self) -> Camera {
+        // `toward` is nowhere parallel to z.
         let directions = [self.toward, Vector3::z()];
         Camera::new(self.target, directions, self.extent).with_cut(self.cut())
     }

@@ -1,13 +1,12 @@
 //! The data of the 3-D view, as JSON in the page.
 
-use super::body::Shown;
 use super::cameras::Place;
-use super::colouring::Layer;
-use super::tool_shape::ToolShape;
+use super::colouring::{ColouredBodies, Layer};
+use super::shapes::{Shown, ToolShape};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
-use touchoff::{Escaped, Pose, Unit};
+use touchoff::{Escaped, Unit};
 use touchoff_postures::colormap;
 
 /// Number of triangles above which there is no 3-D view, so that the file stays below 15 MB.
@@ -78,44 +77,24 @@ struct PlaceRow {
 impl<'a> Scene<'a> {
     /// Returns the data of the view; `None` if there are too many triangles for one.
     pub(super) fn new(
-        (shown, layers): (&'a [Shown], &'a [Layer]),
+        title: &'a str,
+        unit: Unit,
+        shown: &'a ColouredBodies,
         shapes: &[ToolShape],
         places: &[Option<Place>],
-        (title, unit): (&'a str, Unit),
     ) -> Option<Scene<'a>> {
-        if shown.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
+        let ColouredBodies { bodies, layers } = shown;
+        if bodies.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
             return None;
         }
-        let tool = |shape: &ToolShape| Tool {
-            lines: shape
-                .lines
-                .iter()
-                .map(|(from, to, cuts)| {
-                    [from[0], from[1], to[0], to[1], f64::from(u8::from(*cuts))]
-                })
-                .collect(),
-        };
-        let place = |place: &Place| {
-            let pose = place.tool.as_ref().map(|(_, pose)| pose);
-            PlaceRow {
-                body: place.body,
-                tool: place.tool.as_ref().map(|(tool, _)| *tool),
-                tip: pose.map(|pose: &Pose| pose.tip().into()),
-                axis: pose.map(|pose| pose.axis().into()),
-                target: place.target.into(),
-                toward: place.toward.into(),
-                extent: place.extent,
-                cut: place.cut(),
-            }
-        };
         const COLOURS: usize = 33;
         Some(Scene {
             title,
             unit: unit.symbol(),
-            bodies: shown.iter().map(Body::new).collect(),
+            bodies: bodies.iter().map(Body::new).collect(),
             layers: layers.iter().map(LayerRow::new).collect(),
-            tools: shapes.iter().map(tool).collect(),
-            places: places.iter().map(|known| known.as_ref().map(place)).collect(),
+            tools: shapes.iter().map(Tool::new).collect(),
+            places: places.iter().map(|known| known.as_ref().map(PlaceRow::new)).collect(),
             colours: (0..COLOURS).map(|k| colormap(k as f64 / (COLOURS - 1) as f64)).collect(),
         })
     }
@@ -129,10 +108,7 @@ impl<'a> Scene<'a> {
 
 impl<'a> Body<'a> {
     fn new(shown: &'a Shown) -> Body<'a> {
-        let first = shown.vertices.first().copied().unwrap_or_default();
-        let ends = shown.vertices.iter();
-        let (low, high) =
-            ends.fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex)));
+        let [low, high] = shown.bounds();
         let step = (high - low) / COORDINATE_STEPS;
         let vertices = shown.vertices.iter().flat_map(|vertex| {
             [0, 1, 2].map(|k| {
@@ -156,15 +132,41 @@ impl<'a> Body<'a> {
 impl<'a> LayerRow<'a> {
     fn new(layer: &'a Layer) -> LayerRow<'a> {
         let scale = &layer.scale;
-        let byte = |value: &Option<f64>| {
+        let values = layer.values.iter().map(|value| {
             value.map_or(0, |value| 1 + (scale.share(value) * COLOUR_STEPS).round() as u8)
-        };
+        });
         LayerRow {
             body: layer.body,
             quantity: &scale.quantity,
             ends: scale.has_values.then_some(&scale.ends),
             nothing: scale.nothing,
-            values: base64(layer.values.iter().map(byte)),
+            values: base64(values),
+        }
+    }
+}
+
+impl Tool {
+    fn new(shape: &ToolShape) -> Tool {
+        let lines = shape.lines.iter().map(|line| {
+            let ([d, z], [to_d, to_z]) = (line.from, line.to);
+            [d, z, to_d, to_z, f64::from(u8::from(line.cuts))]
+        });
+        Tool { lines: lines.collect() }
+    }
+}
+
+impl PlaceRow {
+    fn new(place: &Place) -> PlaceRow {
+        let (tool, pose) = place.tool.unzip();
+        PlaceRow {
+            body: place.body,
+            tool,
+            tip: pose.map(|pose| pose.tip().into()),
+            axis: pose.map(|pose| pose.axis().into()),
+            target: place.target.into(),
+            toward: place.toward.into(),
+            extent: place.extent,
+            cut: place.cut(),
         }
     }
 }

@@ -422,7 +422,7 @@ fn tiles(
     let mut inner = HashSet::new();
     rows.keys().for_each(|piece| add_ancestors(*piece, &mut inner));
     rows.extend(row.map(|row| (whole, row)));
-    let pieces = tiling(whole, &|piece| rows.contains_key(&piece), &inner);
+    let pieces = tiling(whole, |piece| rows.contains_key(&piece), &inner);
     pieces.into_iter().filter_map(|piece| Some((piece, rows.remove(&piece)?))).collect()
 }
 
