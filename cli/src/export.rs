@@ -32,8 +32,8 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
         Some("fctb") => Format::FreeCad,
         Some("apt") => Format::Apt,
         _ => {
-            let better = output.with_extension("json");
-            return Err(Failure::ExportFormat { file: output.display().to_string(), better });
+            let rule = "a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`";
+            return Err(Failure::extension(rule, output, "json"));
         }
     };
     refuse_inputs([&**output], names.iter().map(Path::new))?;

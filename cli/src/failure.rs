@@ -1,9 +1,8 @@
 //! Failures of the program, reported once at its end.
 
-use touchoff::CloudError;
-use touchoff::mesh::MeshError;
+use std::error::Error;
+use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
-use touchoff_verify::ProgramError;
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -20,30 +19,36 @@ impl Failure {
         match self {
             Failure::Usage(_)
             | Failure::IsInput { .. }
-            | Failure::Program(_)
-            | Failure::Job(_)
+            | Failure::Refused(_)
             | Failure::Numbers { .. }
             | Failure::MeshForJob { .. }
             | Failure::SeveralEntries { .. }
-            | Failure::Machine(_)
-            | Failure::Control(_)
-            | Failure::MachineProgram(_)
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
         }
+    }
+
+    /// Returns the failure for an output whose extension is not that of its format, as `rule` states it; `extension` is one
+    /// that is.
+    pub(crate) fn extension(rule: &'static str, file: &Path, extension: &str) -> Failure {
+        let better = file.with_extension(extension);
+        Failure::Extension { rule, file: file.display().to_string(), better }
     }
 }
 
 /// The reason for which the program ends with an exit status other than 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// A cloud could not be made.
+    /// A program, a job, a machine or a control cannot be used as requested.
+    #[error("{0}")]
+    Refused(Box<dyn Error + Send + Sync>),
+    /// A library could not do what was asked for.
+    #[error("{0}")]
+    Library(Box<dyn Error + Send + Sync>),
+    /// The tool could not be loaded.
     #[error(transparent)]
-    Cloud(#[from] CloudError),
-    /// A mesh could not be made.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Tool(#[from] ToolError),
     /// The options do not go together, or this system lacks the device.
     #[error("{0}")]
     Usage(&'static str),
@@ -88,30 +93,9 @@ pub(crate) enum Failure {
         /// The reason.
         source: std::io::Error,
     },
-    /// The system has no such core.
-    #[error(transparent)]
-    Core(#[from] touchoff_haptics::RealtimeError),
     /// A recording of the session is incomplete; the reason was reported when it happened.
     #[error("the recording is incomplete: make room on the disk, and run the session again")]
     RecordingFailed,
-    /// A setting is out of range for the haptic loop.
-    #[error(transparent)]
-    Setting(#[from] touchoff_haptics::SettingError),
-    /// The motion between two poses of a path is ambiguous.
-    #[error(transparent)]
-    Motion(touchoff::MotionError),
-    /// The path could not be read.
-    #[error(transparent)]
-    Program(#[from] ProgramError),
-    /// The tool could not be loaded.
-    #[error(transparent)]
-    Tool(#[from] ToolError),
-    /// A tool library could not be imported.
-    #[error(transparent)]
-    Import(#[from] touchoff_import::ImportError),
-    /// A job cannot be read or checked.
-    #[error(transparent)]
-    Job(#[from] touchoff_verify::JobError),
     /// The list of numbers in a folder of tools is refused.
     #[error("{file}: {message}")]
     Numbers {
@@ -146,17 +130,6 @@ pub(crate) enum Failure {
         /// The reason.
         source: std::io::Error,
     },
-    /// A machine's file is refused, or no machine has that name.
-    #[error(transparent)]
-    Machine(#[from] touchoff_verify::machine::MachineError),
-    #[error(transparent)]
-    Control(#[from] touchoff_verify::gcode::ControlError),
-    /// The stock cannot be made or cut.
-    #[error(transparent)]
-    Stock(#[from] touchoff_verify::stock::StockError),
-    /// G-code cannot be checked on its machine.
-    #[error(transparent)]
-    MachineProgram(#[from] touchoff_verify::MachineProgramError),
     /// A tool library has no such tool.
     #[error(
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
@@ -167,27 +140,6 @@ pub(crate) enum Failure {
         /// The library.
         file: String,
     },
-    /// The requested proof is not possible.
-    #[error(transparent)]
-    Uncertified(#[from] touchoff::certify::NotCertifiable),
-    /// A program could not be checked.
-    #[error(transparent)]
-    Verify(#[from] touchoff_verify::VerifyError),
-    /// A sweep could not be done.
-    #[error(transparent)]
-    Sweep(#[from] touchoff_postures::sweep::SweepError),
-    /// The rules of a sweep are invalid.
-    #[error(transparent)]
-    Rules(#[from] touchoff_postures::RulesError),
-    /// A posture map could not be read or written.
-    #[error(transparent)]
-    Map(#[from] touchoff_postures::MapError),
-    /// A session cannot be recorded.
-    #[error(transparent)]
-    Recorder(#[from] touchoff_postures::RecorderError),
-    /// No path could be planned.
-    #[error(transparent)]
-    Path(#[from] touchoff_postures::path::PathError),
     /// A program is not proved as it would be written.
     #[error(
         "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
@@ -216,9 +168,6 @@ pub(crate) enum Failure {
         /// The reason.
         source: touchoff_verify::machine::InverseError,
     },
-    /// A work offset or a tool length is out of range for a machine, or it has no such link.
-    #[error(transparent)]
-    Joint(#[from] touchoff_verify::machine::JointError),
     /// An axis of the machine leaves its limits on the way to a cutter location.
     #[error(
         "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
@@ -235,25 +184,6 @@ pub(crate) enum Failure {
         value: f64,
         /// The limit, in mm or degrees.
         limit: f64,
-    },
-    /// A program could not be written.
-    #[error(transparent)]
-    Write(#[from] touchoff_verify::program::WriteError),
-    /// No format of a map has this file extension.
-    #[error(
-        "a map is written as `.csv`, `.json`, `.ply` or `.png`, and `{file}` is none of them: change its extension"
-    )]
-    MapFormat {
-        /// The requested file.
-        file: String,
-    },
-    /// No format of a program has this file extension.
-    #[error(
-        "a program is written as `.apt`, `.csv` or `.nc`, and `{file}` is none of them: change its extension"
-    )]
-    ProgramFormat {
-        /// The requested file.
-        file: String,
     },
     /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
@@ -281,20 +211,6 @@ pub(crate) enum Failure {
         map: String,
         /// The tool.
         tool: String,
-    },
-    /// The part's file could not be read.
-    #[error(transparent)]
-    Shape(#[from] touchoff::mesh::GeometryError),
-    /// A saved part could not be opened or written.
-    #[error(transparent)]
-    Saved(#[from] touchoff::SavedError),
-    /// The file's extension is not that of a saved part.
-    #[error("a saved part ends in `.touchoff`: write `-o {}` instead of `{file}`", .better.display())]
-    SavedName {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
     },
     /// The inside of the part is unknown.
     #[error(
@@ -359,37 +275,31 @@ pub(crate) enum Failure {
         /// Number of files checked.
         all: usize,
     },
+    /// The output's extension is that of no format.
+    #[error("{formats}, and `{file}` is none of them: change its extension")]
+    Format {
+        /// The formats, in a sentence.
+        formats: &'static str,
+        /// The requested file.
+        file: String,
+    },
+    /// The output's extension is not that of its format.
+    #[error("{rule}: write `-o {}` instead of `{file}`", .better.display())]
+    Extension {
+        /// The extensions of the format, in a sentence.
+        rule: &'static str,
+        /// The requested file.
+        file: String,
+        /// A suitable name.
+        better: PathBuf,
+    },
     /// No format of a drawing has this file extension.
     #[error("a drawing is an `.svg` or a `.png`, and `{file}` is neither: write `-o {}`", .better.display())]
     DrawingFormat {
         /// The requested file.
         file: String,
         /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a report.
-    #[error("a report ends in `.html`: write `-o {}` instead of `{file}`", .better.display())]
-    ReportFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a library.
-    #[error("a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`: write `-o {}` instead of `{file}`", .better.display())]
-    ExportFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a tool.
-    #[error("a tool's file ends in `.tool`: write `-o {}` instead of `{file}`", .better.display())]
-    ToolFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
+        better: PathBuf,
     },
     /// A file that a tool mounts would replace another.
     #[error(
@@ -426,6 +336,48 @@ pub(crate) enum Failure {
     /// A row could not be written as JSON.
     #[error("standard output could not be written: {0}: redirect it elsewhere")]
     Json(#[from] serde_json::Error),
+}
+
+/// Converts errors of libraries, which no code tells apart but by the exit status.
+macro_rules! converted {
+    ($variant:ident: $($error:ty),* $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                Failure::$variant(Box::new(error))
+            }
+        })*
+    };
+}
+
+converted! {
+    Refused:
+    touchoff_verify::ProgramError,
+    touchoff_verify::JobError,
+    touchoff_verify::MachineProgramError,
+    touchoff_verify::gcode::ControlError,
+    touchoff_verify::machine::MachineError,
+}
+
+converted! {
+    Library:
+    touchoff::CloudError,
+    touchoff::MotionError,
+    touchoff::SavedError,
+    touchoff::certify::NotCertifiable,
+    touchoff::mesh::GeometryError,
+    touchoff::mesh::MeshError,
+    touchoff_haptics::RealtimeError,
+    touchoff_haptics::SettingError,
+    touchoff_import::ImportError,
+    touchoff_postures::MapError,
+    touchoff_postures::RecorderError,
+    touchoff_postures::RulesError,
+    touchoff_postures::path::PathError,
+    touchoff_postures::sweep::SweepError,
+    touchoff_verify::VerifyError,
+    touchoff_verify::machine::JointError,
+    touchoff_verify::program::WriteError,
+    touchoff_verify::stock::StockError,
 }
 
 /// Returns the cause of a failure to write, and its remedy.

@@ -2,7 +2,7 @@
 
 use crate::arguments::Import;
 use crate::failure::Failure;
-use crate::output::{Output, write_file};
+use crate::output::{Output, unreadable, write_file};
 use crate::progress::Progress;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -60,8 +60,8 @@ pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure
         let target = if arguments.list {
             Target::List { prove: false }
         } else {
-            let stem = || PathBuf::from(file.file_stem().unwrap_or_default());
-            Target::Folder(arguments.output.clone().unwrap_or_else(stem))
+            let output = arguments.output.clone();
+            Target::Folder(output.unwrap_or_else(|| file.file_stem().unwrap_or_default().into()))
         };
         left_out += Run { file, only, target, json }.library(&mut out)?;
     }
@@ -280,14 +280,14 @@ fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> 
 
 fn read_numbers(folder: &Path) -> Result<Numbers, Failure> {
     let file = folder.join(NUMBERS);
-    let name = || file.display().to_string();
     match std::fs::read_to_string(&file) {
         Ok(text) => toml::from_str(&text).map_err(|error| Failure::Numbers {
-            file: name(),
+            file: file.display().to_string(),
             message: error.message().to_owned(),
         }),
+        // A folder of tools without numbers has no list.
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Numbers::new()),
-        Err(source) => Err(Failure::Unreadable { file: name(), source }),
+        Err(source) => Err(unreadable(&file, source)),
     }
 }
 
@@ -324,17 +324,18 @@ fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
     let files: Vec<PathBuf> = files.collect::<Result<_, _>>()?;
     let progress = Progress::steps(files.len(), "tools", json);
     let next = AtomicUsize::new(0);
-    let work = || {
-        let mut proofs = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(file) = files.get(index) else { return proofs };
-            proofs.push((index, proof(file)));
-            progress.advance(1);
-        }
-    };
     let cores = thread::available_parallelism().map_or(1, Into::into).min(files.len().max(1));
     let mut proofs: Vec<(usize, Proof)> = thread::scope(|scope| {
+        // Each takes the next open file, since the time of a proof varies with the tool.
+        let work = || {
+            let mut proofs = Vec::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(file) = files.get(index) else { return proofs };
+                proofs.push((index, proof(file)));
+                progress.advance(1);
+            }
+        };
         let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         workers
             .into_iter()

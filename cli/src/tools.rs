@@ -152,8 +152,7 @@ fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
 /// a file cannot be written.
 fn write_tool(name: &str, output: &Path, files: &SourceFiles) -> Result<(), Failure> {
     if extension(output).as_deref() != Some("tool") {
-        let file = output.display().to_string();
-        return Err(Failure::ToolFormat { file, better: output.with_extension("tool") });
+        return Err(Failure::extension("a tool's file ends in `.tool`", output, "tool"));
     }
     let folder = output.parent().unwrap_or(Path::new(""));
     let mounted = files.mounted.iter().map(|(file, text)| (folder.join(file), *text));

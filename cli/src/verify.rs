@@ -14,8 +14,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tool_dsl::Compiled;
-use touchoff::Mesh;
 use touchoff::certify::TriangleBvh;
+use touchoff::{Mesh, Unit};
 use touchoff_verify::job::{
     Body, CutStock, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry, StockShape,
     UsedTool,
@@ -36,6 +36,13 @@ pub(crate) struct LoadedBody {
 }
 
 impl LoadedBody {
+    /// Reads a body that moves with the workpiece.
+    fn read(name: &str, file: &Path, unit: Unit) -> Result<LoadedBody, Failure> {
+        let mesh = part::mesh(file, unit, "verify")?;
+        let bvh = TriangleBvh::new(&mesh);
+        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, margin: None })
+    }
+
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
     pub(crate) fn has_own_frame(&self) -> bool {
         self.link.is_some()
@@ -188,12 +195,7 @@ pub(crate) fn job_file(
 
 /// Reads the part and the fixtures.
 fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
-    let read = |name: &str, path: &Path, link: Option<usize>, margin: Option<f64>| {
-        let mesh = part::mesh(path, file.unit, "verify")?;
-        let bvh = TriangleBvh::new(&mesh);
-        Ok::<_, Failure>(LoadedBody { name: name.to_owned(), mesh, bvh, link, margin })
-    };
-    let mut bodies = vec![read(touchoff_verify::job::PART, &file.part, None, None)?];
+    let mut bodies = vec![LoadedBody::read(touchoff_verify::job::PART, &file.part, file.unit)?];
     for fixture in &file.fixtures {
         if !(0.0..f64::INFINITY).contains(&fixture.margin) {
             return Err(Failure::Usage("the margin of a fixture is a length of 0 or more"));
@@ -202,7 +204,8 @@ fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure>
             None => None,
             Some(axis) => program.link(axis)?,
         };
-        bodies.push(read(&fixture.name, &fixture.mesh, link, Some(fixture.margin))?);
+        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit)?;
+        bodies.push(LoadedBody { link, margin: Some(fixture.margin), ..body });
     }
     Ok(bodies)
 }

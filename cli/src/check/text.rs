@@ -65,9 +65,9 @@ fn verb(jump: Interval, tolerance: f64) -> &'static str {
 
 /// Describes the region whose direction is farthest from the steepest descent of depth.
 fn worst_direction(tool: &CheckedTool, certificate: &Certificate) -> String {
-    let regions = || tool.model.regions.iter().zip(&certificate.regions);
-    let unknown = regions().find(|(_, facts)| facts.direction_error.is_none());
-    let errors = regions().filter_map(|(region, facts)| Some((region, facts.direction_error?)));
+    let regions = tool.model.regions.iter().zip(&certificate.regions);
+    let unknown = regions.clone().find(|(_, facts)| facts.direction_error.is_none());
+    let errors = regions.filter_map(|(region, facts)| Some((region, facts.direction_error?)));
     match (unknown, errors.max_by(|(_, a), (_, b)| a.high.total_cmp(&b.high))) {
         (Some((region, _)), _) => format!("not known in {}", region.name),
         (None, Some((region, error))) if error.high > 0.0 => {

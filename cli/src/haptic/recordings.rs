@@ -22,9 +22,11 @@ pub(super) struct Table {
 
 impl Table {
     pub(super) fn create(path: &Path, rate: f64) -> Result<Table, Failure> {
-        let wrong = |source| unwritable(path, source);
-        let mut out = AtomicFile::create(path).map_err(wrong)?;
-        writeln!(out, "{COLUMNS}").and_then(|()| out.flush()).map_err(wrong)?;
+        let created = AtomicFile::create(path).and_then(|mut out| {
+            writeln!(out, "{COLUMNS}").and_then(|()| out.flush())?;
+            Ok(out)
+        });
+        let out = created.map_err(|source| unwritable(path, source))?;
         Ok(Table { out, file: path.to_owned(), rate })
     }
 

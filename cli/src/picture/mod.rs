@@ -49,10 +49,9 @@ pub(crate) fn sheet(
     side: usize,
 ) -> Result<Vec<u8>, Failure> {
     let (columns, rows) = (2 * side, TITLE + 2 * side + LEGEND);
-    let corners = || facets.iter().flat_map(|facet| facet.corners);
     let mut sheet = Sheet::new([columns, rows])?;
     for (index, view) in VIEWS.iter().enumerate() {
-        let camera = Camera::fitted(view, corners());
+        let camera = Camera::fitted(view, facets.iter().flat_map(|facet| facet.corners));
         let at = [index % 2 * side, TITLE + index / 2 * side];
         let viewport = Viewport { at, size: [side, side] };
         sheet.view(facets.iter().copied(), &camera, viewport, unit);
@@ -126,14 +125,15 @@ struct Sheet {
     overlay: Overlay,
 }
 
-fn pixels(reason: &dyn std::fmt::Display) -> Failure {
+/// Returns the failure to make a picture.
+pub(crate) fn pixels(reason: impl std::fmt::Display) -> Failure {
     Failure::Pixels(reason.to_string())
 }
 
 impl Sheet {
     fn new(size: [usize; 2]) -> Result<Sheet, Failure> {
         let [columns, rows] = size.map(|side| side as u32);
-        let mut map = Pixmap::new(columns, rows).ok_or_else(|| pixels(&"it has no size"))?;
+        let mut map = Pixmap::new(columns, rows).ok_or_else(|| pixels("it has no size"))?;
         map.pixels_mut().fill(opaque([255; 3]));
         Ok(Sheet { pixels: map, overlay: Overlay::new(size) })
     }
@@ -163,9 +163,9 @@ impl Sheet {
 
     fn png(mut self) -> Result<Vec<u8>, Failure> {
         let svg = self.overlay.finish();
-        let tree = Tree::from_str(&svg, &Options::default()).map_err(|error| pixels(&error))?;
+        let tree = Tree::from_str(&svg, &Options::default()).map_err(pixels)?;
         resvg::render(&tree, Transform::identity(), &mut self.pixels.as_mut());
-        self.pixels.encode_png().map_err(|error| pixels(&error))
+        self.pixels.encode_png().map_err(pixels)
     }
 }
 

@@ -174,7 +174,10 @@ impl MapFormat {
             Some("json") => Ok(MapFormat::Json),
             Some("ply") => Ok(MapFormat::Ply),
             Some("png") => Ok(MapFormat::Png),
-            _ => Err(Failure::MapFormat { file: file.display().to_string() }),
+            _ => Err(Failure::Format {
+                formats: "a map is written as `.csv`, `.json`, `.ply` or `.png`",
+                file: file.display().to_string(),
+            }),
         }
     }
 }

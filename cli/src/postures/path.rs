@@ -82,7 +82,10 @@ impl<'a> Format<'a> {
                 };
                 Ok(Format::Gcode(machine, Words { tool_number, feed, spindle }))
             }
-            _ => Err(Failure::ProgramFormat { file: arguments.output.display().to_string() }),
+            _ => Err(Failure::Format {
+                formats: "a program is written as `.apt`, `.csv` or `.nc`",
+                file: arguments.output.display().to_string(),
+            }),
         }
     }
 }

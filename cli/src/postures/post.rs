@@ -209,7 +209,7 @@ impl Post {
             let middle: Joints =
                 std::array::from_fn(|k| 0.5 * (joints[index - 1][k] + joints[index][k]));
             let axis = self.chain.pose(&middle)?.axis();
-            let motion = Motion::new(&from.pose, &to.pose).map_err(Failure::Motion)?;
+            let motion = Motion::new(&from.pose, &to.pose)?;
             if axis.angle(&motion.pose(0.5).axis()) > ASTRAY {
                 astray.insert(index, Fault::Astray);
             }
@@ -311,7 +311,7 @@ fn refined(
             }));
             refined.push(last);
         } else {
-            let motion = Motion::new(&before.pose, &location.pose).map_err(Failure::Motion)?;
+            let motion = Motion::new(&before.pose, &location.pose)?;
             let last = PostedLocation { halvings: location.halvings + 1, ..*location };
             refined.extend([PostedLocation { pose: motion.pose(0.5), ..last }, last]);
         }

@@ -1,7 +1,7 @@
 //! `touchoff sweep --touched`: the postures that were touched in the page of `touchoff live`, proved and added to a map.
 
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, unreadable};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -47,8 +47,7 @@ pub(super) fn record(
     tools: &[&dyn Tool],
     json: bool,
 ) -> Result<(), Failure> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|source| Failure::Unreadable { file: file.display().to_string(), source })?;
+    let text = std::fs::read_to_string(file).map_err(|source| unreadable(file, source))?;
     let touched = read(&text, mesh, tools).map_err(|(line, reason)| Failure::Touched {
         file: file.display().to_string(),
         line,

@@ -1,6 +1,7 @@
 //! Depth, clearance, force and niceness along a program, and their charts, drawn by `plotters`.
 
 use crate::failure::Failure;
+use crate::picture::pixels;
 use crate::timing::nanoseconds;
 use crate::verify::Inputs;
 use plotters::coord::Shift;
@@ -67,7 +68,7 @@ pub(super) fn follow(
 ) -> Result<Along, Failure> {
     let tool = checked.tool(pair);
     let (unit, info) = (checked.job.unit(), tool.tool.info());
-    let mut certifier = Certifier::new(checked.body(pair).bvh, tool.tool).map_err(Failure::from)?;
+    let mut certifier = Certifier::new(checked.body(pair).bvh, tool.tool)?;
     let mut probe = Probe::new(part, tool.tool).with_law(Law::Gradient);
     let others = info.surfaces.iter().enumerate().filter(|(_, surface)| !surface.cutting);
     let others: Vec<SurfaceId> = others.map(|(id, _)| SurfaceId(id)).collect();
@@ -222,7 +223,7 @@ fn svg(
     let mut svg = String::new();
     let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
     let drawn = area.fill(&WHITE).and_then(|()| draw(&area)).and_then(|()| area.present());
-    drawn.map_err(|error| Failure::Pixels(error.to_string()))?;
+    drawn.map_err(pixels)?;
     drop(area);
     Ok(svg)
 }

@@ -16,7 +16,7 @@ mod shapes;
 
 use crate::arguments::Report;
 use crate::failure::Failure;
-use crate::output::{extension, file_name, refuse_inputs, write_file};
+use crate::output::{extension, file_name, refuse_inputs, unreadable, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
 use crate::progress::Progress;
@@ -48,8 +48,7 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let start = Instant::now();
     let Report { job: subject, check, map, output } = arguments;
     if extension(&output).as_deref() != Some("html") {
-        let better = output.with_extension("html");
-        return Err(Failure::ReportFormat { file: output.display().to_string(), better });
+        return Err(Failure::extension("a report ends in `.html`", &output, "html"));
     }
     let is_job = extension(&subject).as_deref() == Some("toml");
     if is_job && check.states_subject() {
@@ -118,8 +117,7 @@ impl InputFile {
     /// [`Failure::Unreadable`].
     fn read(role: String, file: &Path) -> Result<InputFile, Failure> {
         let name = file.display().to_string();
-        let content = std::fs::read(file)
-            .map_err(|source| Failure::Unreadable { file: name.clone(), source })?;
+        let content = std::fs::read(file).map_err(|source| unreadable(file, source))?;
         let mut digest = String::new();
         for byte in Sha256::digest(&content) {
             // Writing to a String does not fail.
