@@ -47,6 +47,7 @@ fn drawing(arguments: &Draw) -> Result<String, Failure> {
 fn png(svg: &str) -> Result<Vec<u8>, Failure> {
     let tree = Tree::from_str(svg, &Options::default()).map_err(pixels)?;
     let size = tree.size();
+    // The smaller scale of both, so that a long drawing does not exhaust memory.
     let scale = PIXELS.min((MAX_PIXELS / (size.width() * size.height())).sqrt());
     let [width, height] = [size.width(), size.height()].map(|side| (side * scale).ceil() as u32);
     let mut map = Pixmap::new(width, height).ok_or_else(|| pixels("it has no size"))?;

@@ -147,25 +147,22 @@ impl Run<'_> {
         let entry = &tool.entry;
         let notes: Vec<String> = entry.notes.iter().map(ToString::to_string).collect();
         if self.json {
-            return row(
-                out,
-                &Row {
-                    source: self.file.display().to_string(),
-                    file: Some(tool.path()),
-                    number: entry.number,
-                    kind: Some(&entry.kind),
-                    title: &entry.title,
-                    unit: Some(entry.unit.symbol()),
-                    diameter: entry.diameter(),
-                    flute_length: entry.flute_length(),
-                    length: entry.length(),
-                    stickout: entry.stickout,
-                    holder: entry.holder(),
-                    proved,
-                    notes,
-                    left_out: None,
-                },
-            );
+            return out.json(&Row {
+                source: self.file.display().to_string(),
+                file: Some(tool.path()),
+                number: entry.number,
+                kind: Some(&entry.kind),
+                title: &entry.title,
+                unit: Some(entry.unit.symbol()),
+                diameter: entry.diameter(),
+                flute_length: entry.flute_length(),
+                length: entry.length(),
+                stickout: entry.stickout,
+                holder: entry.holder(),
+                proved,
+                notes,
+                left_out: None,
+            });
         }
         line(
             out,
@@ -194,15 +191,12 @@ impl Run<'_> {
 
     fn skip(&self, out: &mut Output, name: &str, reason: &str) -> Result<(), Failure> {
         if self.json {
-            return row(
-                out,
-                &Row {
-                    source: self.file.display().to_string(),
-                    title: name,
-                    left_out: Some(reason),
-                    ..Row::default()
-                },
-            );
+            return out.json(&Row {
+                source: self.file.display().to_string(),
+                title: name,
+                left_out: Some(reason),
+                ..Row::default()
+            });
         }
         message!("left out: {}: {reason}", Escaped(name));
         Ok(())
@@ -225,11 +219,6 @@ fn line(out: &mut Output, cells: [&str; 10]) -> Result<(), Failure> {
 /// Formats a length of the table.
 fn length(length: Option<f64>) -> String {
     length.map_or_else(|| "-".to_owned(), |length| format!("{}", (length * 1e4).round() / 1e4))
-}
-
-fn row(out: &mut Output, row: &Row<'_>) -> Result<(), Failure> {
-    serde_json::to_writer(&mut *out, row)?;
-    Ok(writeln!(out)?)
 }
 
 /// Returns the tool of a library by its name or number.
@@ -264,6 +253,7 @@ fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> 
     for tool in tools {
         let Some(number) = tool.entry.number else { continue };
         let files = numbers.entry(format!("T{number}")).or_default();
+        // A second import of the library lists each file once.
         if !files.contains(&tool.path()) {
             files.push(tool.path());
         }
@@ -300,6 +290,7 @@ pub(crate) fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, Fai
     if file.is_file() {
         return Ok(file);
     }
+    // A file with the tool's name goes before a number of the list.
     let file = file.with_extension("tool");
     let name = name.to_string_lossy().to_ascii_uppercase();
     match read_numbers(folder)?.get(&name).map(Vec::as_slice) {

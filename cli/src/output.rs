@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use anstream::{AutoStream, ColorChoice};
 use anstyle::Style;
+use serde::Serialize;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::diagnostic::Diagnostic;
@@ -42,6 +43,12 @@ impl Output {
     /// Returns an output for a file's content, byte for byte.
     pub(crate) fn bytes() -> Output {
         Output { escaped: false, ..Output::rows() }
+    }
+
+    /// Writes a row as a line of JSON.
+    pub(crate) fn json(&mut self, row: &impl Serialize) -> Result<(), Failure> {
+        serde_json::to_writer(&mut *self, row)?;
+        Ok(writeln!(self)?)
     }
 
     /// Writes a text in a style, if standard output is a terminal that shows colours; otherwise without it.

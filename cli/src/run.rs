@@ -174,8 +174,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
                 certified,
                 ..Row::of(&evaluation, unit)
             };
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
         } else if evaluation.colliding > 0
             || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
         {

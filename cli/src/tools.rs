@@ -91,8 +91,7 @@ fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Fa
     };
     for info in infos {
         if json {
-            serde_json::to_writer(&mut out, &Row::of(info))?;
-            writeln!(out)?;
+            out.json(&Row::of(info))?;
         } else {
             writeln!(out, "{:<20} {:<5} {}", info.name, info.unit.symbol(), Escaped(&info.title))?;
         }
@@ -127,8 +126,7 @@ fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     if json {
         let files = [(file, text)].into_iter().chain(mounted.iter().copied());
         let files = files.map(|(file, text)| FileRow { file, text }).collect();
-        serde_json::to_writer(&mut out, &SourceRow { name, files })?;
-        writeln!(out)?;
+        out.json(&SourceRow { name, files })?;
     } else {
         write!(out, "{text}")?;
     }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
 use crate::output::{Output, extension, write_file};
 use crate::part;
-use crate::program::{print_approach, print_ignored};
+use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
 use anstyle::{AnsiColor, Style};
 use nalgebra::Point3;
@@ -90,11 +90,7 @@ impl Inputs {
         for ProgramTool { used, loaded } in &tools {
             let info = loaded.tool().info();
             if let Some(line) = program.check_tool(used.motions, info, file.unit)? {
-                message!(
-                    "{}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
-                    program.name(),
-                    info.name
-                );
+                warn_of_cutter(&program.name(), line, info);
             }
         }
         let bodies = bodies(&file, &program)?;
@@ -149,6 +145,7 @@ pub(crate) fn job_file(
             return Err(Failure::MeshForJob { file: file.display().to_string() });
         }
         let mut job = JobFile::read(&file)?;
+        // Options go before the file; leniency holds if either states it.
         job.control = options.control.or(job.control);
         job.resolution = options.resolution.or(job.resolution);
         job.surface_only |= options.surface_only;
@@ -237,8 +234,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let mut out = Output::rows();
     for finding in report.findings() {
         if json {
-            serde_json::to_writer(&mut out, &report.row(finding))?;
-            writeln!(out)?;
+            out.json(&report.row(finding))?;
         } else {
             let place = format!("{}:{}:", inputs.program.name(), finding.line);
             out.styled(style(finding.severity), &place)?;
@@ -247,8 +243,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     }
     if json {
         for row in report.gap_rows() {
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
         }
     }
     out.flush()?;
@@ -287,6 +282,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
         message!("not verified: {reason}");
     }
     let unit = inputs.file.unit;
+    // Once per tool: at every body and in every reading it goes the same way.
     for pair in report.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0) {
         print_approach(&pair.report, unit);
     }
@@ -300,6 +296,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
             }
         }
     }
+    // Gaps that are open and not accepted are among the refusals.
     for gap in report.gaps.iter().filter(|gap| !gap.is_open || inputs.file.anyway) {
         message!("not checked: {gap}");
     }

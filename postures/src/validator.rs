@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use touchoff::certify::{AllowanceError, Certifier, NotCertifiable, PoseVerdict, TriangleBvh};
 use touchoff::tool::Symmetry;
-use touchoff::{Escaped, Pose, SurfaceId, Tool};
+use touchoff::{Escaped, Pose, SurfaceId, Tool, Unit};
 
 /// Rules that a posture has to meet to be accepted. Lengths are in the part's unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +56,11 @@ pub enum RulesError {
 }
 
 impl Rules {
+    /// Returns the tolerance that is taken if none is stated, 0.01 mm, in a unit.
+    pub fn default_tolerance(unit: Unit) -> f64 {
+        0.01 * Unit::Millimetre.factor_to(unit)
+    }
+
     /// Checks the rules for some tools: every surface with an allowance has to belong to at least one of them.
     ///
     /// # Errors

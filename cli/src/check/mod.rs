@@ -117,8 +117,7 @@ impl CheckedFile {
         }
         match form {
             Form::Json => {
-                serde_json::to_writer(&mut *out, &CertificateRow::of(tool, certificate))?;
-                writeln!(out)?;
+                out.json(&CertificateRow::of(tool, certificate))?;
             }
             Form::Table => text::write_table(out, tool, certificate)?,
             Form::Summary => text::write_summary(out, tool, certificate)?,

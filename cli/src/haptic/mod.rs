@@ -318,10 +318,8 @@ fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
         law: arguments.law.to_string(),
     };
     let mut out = Output::lines();
-    serde_json::to_writer(&mut out, &summary)?;
-    writeln!(out)?;
-    out.flush()?;
-    Ok(())
+    out.json(&summary)?;
+    Ok(out.flush()?)
 }
 
 fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
@@ -355,6 +353,5 @@ fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
     for (count, what) in wrong.into_iter().filter(|(count, _)| *count > 0) {
         writeln!(out, "  {count} {what}")?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }

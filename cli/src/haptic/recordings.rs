@@ -2,7 +2,6 @@
 
 use crate::failure::Failure;
 use crate::output::unwritable;
-use crate::postures::default_tolerance;
 use crate::postures::map::check_part;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -127,7 +126,10 @@ pub(super) fn map_of(
         check_part(&map, file, mesh, part)?;
         return Ok(map);
     }
-    let rules =
-        Rules { tolerance: default_tolerance(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
+    let rules = Rules {
+        tolerance: Rules::default_tolerance(mesh.unit()),
+        niceness: 0.0,
+        allowed: Vec::new(),
+    };
     Ok(PostureMap::open(file, &MapIdentity::new(mesh, &[tool], rules)?)?)
 }

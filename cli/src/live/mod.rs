@@ -7,7 +7,6 @@ use crate::failure::Failure;
 use crate::loaded_tool::{SourceFiles, load_file, read_source, source_files};
 use crate::output::{Output, file_name};
 use crate::part;
-use crate::program::is_toml;
 use serde::Serialize;
 use server::{Content, Page};
 use std::collections::BTreeMap;
@@ -88,8 +87,7 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
     let address = format!("http://127.0.0.1:{port}/");
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &AddressRow { address: &address })?;
-        writeln!(out)?;
+        out.json(&AddressRow { address: &address })?;
     } else {
         writeln!(out, "{address}")?;
         message!("serving the page until Ctrl-C");
@@ -119,7 +117,9 @@ fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Ve
         Program::Locations(_) => None,
         Program::Machine(_) => {
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
-            let text = is_toml(machine).then(|| std::fs::read_to_string(machine));
+            // The page has the machines of the library, by their names.
+            let is_file = machine.extension().is_some_and(|extension| extension == "toml");
+            let text = is_file.then(|| std::fs::read_to_string(machine));
             Some(BeginMachine { name: file_name(machine), text: text.transpose()? })
         }
     };

@@ -135,8 +135,7 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
     };
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         let tools: Vec<String> =
             summary.tools.iter().map(|name| Escaped(name).to_string()).collect();
@@ -155,8 +154,7 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
             )?;
         }
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// An output format, chosen by the file's extension.

@@ -8,10 +8,3 @@ mod post;
 mod prove;
 pub(crate) mod sweep;
 mod touched;
-
-use touchoff::Unit;
-
-/// Returns the default depth tolerance of postures, 0.01 mm, in `unit`. Recordings of the haptic loop use it too.
-pub(crate) fn default_tolerance(unit: Unit) -> f64 {
-    0.01 * Unit::Millimetre.factor_to(unit)
-}

@@ -135,6 +135,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let directions = Directions::from(identity.directions.clone());
     let progress = Progress::spinner("planning", json);
     let name = arguments.output.display().to_string();
+    // Created before the path is planned, so that a tool that cannot be proved is refused at once.
     let prover = Prover::new(&bvh, tool, &rules, &name)?;
     let request = PathRequest {
         mesh: &mesh,
@@ -204,8 +205,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     }
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         print_text(&mut out, &arguments.output, &summary)?;
     }

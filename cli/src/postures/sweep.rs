@@ -1,7 +1,7 @@
 //! `touchoff sweep`: a part and tools, every triangle in every direction, and pieces of triangles with `--refine`, round by
 //! round.
 
-use super::{default_tolerance, touched};
+use super::touched;
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
 use crate::loaded_tool::LoadedTool;
@@ -79,21 +79,23 @@ struct ToolSummary {
 }
 
 /// Counts, collected row by row.
-struct Count {
+struct Count<'a> {
     /// Per triangle, the fraction of its area that is reached.
     reached: Vec<f64>,
     tools: Vec<ToolSummary>,
+    /// Takes the rows too, if triangles are to be divided.
+    refiner: Option<Refiner<'a>>,
 }
 
-impl Count {
-    fn new(mesh: &Mesh, tools: &[&dyn Tool]) -> Count {
+impl<'a> Count<'a> {
+    fn new(mesh: &Mesh, tools: &[&dyn Tool], refiner: Option<Refiner<'a>>) -> Count<'a> {
         let tools = tools.iter().map(|tool| ToolSummary {
             name: tool.info().name.to_string(),
             triangles_reached: 0,
             triangles_best: 0,
             stick_out: None,
         });
-        Count { reached: vec![0.0; mesh.triangles().len()], tools: tools.collect() }
+        Count { reached: vec![0.0; mesh.triangles().len()], tools: tools.collect(), refiner }
     }
 
     fn add(&mut self, triangle: TriangleId, row: &MapRow) {
@@ -106,6 +108,9 @@ impl Count {
             tool.triangles_reached += usize::from(access.is_reached());
         }
         self.add_stickout(row);
+        if let Some(refiner) = &mut self.refiner {
+            refiner.add(Piece::whole(triangle), row);
+        }
     }
 
     /// Includes the stick-outs of a row.
@@ -161,7 +166,11 @@ impl Pieces<'_> {
     ///
     /// # Errors
     /// If there are too many pieces, or the map cannot be read or written.
-    fn judge(&self, refiner: &mut Refiner<'_>, count: &mut Count) -> Result<SweepStats, Failure> {
+    fn judge(
+        &self,
+        refiner: &mut Refiner<'_>,
+        count: &mut Count<'_>,
+    ) -> Result<SweepStats, Failure> {
         let mut known = self.map.map(PostureMap::piece_rows).transpose()?.unwrap_or_default();
         let mut stats = SweepStats::default();
         loop {
@@ -244,7 +253,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let bvh = TriangleBvh::new(&mesh);
     part::require_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
     let rules = Rules {
-        tolerance: arguments.tolerance.unwrap_or_else(|| default_tolerance(unit)),
+        tolerance: arguments.tolerance.unwrap_or_else(|| Rules::default_tolerance(unit)),
         niceness: arguments.min_niceness,
         allowed: arguments.allow.clone(),
     };
@@ -263,23 +272,16 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     if let Some((file, map)) = arguments.touched.as_ref().zip(map.as_ref()) {
         return touched::record(file, map, &mesh, &bvh, &tools, json);
     }
-    let mut count = Count::new(&mesh, &tools);
     let refinement = arguments.refine.map(|finest| match finest {
         Some(finest) => Refinement::down_to(finest),
         None => Refinement::of_tools(&tools, unit),
     });
     let refiner = refinement.map(|how| Refiner::new(&mesh, tools.len(), how)).transpose()?;
-    let mut refiner = refiner.zip(refinement);
+    let mut count = Count::new(&mesh, &tools, refiner);
     let open = open_batches(&sweep, map.as_ref())?;
     let progress = Progress::steps(open.len(), "batches", json);
     let start = Instant::now();
     let mut stats = SweepStats::default();
-    let mut add = |triangle: TriangleId, row: &MapRow| {
-        count.add(triangle, row);
-        if let Some((refiner, _)) = &mut refiner {
-            refiner.add(Piece::whole(triangle), row);
-        }
-    };
     let stopped = sweep.run(&open, |batch: Batch| {
         stats += batch.stats;
         progress.advance(1);
@@ -290,7 +292,7 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
                     return ControlFlow::Break(error);
                 }
             }
-            None => batch.rows.iter().for_each(|(id, row)| add(*id, row)),
+            None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
         }
         ControlFlow::Continue(())
     });
@@ -302,10 +304,10 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     if let Some(map) = &map {
         for entry in map.rows()? {
             let (triangle, row) = entry?;
-            add(triangle, &row);
+            count.add(triangle, &row);
         }
     }
-    let refinement = match refiner {
+    let refinement = match count.refiner.take().zip(refinement) {
         Some((mut refiner, Refinement { finest, .. })) => {
             let pieces = Pieces { sweep: &sweep, map: map.as_ref(), json };
             stats += pieces.judge(&mut refiner, &mut count)?;
@@ -340,13 +342,11 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     };
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         summary.print(&mut out, unit, &reached.percent_of(all))?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// Returns the batches that are not in the map.

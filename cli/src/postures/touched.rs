@@ -82,8 +82,7 @@ pub(super) fn record(
     summary.triangles = triangles.len();
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         let Summary { postures, accepted, without_contact, triangles } = summary;
         writeln!(
@@ -93,8 +92,7 @@ pub(super) fn record(
             postures - accepted - without_contact
         )?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// Reads the table; an error is a line and the reason.

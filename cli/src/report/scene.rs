@@ -112,6 +112,7 @@ impl<'a> Body<'a> {
         let step = (high - low) / COORDINATE_STEPS;
         let vertices = shown.vertices.iter().flat_map(|vertex| {
             [0, 1, 2].map(|k| {
+                // A flat body has no extent along one axis.
                 let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
                 steps.round() as u16
             })

@@ -149,7 +149,7 @@ fn facts(content: &Content<'_>) -> Vec<(&'static str, Vec<String>)> {
         )
     };
     let mut rows = vec![("Part", vec![plain(&job.part.display().to_string()), sides])];
-    // At the part only, and once: other bodies and readings have the same positions.
+    // Once per tool: at every body and in every reading it goes the same way.
     let pairs = checked
         .pairs
         .iter()
