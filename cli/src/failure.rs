@@ -55,7 +55,6 @@ pub(crate) enum Failure {
     /// No diagnostic has such a code.
     #[error("no error or warning has the code `{code}`: {}", near_codes(near))]
     Code {
-        /// The requested code.
         code: String,
         /// The codes most like it.
         near: String,
@@ -63,7 +62,6 @@ pub(crate) enum Failure {
     /// A table of touched postures is refused.
     #[error("{file}, line {line}: {reason}")]
     Touched {
-        /// The table.
         file: String,
         /// The line, 1-based.
         line: usize,
@@ -77,12 +75,7 @@ pub(crate) enum Failure {
     #[error(
         "cannot listen at 127.0.0.1:{port}: {source}; give another `--port`, or none for a free one"
     )]
-    Port {
-        /// The port.
-        port: u16,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Port { port: u16, source: std::io::Error },
     /// The daemon of a SpaceMouse cannot be reached.
     #[error(
         "cannot reach the SpaceMouse at {socket}: {source}: start `spacenavd`, or take another `--device`"
@@ -90,7 +83,6 @@ pub(crate) enum Failure {
     Spacenav {
         /// The daemon's socket.
         socket: &'static str,
-        /// The reason.
         source: std::io::Error,
     },
     /// A recording of the session is incomplete; the reason was reported when it happened.
@@ -101,7 +93,6 @@ pub(crate) enum Failure {
     Numbers {
         /// The list.
         file: String,
-        /// The reason.
         message: String,
     },
     /// A mesh stands where a job file does.
@@ -117,29 +108,18 @@ pub(crate) enum Failure {
     SeveralEntries {
         /// The number, as it was asked for.
         name: String,
-        /// The library.
         file: String,
         /// The tools with this number.
         tools: Vec<String>,
     },
     /// A file could not be read.
     #[error("{file}: cannot be read ({source}): check the path and its permissions")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Unreadable { file: String, source: std::io::Error },
     /// A tool library has no such tool.
     #[error(
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
     )]
-    NoSuchEntry {
-        /// The requested tool.
-        name: String,
-        /// The library.
-        file: String,
-    },
+    NoSuchEntry { name: String, file: String },
     /// A program is not proved as it would be written.
     #[error(
         "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
@@ -150,7 +130,6 @@ pub(crate) enum Failure {
         file: String,
         /// The planned cutter location, from 1.
         location: usize,
-        /// The finding.
         reason: String,
     },
     /// The machine does not reach a cutter location.
@@ -159,13 +138,11 @@ pub(crate) enum Failure {
         .axis[0], .axis[1], .axis[2]
     )]
     Unreachable {
-        /// The machine.
         machine: String,
         /// The planned cutter location, from 1.
         location: usize,
         /// The tool axis.
         axis: [f64; 3],
-        /// The reason.
         source: touchoff_verify::machine::InverseError,
     },
     /// An axis of the machine leaves its limits on the way to a cutter location.
@@ -174,7 +151,6 @@ pub(crate) enum Failure {
          correct `--work-offset`, or limit the axis with `--max-tilt`"
     )]
     AxisLimit {
-        /// The machine.
         machine: String,
         /// The planned cutter location, from 1.
         location: usize,
@@ -187,50 +163,29 @@ pub(crate) enum Failure {
     },
     /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
-    PartMissing {
-        /// The file.
-        file: String,
-    },
+    PartMissing { file: String },
     /// The map belongs to another part.
     #[error(
         "{map} belongs to another part than {part}: give the mesh that was swept, unchanged and in the same unit"
     )]
-    OtherPart {
-        /// The map.
-        map: String,
-        /// The part.
-        part: String,
-    },
+    OtherPart { map: String, part: String },
     /// The map does not have this tool.
     #[error(
         "{map} was not swept with this `{tool}`: sweep with it into another map, or give the `--tool` and `--set` of the \
          sweep"
     )]
-    OtherTool {
-        /// The map.
-        map: String,
-        /// The tool.
-        tool: String,
-    },
+    OtherTool { map: String, tool: String },
     /// The inside of the part is unknown.
     #[error(
         "{file}: {}: repair the mesh, or check its surface alone with `--surface-only`",
         touchoff_verify::job::NO_INSIDE
     )]
-    NoInside {
-        /// The part.
-        file: String,
-    },
+    NoInside { file: String },
     /// The request needs a mesh.
     #[error(
         "`{what}` needs triangles, and {file} has only points: give the mesh that they were sampled from"
     )]
-    NoTriangles {
-        /// The part.
-        file: String,
-        /// The request.
-        what: &'static str,
-    },
+    NoTriangles { file: String, what: &'static str },
     /// No bound on the growth of the tool's depth is proved.
     #[error(
         "no Lipschitz constant of the depth of `{0}` is proved (`touchoff check` says why), so no number of points \
@@ -240,7 +195,6 @@ pub(crate) enum Failure {
     /// No tool has this name.
     #[error("no built-in tool is called `{name}`: {hint}")]
     UnknownTool {
-        /// The requested name.
         name: String,
         /// The remedy.
         hint: String,
@@ -280,7 +234,6 @@ pub(crate) enum Failure {
     Format {
         /// The formats, in a sentence.
         formats: &'static str,
-        /// The requested file.
         file: String,
     },
     /// The output's extension is not that of its format.
@@ -288,7 +241,6 @@ pub(crate) enum Failure {
     Extension {
         /// The extensions of the format, in a sentence.
         rule: &'static str,
-        /// The requested file.
         file: String,
         /// A suitable name.
         better: PathBuf,
@@ -296,7 +248,6 @@ pub(crate) enum Failure {
     /// No format of a drawing has this file extension.
     #[error("a drawing is an `.svg` or a `.png`, and `{file}` is neither: write `-o {}`", .better.display())]
     DrawingFormat {
-        /// The requested file.
         file: String,
         /// A suitable name.
         better: PathBuf,
@@ -305,31 +256,20 @@ pub(crate) enum Failure {
     #[error(
         "`{name}` mounts a file that would replace `{file}`: write the tool to another name or another folder"
     )]
-    MountedFileExists {
-        /// The file.
-        file: String,
-        /// The tool.
-        name: String,
-    },
+    MountedFileExists { file: String, name: String },
     /// A drawing could not be rasterised.
     #[error("the PNG could not be rendered: {0}: write an `.svg`, or another format")]
     Pixels(String),
     /// An output is also an input.
     #[error("the output `{output}` is also an input (`{input}`): write to another file")]
     IsInput {
-        /// The output.
         output: String,
         /// The input that is the same file.
         input: String,
     },
     /// A file could not be written.
     #[error("cannot write `{file}`: {}", cause(source))]
-    Unwritable {
-        /// The file.
-        file: String,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Unwritable { file: String, source: std::io::Error },
     /// Standard output could not be written.
     #[error("standard output could not be written: {}", cause(.0))]
     Output(#[from] std::io::Error),

@@ -96,6 +96,7 @@ impl Run<'_> {
         let tools = self.wanted(&library)?;
         let mut left_out = 0;
         let mut written = Vec::new();
+        // A single tool that was asked for says nothing about the others.
         if self.only.is_none() {
             for skipped in library.skipped() {
                 self.skip(out, &skipped.name, &skipped.reason)?;
@@ -333,6 +334,7 @@ fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
             .flat_map(|worker| worker.join().expect("a proof does not panic"))
             .collect()
     });
+    // Threads end in any order.
     proofs.sort_by_key(|(index, _)| *index);
     Ok(proofs.into_iter().map(|(_, proof)| proof).collect())
 }

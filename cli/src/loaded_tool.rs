@@ -126,7 +126,7 @@ fn in_library<R>(
 ///
 /// # Errors
 /// [`Failure::UnknownTool`], with a hint at what may be meant.
-pub(crate) fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
+fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
     tools_library::find(name).ok_or_else(|| {
         let near = TOOLS.iter().map(|tool| {
             let known = &*tool.info().name;

@@ -110,6 +110,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     let program = program::read(&arguments.program, tool.info(), unit)?;
     let LoadedPart { part, mesh, certify } =
         part::load(&arguments.part, Some(tool.info()), DenseSampling::Certify, json)?;
+    // A sampling error that needs too many points has become a tolerance of its own; the stricter one holds.
     let certify = [arguments.certify, certify].into_iter().flatten().reduce(f64::min);
     let bvh = match (certify, &mesh) {
         (Some(tolerance), Some(mesh)) => Some((TriangleBvh::new(mesh), tolerance)),

@@ -194,6 +194,7 @@ impl<'a> Validator<'a> {
         let (tip, axis) = (pose.tip().into(), pose.axis().into());
         let mut record =
             PostureRecord { tool, tip, axis, niceness, depth: 0.0, clearance: f64::INFINITY };
+        // The spin is not recorded, so the pose is proved without it.
         let recorded_pose = record.pose().ok()?;
         if !self.accepts(&recorded_pose) {
             return None;

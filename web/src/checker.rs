@@ -155,6 +155,7 @@ impl Checker {
 impl Checker {
     fn take_part(&mut self, mesh: &Mesh) {
         self.bvh = Some(Rc::new(TriangleBvh::new(mesh)));
+        // The motions were in the frame and the unit of the old part.
         self.judge = None;
         self.moves.clear();
     }
@@ -183,6 +184,7 @@ impl Checker {
         let program = self.program.as_ref().filter(|_| !self.moves.is_empty());
         let mut job = Job::new(program.ok_or(EngineError::NotLoaded)?, bvh);
         let mut tool = JobTool::of_all(&**tool);
+        // The page holds one tool; motions of others would be checked with the wrong one.
         tool.motions = ToolSelection::Number(self.number);
         job.tools.push(tool);
         job.tolerance = tolerance;
@@ -195,6 +197,7 @@ impl Checker {
         };
         // A NaN is taken as the start: `max` returns the other number.
         let position = position.max(0.0).min(last as f64);
+        // Motion `index` ends at the position of that index, so the fraction counts back from its end.
         let index = position.ceil();
         let step = &self.moves[index as usize];
         let pose = step.path.pose(1.0 - (index - position));

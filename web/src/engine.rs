@@ -119,6 +119,7 @@ impl Engine {
     pub fn compile_tool(&mut self, name: &str, text: &str, files: &str) -> Result<String, JsError> {
         let (compiled, tool) = tool::compiled(name, text, files)?;
         if let Some(tool) = tool {
+            // The session is one of the old tool.
             self.tool = Some(Rc::new(tool));
             self.touch = None;
             self.make_triangles();
@@ -172,6 +173,7 @@ impl Engine {
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(&mut self, pose: &[f64], cycles: f64) -> Result<(), JsError> {
         let pose = pose_of(pose)?;
+        // Without a part the hand has no unit, and without a tool it is not known whether spin counts.
         if let Some((part, tool)) = self.part.as_ref().zip(self.tool.as_ref()) {
             let unit = part.unit().millimetres();
             self.hand.move_to(pose, cycles, tool.info().symmetry, unit);
@@ -271,6 +273,7 @@ impl Engine {
 
 impl Engine {
     fn take_mesh(&mut self, mesh: Mesh) {
+        // Points and session are those of the old part.
         self.mesh = Some(Rc::new(mesh));
         self.part = None;
         self.touch = None;
@@ -331,6 +334,7 @@ impl Engine {
         let stiffness = self.stiffness * unit.powi(3);
         let wrench = self.running()?.probe(|probe| probe.wrench(&pose));
         let mut values = vec![0.0];
+        // Tool and hand are at one pose.
         for _ in 0..2 {
             values.extend(pose.tip().iter().chain(pose.rotation().iter()));
         }

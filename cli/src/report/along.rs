@@ -124,7 +124,7 @@ pub(super) fn follow(
 }
 
 /// Width and height of a chart, in pixels.
-const SIZE: (u32, u32) = (980, 230);
+const SIZE: [u32; 2] = [980, 230];
 /// Colours that colour-blind readers can tell apart (Okabe and Ito).
 const BLUE: RGBColor = RGBColor(0, 114, 178);
 const RED: RGBColor = RGBColor(213, 94, 0);
@@ -217,11 +217,11 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Returns what is drawn on a white area as SVG.
 fn svg(
-    size: (u32, u32),
+    size: [u32; 2],
     draw: impl FnOnce(&Area<'_>) -> Result<(), Fault>,
 ) -> Result<String, Failure> {
     let mut svg = String::new();
-    let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+    let area = SVGBackend::with_string(&mut svg, size.into()).into_drawing_area();
     let drawn = area.fill(&WHITE).and_then(|()| draw(&area)).and_then(|()| area.present());
     drawn.map_err(pixels)?;
     drop(area);
@@ -315,7 +315,7 @@ pub(super) fn histogram(times: &[u64], what: &str) -> Result<String, Failure> {
     let mut counts = vec![0u32; (high - low) as usize + 1];
     bins.iter().for_each(|bin| counts[(bin - low) as usize] += 1);
     let highest = counts.iter().copied().max().unwrap_or(1);
-    svg((480, 210), |area| {
+    svg([480, 210], |area| {
         let mut chart = ChartBuilder::on(area)
             .margin(10)
             .x_label_area_size(42)

@@ -153,6 +153,7 @@ fn cloud(shown: &Shown) -> Result<Cloud, Failure> {
         let [a, b, c] = corners;
         let centre = a + ((b - a) + (c - a)) / 3.0;
         let area = 0.5 * (b - a).cross(&(c - a)).norm();
+        // A little inside, so that each point is in one triangle only. Four points share the area.
         let near = corners.map(|corner| corner + (centre - corner) / 16.0);
         for point in near.into_iter().chain([centre]) {
             points.push(point);

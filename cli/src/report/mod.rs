@@ -1,14 +1,13 @@
 //! `touchoff report`: one HTML file about a program, to send around.
 //!
 //! ```text
-//! job ──verify──▶ findings ──cameras──▶ places ───┐
+//! job ──verify──▶ findings ──scene──▶ places ──────┐
 //! bodies ──shapes──▶ pieces ──colouring──▶ layers ─┼─scene──▶ the 3-D view ─┐
 //! tools ──shapes──▶ profiles ──────────────────────┴─picture─▶ pictures ────┼─page──▶ HTML
-//! program ──along──▶ samples, charts ────────────────────────────────────────┘
+//! program ──along──▶ samples, charts ───────────────────────────────────────┘
 //! ```
 
 mod along;
-mod cameras;
 mod colouring;
 mod page;
 mod scene;
@@ -22,9 +21,8 @@ use crate::postures::map::check_part;
 use crate::progress::Progress;
 use crate::verify::{self, Inputs};
 use along::Along;
-use cameras::Place;
 use colouring::{ColouredBodies, Layer};
-use scene::Scene;
+use scene::{Place, Scene};
 use sha2::{Digest, Sha256};
 use shapes::ToolShape;
 use std::fmt::Write;

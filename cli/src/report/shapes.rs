@@ -34,6 +34,7 @@ impl Shown {
         loop {
             match whole.divided(longest) {
                 Some(shown) => return shown,
+                // Half as long again: less than half as many pieces.
                 None => longest *= 1.5,
             }
         }
