@@ -14,9 +14,9 @@ use serde::Serialize;
 use std::io::Write;
 use std::mem;
 use std::path::Path;
-use touchoff::Motion;
 use touchoff::certify::TriangleBvh;
-use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern};
+use touchoff::{Motion, Unit};
+use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern, ToolPath};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff_verify::ClData;
 use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
@@ -90,6 +90,46 @@ impl<'a> Format<'a> {
     }
 }
 
+impl Summary {
+    /// Summarises a path, with the cutter locations of its program.
+    fn new(path: &ToolPath, locations: &[Location], unit: Unit) -> Summary {
+        let [before, after] = path.turns.map(f64::to_degrees);
+        let [feed_length, rapid_length] = lengths(locations);
+        let upside_down = locations.iter().filter(|location| is_upside_down(location));
+        Summary {
+            unit: unit.symbol(),
+            locations: locations.len(),
+            contact_points: path.contact_points,
+            inserted_locations: 0,
+            points_left_out: path.left_out.len(),
+            points_not_reached: path.count_left_out(LeftOutReason::NotReached),
+            points_without_motion: path.count_left_out(LeftOutReason::NoMotion),
+            retracts: path.retracts,
+            turn_before_smoothing_degrees: before,
+            turn_degrees: after,
+            feed_length,
+            rapid_length,
+            upside_down_locations: upside_down.count(),
+            first_upside_down_location: locations.iter().position(is_upside_down),
+        }
+    }
+}
+
+/// Returns per triangle the directions from which a sweep found that a tool of the map reaches it.
+fn accessibility(map: &PostureMap, tool: u16) -> Result<Vec<Vec<u64>>, Failure> {
+    let identity = map.identity();
+    let mut access = vec![Vec::new(); identity.part.triangles as usize];
+    map.for_each_triangle(|triangle, pieces| {
+        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
+        let row = MapRow::joined(&pieces, identity.keep);
+        if let Some(reach) = row.access.into_iter().find(|access| access.tool == tool) {
+            access[triangle.index()] = reach.directions;
+        }
+        Ok::<(), Failure>(())
+    })?;
+    Ok(access)
+}
+
 /// Plans a path of a tool over a part, proves the program as it is written, and writes it.
 pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let format = Format::of(arguments)?;
@@ -114,15 +154,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         tool: tool.info().name.to_string(),
     })?;
     let mesh = read_part(&map, &arguments.map, &arguments.part)?;
-    let mut access = vec![Vec::new(); mesh.triangles().len()];
-    map.for_each_triangle(|triangle, pieces| {
-        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
-        let row = MapRow::joined(&pieces, identity.keep);
-        if let Some(reach) = row.access.into_iter().find(|access| access.tool == index) {
-            access[triangle.index()] = reach.directions;
-        }
-        Ok::<(), Failure>(())
-    })?;
+    let access = accessibility(&map, index)?;
     let tolerance = arguments.tolerance.unwrap_or(identity.rules.tolerance);
     let rules = Rules { tolerance, ..identity.rules.clone() };
     let pattern = Pattern {
@@ -180,23 +212,9 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         None => (text, locations),
     };
     drop(progress);
-    let [before, after] = path.turns.map(f64::to_degrees);
-    let [feed_length, rapid_length] = lengths(&locations);
     let summary = Summary {
-        unit: unit.symbol(),
-        locations: locations.len(),
-        contact_points: path.contact_points,
         inserted_locations: locations.len() - planned,
-        points_left_out: path.left_out.len(),
-        points_not_reached: path.count_left_out(LeftOutReason::NotReached),
-        points_without_motion: path.count_left_out(LeftOutReason::NoMotion),
-        retracts: path.retracts,
-        turn_before_smoothing_degrees: before,
-        turn_degrees: after,
-        feed_length,
-        rapid_length,
-        upside_down_locations: locations.iter().filter(|location| is_upside_down(location)).count(),
-        first_upside_down_location: locations.iter().position(is_upside_down),
+        ..Summary::new(&path, &locations, unit)
     };
     write_file(&arguments.output, text)?;
     if let Some(file) = &arguments.picture {

@@ -70,7 +70,7 @@ impl ColouredBodies {
             if !scale.has_values {
                 continue;
             }
-            // Values at the centres of the pieces.
+            // At the centre of each piece, as a piece has one colour.
             let part = &self.bodies[0];
             let values = part.corners().zip(&part.sources).map(|([a, b, c], source)| {
                 let centre = Point3::from((a.coords + b.coords + c.coords) / 3.0);
