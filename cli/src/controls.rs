@@ -47,6 +47,7 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
         write!(out, "{}", ControlRules::named(name)?.to_toml())?;
         return Ok(out.flush()?);
     }
+    // With a name this prints its row of JSON; its file was printed above.
     let names = name.map_or_else(|| ControlRules::names().collect(), |name| vec![name]);
     for name in names {
         let control = ControlRules::named(name)?;
@@ -54,8 +55,7 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
         if json {
             let rules =
                 rules.map(|(rule, choice)| (rule.key(), rule.describe(choice)[0])).collect();
-            serde_json::to_writer(&mut out, &ControlRow { name, rules })?;
-            writeln!(out)?;
+            out.json(&ControlRow { name, rules })?;
             continue;
         }
         writeln!(out, "{name}")?;
@@ -82,8 +82,7 @@ pub(crate) fn machines(name: Option<&str>, json: bool) -> Result<(), Failure> {
         let axes: Vec<AxisRow> = machine.axes().iter().map(AxisRow::of).collect();
         if json {
             let row = MachineRow { name, tool_change: machine.tool_change(), axes };
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
             continue;
         }
         let change = match machine.tool_change() {

@@ -4,6 +4,7 @@ use crate::arguments::Draw;
 use crate::failure::Failure;
 use crate::loaded_tool::compile_file;
 use crate::output::{Output, extension, refuse_inputs, write_file};
+use crate::picture::pixels;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
@@ -44,12 +45,12 @@ fn drawing(arguments: &Draw) -> Result<String, Failure> {
 
 /// Renders an SVG without text elements as a PNG.
 fn png(svg: &str) -> Result<Vec<u8>, Failure> {
-    let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
-    let tree = Tree::from_str(svg, &Options::default()).map_err(|error| pixels(&error))?;
+    let tree = Tree::from_str(svg, &Options::default()).map_err(pixels)?;
     let size = tree.size();
+    // The smaller scale of both, so that a long drawing does not exhaust memory.
     let scale = PIXELS.min((MAX_PIXELS / (size.width() * size.height())).sqrt());
     let [width, height] = [size.width(), size.height()].map(|side| (side * scale).ceil() as u32);
-    let mut map = Pixmap::new(width, height).ok_or_else(|| pixels(&"it has no size"))?;
+    let mut map = Pixmap::new(width, height).ok_or_else(|| pixels("it has no size"))?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut map.as_mut());
-    map.encode_png().map_err(|error| pixels(&error))
+    map.encode_png().map_err(pixels)
 }

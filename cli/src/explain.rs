@@ -13,23 +13,23 @@ use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, s
 pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
     let requested = match code {
         None => None,
+        // Codes are typed in either case.
         Some(code) => Some(entry(&code.to_uppercase()).ok_or_else(|| unknown(code))?),
     };
     let mut out = Output::rows();
     match requested {
+        // One row or all of them, in the same form.
         _ if json => {
             let all = entries()
                 .filter(|row| requested.is_none_or(|requested| requested.code == row.code));
             for entry in all {
-                serde_json::to_writer(&mut out, &Row::of(entry))?;
-                writeln!(out)?;
+                out.json(&Row::of(entry))?;
             }
         }
         Some(entry) => explain_one(entry, &mut out)?,
         None => list_all(&mut out)?,
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// Returns the failure for an unknown code, with the codes most like it.

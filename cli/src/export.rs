@@ -32,8 +32,8 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
         Some("fctb") => Format::FreeCad,
         Some("apt") => Format::Apt,
         _ => {
-            let better = output.with_extension("json");
-            return Err(Failure::ExportFormat { file: output.display().to_string(), better });
+            let rule = "a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`";
+            return Err(Failure::extension(rule, output, "json"));
         }
     };
     refuse_inputs([&**output], names.iter().map(Path::new))?;
@@ -49,8 +49,7 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
         };
         if json {
             let row = Row { name: &tool.name, kind, gaps: &tool.gaps, left_out };
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
             continue;
         }
         if let Some(reason) = left_out {
@@ -64,6 +63,7 @@ pub(crate) fn export(arguments: &Export, json: bool) -> Result<ExitCode, Failure
         }
     }
     out.flush()?;
+    // A file without a tool would replace one that has some.
     let left_out = exported.tools.iter().filter(|tool| tool.kind.is_err()).count();
     if left_out < exported.tools.len() {
         write_file(output, exported.text)?;

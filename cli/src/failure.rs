@@ -1,9 +1,8 @@
 //! Failures of the program, reported once at its end.
 
-use touchoff::CloudError;
-use touchoff::mesh::MeshError;
+use std::error::Error;
+use std::path::{Path, PathBuf};
 use touchoff::tool::ToolError;
-use touchoff_verify::ProgramError;
 
 /// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -20,37 +19,42 @@ impl Failure {
         match self {
             Failure::Usage(_)
             | Failure::IsInput { .. }
-            | Failure::Program(_)
-            | Failure::Job(_)
+            | Failure::Refused(_)
             | Failure::Numbers { .. }
             | Failure::MeshForJob { .. }
             | Failure::SeveralEntries { .. }
-            | Failure::Machine(_)
-            | Failure::Control(_)
-            | Failure::MachineProgram(_)
             | Failure::NoInside { .. } => 2,
             Failure::Interrupted => INTERRUPTED,
             _ => 1,
         }
+    }
+
+    /// Returns the failure for an output whose extension is not that of its format, as `rule` states it; `extension` is one
+    /// that is.
+    pub(crate) fn extension(rule: &'static str, file: &Path, extension: &str) -> Failure {
+        let better = file.with_extension(extension);
+        Failure::Extension { rule, file: file.display().to_string(), better }
     }
 }
 
 /// The reason for which the program ends with an exit status other than 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// A cloud could not be made.
+    /// A program, a job, a machine or a control cannot be used as requested.
+    #[error("{0}")]
+    Refused(Box<dyn Error + Send + Sync>),
+    /// A library could not do what was asked for.
+    #[error("{0}")]
+    Library(Box<dyn Error + Send + Sync>),
+    /// The tool could not be loaded.
     #[error(transparent)]
-    Cloud(#[from] CloudError),
-    /// A mesh could not be made.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Tool(#[from] ToolError),
     /// The options do not go together, or this system lacks the device.
     #[error("{0}")]
     Usage(&'static str),
     /// No diagnostic has such a code.
     #[error("no error or warning has the code `{code}`: {}", near_codes(near))]
     Code {
-        /// The requested code.
         code: String,
         /// The codes most like it.
         near: String,
@@ -58,7 +62,6 @@ pub(crate) enum Failure {
     /// A table of touched postures is refused.
     #[error("{file}, line {line}: {reason}")]
     Touched {
-        /// The table.
         file: String,
         /// The line, 1-based.
         line: usize,
@@ -72,12 +75,7 @@ pub(crate) enum Failure {
     #[error(
         "cannot listen at 127.0.0.1:{port}: {source}; give another `--port`, or none for a free one"
     )]
-    Port {
-        /// The port.
-        port: u16,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Port { port: u16, source: std::io::Error },
     /// The daemon of a SpaceMouse cannot be reached.
     #[error(
         "cannot reach the SpaceMouse at {socket}: {source}: start `spacenavd`, or take another `--device`"
@@ -85,39 +83,16 @@ pub(crate) enum Failure {
     Spacenav {
         /// The daemon's socket.
         socket: &'static str,
-        /// The reason.
         source: std::io::Error,
     },
-    /// The system has no such core.
-    #[error(transparent)]
-    Core(#[from] touchoff_haptics::RealtimeError),
     /// A recording of the session is incomplete; the reason was reported when it happened.
     #[error("the recording is incomplete: make room on the disk, and run the session again")]
     RecordingFailed,
-    /// A setting is out of range for the haptic loop.
-    #[error(transparent)]
-    Setting(#[from] touchoff_haptics::SettingError),
-    /// The motion between two poses of a path is ambiguous.
-    #[error(transparent)]
-    Motion(touchoff::MotionError),
-    /// The path could not be read.
-    #[error(transparent)]
-    Program(#[from] ProgramError),
-    /// The tool could not be loaded.
-    #[error(transparent)]
-    Tool(#[from] ToolError),
-    /// A tool library could not be imported.
-    #[error(transparent)]
-    Import(#[from] touchoff_import::ImportError),
-    /// A job cannot be read or checked.
-    #[error(transparent)]
-    Job(#[from] touchoff_verify::JobError),
     /// The list of numbers in a folder of tools is refused.
     #[error("{file}: {message}")]
     Numbers {
         /// The list.
         file: String,
-        /// The reason.
         message: String,
     },
     /// A mesh stands where a job file does.
@@ -133,61 +108,18 @@ pub(crate) enum Failure {
     SeveralEntries {
         /// The number, as it was asked for.
         name: String,
-        /// The library.
         file: String,
         /// The tools with this number.
         tools: Vec<String>,
     },
     /// A file could not be read.
     #[error("{file}: cannot be read ({source}): check the path and its permissions")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The reason.
-        source: std::io::Error,
-    },
-    /// A machine's file is refused, or no machine has that name.
-    #[error(transparent)]
-    Machine(#[from] touchoff_verify::machine::MachineError),
-    #[error(transparent)]
-    Control(#[from] touchoff_verify::gcode::ControlError),
-    /// The stock cannot be made or cut.
-    #[error(transparent)]
-    Stock(#[from] touchoff_verify::stock::StockError),
-    /// G-code cannot be checked on its machine.
-    #[error(transparent)]
-    MachineProgram(#[from] touchoff_verify::MachineProgramError),
+    Unreadable { file: String, source: std::io::Error },
     /// A tool library has no such tool.
     #[error(
         "`{file}` has no tool with the name, title or number `{name}`: `touchoff import {file} --list` lists them"
     )]
-    NoSuchEntry {
-        /// The requested tool.
-        name: String,
-        /// The library.
-        file: String,
-    },
-    /// The requested proof is not possible.
-    #[error(transparent)]
-    Uncertified(#[from] touchoff::certify::NotCertifiable),
-    /// A program could not be checked.
-    #[error(transparent)]
-    Verify(#[from] touchoff_verify::VerifyError),
-    /// A sweep could not be done.
-    #[error(transparent)]
-    Sweep(#[from] touchoff_postures::sweep::SweepError),
-    /// The rules of a sweep are invalid.
-    #[error(transparent)]
-    Rules(#[from] touchoff_postures::RulesError),
-    /// A posture map could not be read or written.
-    #[error(transparent)]
-    Map(#[from] touchoff_postures::MapError),
-    /// A session cannot be recorded.
-    #[error(transparent)]
-    Recorder(#[from] touchoff_postures::RecorderError),
-    /// No path could be planned.
-    #[error(transparent)]
-    Path(#[from] touchoff_postures::path::PathError),
+    NoSuchEntry { name: String, file: String },
     /// A program is not proved as it would be written.
     #[error(
         "{file}: the motion to cutter location {location} is not proved as it would be written, so nothing was \
@@ -198,7 +130,6 @@ pub(crate) enum Failure {
         file: String,
         /// The planned cutter location, from 1.
         location: usize,
-        /// The finding.
         reason: String,
     },
     /// The machine does not reach a cutter location.
@@ -207,25 +138,19 @@ pub(crate) enum Failure {
         .axis[0], .axis[1], .axis[2]
     )]
     Unreachable {
-        /// The machine.
         machine: String,
         /// The planned cutter location, from 1.
         location: usize,
         /// The tool axis.
         axis: [f64; 3],
-        /// The reason.
         source: touchoff_verify::machine::InverseError,
     },
-    /// A work offset or a tool length is out of range for a machine, or it has no such link.
-    #[error(transparent)]
-    Joint(#[from] touchoff_verify::machine::JointError),
     /// An axis of the machine leaves its limits on the way to a cutter location.
     #[error(
         "`{machine}`: {letter} goes to {value:.4} on the way to cutter location {location}, beyond its limit of {limit}: \
          correct `--work-offset`, or limit the axis with `--max-tilt`"
     )]
     AxisLimit {
-        /// The machine.
         machine: String,
         /// The planned cutter location, from 1.
         location: usize,
@@ -236,85 +161,31 @@ pub(crate) enum Failure {
         /// The limit, in mm or degrees.
         limit: f64,
     },
-    /// A program could not be written.
-    #[error(transparent)]
-    Write(#[from] touchoff_verify::program::WriteError),
-    /// No format of a map has this file extension.
-    #[error(
-        "a map is written as `.csv`, `.json`, `.ply` or `.png`, and `{file}` is none of them: change its extension"
-    )]
-    MapFormat {
-        /// The requested file.
-        file: String,
-    },
-    /// No format of a program has this file extension.
-    #[error(
-        "a program is written as `.apt`, `.csv` or `.nc`, and `{file}` is none of them: change its extension"
-    )]
-    ProgramFormat {
-        /// The requested file.
-        file: String,
-    },
     /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give its mesh with `--part FILE`")]
-    PartMissing {
-        /// The file.
-        file: String,
-    },
+    PartMissing { file: String },
     /// The map belongs to another part.
     #[error(
         "{map} belongs to another part than {part}: give the mesh that was swept, unchanged and in the same unit"
     )]
-    OtherPart {
-        /// The map.
-        map: String,
-        /// The part.
-        part: String,
-    },
+    OtherPart { map: String, part: String },
     /// The map does not have this tool.
     #[error(
         "{map} was not swept with this `{tool}`: sweep with it into another map, or give the `--tool` and `--set` of the \
          sweep"
     )]
-    OtherTool {
-        /// The map.
-        map: String,
-        /// The tool.
-        tool: String,
-    },
-    /// The part's file could not be read.
-    #[error(transparent)]
-    Shape(#[from] touchoff::mesh::GeometryError),
-    /// A saved part could not be opened or written.
-    #[error(transparent)]
-    Saved(#[from] touchoff::SavedError),
-    /// The file's extension is not that of a saved part.
-    #[error("a saved part ends in `.touchoff`: write `-o {}` instead of `{file}`", .better.display())]
-    SavedName {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
-    },
+    OtherTool { map: String, tool: String },
     /// The inside of the part is unknown.
     #[error(
         "{file}: {}: repair the mesh, or check its surface alone with `--surface-only`",
         touchoff_verify::job::NO_INSIDE
     )]
-    NoInside {
-        /// The part.
-        file: String,
-    },
+    NoInside { file: String },
     /// The request needs a mesh.
     #[error(
         "`{what}` needs triangles, and {file} has only points: give the mesh that they were sampled from"
     )]
-    NoTriangles {
-        /// The part.
-        file: String,
-        /// The request.
-        what: &'static str,
-    },
+    NoTriangles { file: String, what: &'static str },
     /// No bound on the growth of the tool's depth is proved.
     #[error(
         "no Lipschitz constant of the depth of `{0}` is proved (`touchoff check` says why), so no number of points \
@@ -324,7 +195,6 @@ pub(crate) enum Failure {
     /// No tool has this name.
     #[error("no built-in tool is called `{name}`: {hint}")]
     UnknownTool {
-        /// The requested name.
         name: String,
         /// The remedy.
         hint: String,
@@ -359,73 +229,95 @@ pub(crate) enum Failure {
         /// Number of files checked.
         all: usize,
     },
+    /// The output's extension is that of no format.
+    #[error("{formats}, and `{file}` is none of them: change its extension")]
+    Format {
+        /// The formats, in a sentence.
+        formats: &'static str,
+        file: String,
+    },
+    /// The output's extension is not that of its format.
+    #[error("{rule}: write `-o {}` instead of `{file}`", .better.display())]
+    Extension {
+        /// The extensions of the format, in a sentence.
+        rule: &'static str,
+        file: String,
+        /// A suitable name.
+        better: PathBuf,
+    },
     /// No format of a drawing has this file extension.
     #[error("a drawing is an `.svg` or a `.png`, and `{file}` is neither: write `-o {}`", .better.display())]
     DrawingFormat {
-        /// The requested file.
         file: String,
         /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a report.
-    #[error("a report ends in `.html`: write `-o {}` instead of `{file}`", .better.display())]
-    ReportFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a library.
-    #[error("a library ends in `.json` (Fusion 360), `.fctb` (FreeCAD) or `.apt`: write `-o {}` instead of `{file}`", .better.display())]
-    ExportFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
-    },
-    /// The file's extension is not that of a tool.
-    #[error("a tool's file ends in `.tool`: write `-o {}` instead of `{file}`", .better.display())]
-    ToolFormat {
-        /// The requested file.
-        file: String,
-        /// A suitable name.
-        better: std::path::PathBuf,
+        better: PathBuf,
     },
     /// A file that a tool mounts would replace another.
     #[error(
         "`{name}` mounts a file that would replace `{file}`: write the tool to another name or another folder"
     )]
-    MountedFileExists {
-        /// The file.
-        file: String,
-        /// The tool.
-        name: String,
-    },
+    MountedFileExists { file: String, name: String },
     /// A drawing could not be rasterised.
     #[error("the PNG could not be rendered: {0}: write an `.svg`, or another format")]
     Pixels(String),
     /// An output is also an input.
     #[error("the output `{output}` is also an input (`{input}`): write to another file")]
     IsInput {
-        /// The output.
         output: String,
         /// The input that is the same file.
         input: String,
     },
     /// A file could not be written.
     #[error("cannot write `{file}`: {}", cause(source))]
-    Unwritable {
-        /// The file.
-        file: String,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Unwritable { file: String, source: std::io::Error },
     /// Standard output could not be written.
     #[error("standard output could not be written: {}", cause(.0))]
     Output(#[from] std::io::Error),
     /// A row could not be written as JSON.
     #[error("standard output could not be written: {0}: redirect it elsewhere")]
     Json(#[from] serde_json::Error),
+}
+
+/// Converts errors of libraries, which no code tells apart but by the exit status.
+macro_rules! converted {
+    ($variant:ident: $($error:ty),* $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Failure {
+                Failure::$variant(Box::new(error))
+            }
+        })*
+    };
+}
+
+converted! {
+    Refused:
+    touchoff_verify::ProgramError,
+    touchoff_verify::JobError,
+    touchoff_verify::MachineProgramError,
+    touchoff_verify::gcode::ControlError,
+    touchoff_verify::machine::MachineError,
+}
+
+converted! {
+    Library:
+    touchoff::CloudError,
+    touchoff::MotionError,
+    touchoff::SavedError,
+    touchoff::certify::NotCertifiable,
+    touchoff::mesh::GeometryError,
+    touchoff::mesh::MeshError,
+    touchoff_haptics::RealtimeError,
+    touchoff_haptics::SettingError,
+    touchoff_import::ImportError,
+    touchoff_postures::MapError,
+    touchoff_postures::RecorderError,
+    touchoff_postures::RulesError,
+    touchoff_postures::path::PathError,
+    touchoff_postures::sweep::SweepError,
+    touchoff_verify::VerifyError,
+    touchoff_verify::machine::JointError,
+    touchoff_verify::program::WriteError,
+    touchoff_verify::stock::StockError,
 }
 
 /// Returns the cause of a failure to write, and its remedy.

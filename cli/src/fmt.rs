@@ -32,8 +32,7 @@ pub(crate) fn fmt(arguments: &Fmt, json: bool) -> Result<(), Failure> {
         if json && (check || !is_piped(file)) {
             let mut out = Output::lines();
             let row = Row { file: file.to_string_lossy(), check, outcome };
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
             out.flush()?;
         }
     }
@@ -94,6 +93,7 @@ fn format_file(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure>
             writeln!(out, "{}", source.name)?;
             out.flush()?;
         }
+        // Also text that is formatted already: the reader of the pipe expects it all.
         (_, false) if piped => {
             let mut out = Output::bytes();
             out.write_all(formatted.as_bytes())?;

@@ -2,7 +2,7 @@
 
 use crate::arguments::Import;
 use crate::failure::Failure;
-use crate::output::{Output, write_file};
+use crate::output::{Output, unreadable, write_file};
 use crate::progress::Progress;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -60,8 +60,8 @@ pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure
         let target = if arguments.list {
             Target::List { prove: false }
         } else {
-            let stem = || PathBuf::from(file.file_stem().unwrap_or_default());
-            Target::Folder(arguments.output.clone().unwrap_or_else(stem))
+            let output = arguments.output.clone();
+            Target::Folder(output.unwrap_or_else(|| file.file_stem().unwrap_or_default().into()))
         };
         left_out += Run { file, only, target, json }.library(&mut out)?;
     }
@@ -96,6 +96,7 @@ impl Run<'_> {
         let tools = self.wanted(&library)?;
         let mut left_out = 0;
         let mut written = Vec::new();
+        // A single tool that was asked for says nothing about the others.
         if self.only.is_none() {
             for skipped in library.skipped() {
                 self.skip(out, &skipped.name, &skipped.reason)?;
@@ -147,25 +148,22 @@ impl Run<'_> {
         let entry = &tool.entry;
         let notes: Vec<String> = entry.notes.iter().map(ToString::to_string).collect();
         if self.json {
-            return row(
-                out,
-                &Row {
-                    source: self.file.display().to_string(),
-                    file: Some(tool.path()),
-                    number: entry.number,
-                    kind: Some(&entry.kind),
-                    title: &entry.title,
-                    unit: Some(entry.unit.symbol()),
-                    diameter: entry.diameter(),
-                    flute_length: entry.flute_length(),
-                    length: entry.length(),
-                    stickout: entry.stickout,
-                    holder: entry.holder(),
-                    proved,
-                    notes,
-                    left_out: None,
-                },
-            );
+            return out.json(&Row {
+                source: self.file.display().to_string(),
+                file: Some(tool.path()),
+                number: entry.number,
+                kind: Some(&entry.kind),
+                title: &entry.title,
+                unit: Some(entry.unit.symbol()),
+                diameter: entry.diameter(),
+                flute_length: entry.flute_length(),
+                length: entry.length(),
+                stickout: entry.stickout,
+                holder: entry.holder(),
+                proved,
+                notes,
+                left_out: None,
+            });
         }
         line(
             out,
@@ -194,15 +192,12 @@ impl Run<'_> {
 
     fn skip(&self, out: &mut Output, name: &str, reason: &str) -> Result<(), Failure> {
         if self.json {
-            return row(
-                out,
-                &Row {
-                    source: self.file.display().to_string(),
-                    title: name,
-                    left_out: Some(reason),
-                    ..Row::default()
-                },
-            );
+            return out.json(&Row {
+                source: self.file.display().to_string(),
+                title: name,
+                left_out: Some(reason),
+                ..Row::default()
+            });
         }
         message!("left out: {}: {reason}", Escaped(name));
         Ok(())
@@ -225,11 +220,6 @@ fn line(out: &mut Output, cells: [&str; 10]) -> Result<(), Failure> {
 /// Formats a length of the table.
 fn length(length: Option<f64>) -> String {
     length.map_or_else(|| "-".to_owned(), |length| format!("{}", (length * 1e4).round() / 1e4))
-}
-
-fn row(out: &mut Output, row: &Row<'_>) -> Result<(), Failure> {
-    serde_json::to_writer(&mut *out, row)?;
-    Ok(writeln!(out)?)
 }
 
 /// Returns the tool of a library by its name or number.
@@ -264,6 +254,7 @@ fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> 
     for tool in tools {
         let Some(number) = tool.entry.number else { continue };
         let files = numbers.entry(format!("T{number}")).or_default();
+        // A second import of the library lists each file once.
         if !files.contains(&tool.path()) {
             files.push(tool.path());
         }
@@ -280,14 +271,14 @@ fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), Failure> 
 
 fn read_numbers(folder: &Path) -> Result<Numbers, Failure> {
     let file = folder.join(NUMBERS);
-    let name = || file.display().to_string();
     match std::fs::read_to_string(&file) {
         Ok(text) => toml::from_str(&text).map_err(|error| Failure::Numbers {
-            file: name(),
+            file: file.display().to_string(),
             message: error.message().to_owned(),
         }),
+        // A folder of tools without numbers has no list.
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Numbers::new()),
-        Err(source) => Err(Failure::Unreadable { file: name(), source }),
+        Err(source) => Err(unreadable(&file, source)),
     }
 }
 
@@ -300,6 +291,7 @@ pub(crate) fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, Fai
     if file.is_file() {
         return Ok(file);
     }
+    // A file with the tool's name goes before a number of the list.
     let file = file.with_extension("tool");
     let name = name.to_string_lossy().to_ascii_uppercase();
     match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
@@ -324,23 +316,25 @@ fn prove(tools: &[&ImportedTool], json: bool) -> Result<Vec<Proof>, Failure> {
     let files: Vec<PathBuf> = files.collect::<Result<_, _>>()?;
     let progress = Progress::steps(files.len(), "tools", json);
     let next = AtomicUsize::new(0);
-    let work = || {
-        let mut proofs = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(file) = files.get(index) else { return proofs };
-            proofs.push((index, proof(file)));
-            progress.advance(1);
-        }
-    };
     let cores = thread::available_parallelism().map_or(1, Into::into).min(files.len().max(1));
     let mut proofs: Vec<(usize, Proof)> = thread::scope(|scope| {
+        // Each takes the next open file, since the time of a proof varies with the tool.
+        let work = || {
+            let mut proofs = Vec::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(file) = files.get(index) else { return proofs };
+                proofs.push((index, proof(file)));
+                progress.advance(1);
+            }
+        };
         let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         workers
             .into_iter()
             .flat_map(|worker| worker.join().expect("a proof does not panic"))
             .collect()
     });
+    // Threads end in any order.
     proofs.sort_by_key(|(index, _)| *index);
     Ok(proofs.into_iter().map(|(_, proof)| proof).collect())
 }

@@ -56,31 +56,47 @@ impl LoadedTool {
 /// As [`LoadedTool::load`].
 pub(crate) fn compile_named(name: &OsStr, arguments: &ToolArguments) -> Result<Compiled, Failure> {
     let params = &arguments.params;
-    let compile =
-        |file: &Path| Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()));
     if let Some(library) = &arguments.library {
-        return in_library(name, library, false, compile);
+        return in_library(name, library, false, |file| compile_quietly(file, params));
     }
     if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
-        return compile(Path::new(name));
+        return compile_quietly(Path::new(name), params);
     }
+    let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
+    // Mounts are found beside the file that names them.
     let folder = tempfile::tempdir()?;
-    let mut files = sources(&built_in(&name.to_string_lossy())?.info().name).iter();
-    let mut main = None;
-    for (file, text) in &mut files {
+    for (file, text) in [(file, text)].iter().chain(mounted) {
         let file = folder.path().join(file);
         std::fs::create_dir_all(file.parent().unwrap_or(folder.path()))?;
         std::fs::write(&file, text)?;
-        main.get_or_insert(file);
     }
-    compile(&main.unwrap_or_default())
+    compile_quietly(&folder.path().join(file), params)
 }
 
-/// Returns the files of a built-in tool, with their paths relative to the library's folder: its own file, then those that
-/// it mounts. Empty if there is no such tool.
-pub(crate) fn sources(name: &str) -> &'static [(&'static str, &'static str)] {
-    let position = TOOLS.iter().position(|tool| tool.info().name == name);
-    position.map_or(&[], |position| SOURCES[position])
+/// Compiles the tool of a file. Its diagnostics are not shown.
+fn compile_quietly(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
+    Ok(compile_with_arguments(&read_source(file, params)?, &params.sources()))
+}
+
+/// The files of a built-in tool. Their paths are relative to the library's folder.
+pub(crate) struct SourceFiles {
+    pub(crate) file: &'static str,
+    pub(crate) text: &'static str,
+    /// The files that it mounts, each with its text.
+    pub(crate) mounted: &'static [(&'static str, &'static str)],
+}
+
+/// Returns the files of a built-in tool.
+///
+/// # Errors
+/// As [`built_in`].
+pub(crate) fn source_files(name: &str) -> Result<SourceFiles, Failure> {
+    let info = built_in(name)?.info();
+    let position = TOOLS.iter().position(|tool| tool.info().name == info.name);
+    let Some([(file, text), mounted @ ..]) = position.map(|position| SOURCES[position]) else {
+        unreachable!("every built-in tool has a source")
+    };
+    Ok(SourceFiles { file, text, mounted })
 }
 
 /// Reads the file of a tool of a library, or of a folder of `.tool` files. Prints what the import noted if `notes` is set.
@@ -110,12 +126,15 @@ fn in_library<R>(
 ///
 /// # Errors
 /// [`Failure::UnknownTool`], with a hint at what may be meant.
-pub(crate) fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
+fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
     tools_library::find(name).ok_or_else(|| {
-        let distance =
-            |known: &str| strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
-        let known = TOOLS.iter().map(|tool| &*tool.info().name);
-        let near = known.filter(|known| distance(known) <= 1 + name.len() / 4);
+        let near = TOOLS.iter().map(|tool| {
+            let known = &*tool.info().name;
+            let distance = strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase());
+            (distance, known)
+        });
+        // A longer name has room for more slips.
+        let near = near.filter(|(distance, _)| *distance <= 1 + name.len() / 4);
         let is_tool_file = Path::new(name).extension().is_some_and(|ending| ending == "tool");
         let hint = if is_tool_file {
             "`touchoff tools` lists them; this command takes no files".to_owned()
@@ -123,7 +142,7 @@ pub(crate) fn built_in(name: &str) -> Result<&'static dyn Tool, Failure> {
             "a tool's file ends in `.tool`: rename it".to_owned()
         } else if Path::new(name).with_extension("tool").is_file() {
             format!("did you mean the file `{}.tool`?", escaped(name))
-        } else if let Some(nearest) = near.min_by_key(|known| distance(known)) {
+        } else if let Some((_, nearest)) = near.min_by_key(|(distance, _)| *distance) {
             format!("did you mean `{nearest}`? `touchoff tools` lists them")
         } else {
             "`touchoff tools` lists them; the name of a tool's file ends in `.tool`".to_owned()
@@ -160,7 +179,7 @@ pub(crate) fn load_file(file: &Path, params: &ParamArguments) -> Result<Interpre
 /// # Errors
 /// If the file cannot be read.
 pub(crate) fn compile_file(file: &Path, params: &ParamArguments) -> Result<Compiled, Failure> {
-    let compiled = compile_with_arguments(&read_source(file, params)?, &params.sources());
+    let compiled = compile_quietly(file, params)?;
     for diagnostic in compiled.diagnostics() {
         show(diagnostic, &compiled.sources);
     }

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use anstream::{AutoStream, ColorChoice};
 use anstyle::Style;
+use serde::Serialize;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::diagnostic::Diagnostic;
@@ -44,6 +45,12 @@ impl Output {
         Output { escaped: false, ..Output::rows() }
     }
 
+    /// Writes a row as a line of JSON.
+    pub(crate) fn json(&mut self, row: &impl Serialize) -> Result<(), Failure> {
+        serde_json::to_writer(&mut *self, row)?;
+        Ok(writeln!(self)?)
+    }
+
     /// Writes a text in a style, if standard output is a terminal that shows colours; otherwise without it.
     pub(crate) fn styled(&mut self, style: Style, text: &str) -> io::Result<()> {
         if AutoStream::choice(&io::stdout()) == ColorChoice::Never {
@@ -64,8 +71,8 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let is_plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n' | b'\t');
-        if !self.escaped || bytes.iter().all(is_plain) {
+        // Most writes have nothing to escape.
+        if !self.escaped || bytes.iter().all(|byte| matches!(byte, b' '..=b'~' | b'\n' | b'\t')) {
             return open_or(self.out().write(bytes), bytes.len());
         }
         // Callers write whole characters; bytes that are not UTF-8 pass unchanged.
@@ -126,6 +133,11 @@ pub(crate) fn extension(file: &Path) -> Option<String> {
 /// Returns the last part of a path.
 pub(crate) fn file_name(file: &Path) -> String {
     file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Returns the failure to read a file.
+pub(crate) fn unreadable(file: &Path, source: io::Error) -> Failure {
+    Failure::Unreadable { file: file.display().to_string(), source }
 }
 
 /// Returns the failure to write a file.

@@ -42,14 +42,17 @@ pub(crate) enum DenseSampling {
 /// # Errors
 /// [`Failure::NoTriangles`] if the file has none.
 pub(crate) fn mesh(part: &Path, unit: Unit, what: &'static str) -> Result<Mesh, Failure> {
-    let no_mesh = || Failure::NoTriangles { file: part.display().to_string(), what };
-    if is_saved(part) {
-        return Err(no_mesh());
+    if !is_saved(part)
+        && let Geometry::Mesh(mesh) = read_geometry(part, unit)?
+    {
+        return Ok(mesh);
     }
-    match read_geometry(part, unit)? {
-        Geometry::Mesh(mesh) => Ok(mesh),
-        Geometry::Points(_) => Err(no_mesh()),
-    }
+    Err(no_triangles(part, what))
+}
+
+/// Returns the failure for a request that needs triangles.
+pub(crate) fn no_triangles(part: &Path, what: &'static str) -> Failure {
+    Failure::NoTriangles { file: part.display().to_string(), what }
 }
 
 /// Reads a file of triangles or points, and prints the findings about a mesh.
@@ -72,10 +75,9 @@ pub(crate) fn load(
     json: bool,
 ) -> Result<LoadedPart, Failure> {
     let file = arguments.part.display();
-    let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
     if is_saved(&arguments.part) {
         if arguments.sampling_error.is_some() {
-            return Err(no_mesh("--sampling-error"));
+            return Err(no_triangles(&arguments.part, "--sampling-error"));
         }
         let part = Part::open(&arguments.part)?.converted_to(arguments.unit);
         return Ok(LoadedPart { part, mesh: None, certify: None });
@@ -87,7 +89,7 @@ pub(crate) fn load(
             Ok(LoadedPart { part, mesh: Some(mesh), certify })
         }
         Geometry::Points(_) if arguments.sampling_error.is_some() => {
-            Err(no_mesh("--sampling-error"))
+            Err(no_triangles(&arguments.part, "--sampling-error"))
         }
         Geometry::Points(points) => {
             let estimated = if points.areas.is_some() {
@@ -139,12 +141,12 @@ fn sample_cloud(
     json: bool,
 ) -> Result<(Cloud, Option<f64>), Failure> {
     let PartFile { sampling: method, seed, unit, .. } = *arguments;
-    let sample = || {
-        let points = usize::try_from(arguments.points).unwrap_or(usize::MAX);
+    let points = usize::try_from(arguments.points).unwrap_or(usize::MAX);
+    let by_number = Sampling { count: points, method, seed };
+    let Some(error) = arguments.sampling_error else {
         let _progress = Progress::spinner("sampling", json);
-        Cloud::sample(mesh, Sampling { count: points, method, seed })
+        return Ok((Cloud::sample(mesh, by_number)?, None));
     };
-    let Some(error) = arguments.sampling_error else { return Ok((sample()?, None)) };
     let lipschitz = match info.map(|info| (info, info.depth.lipschitz)) {
         None => 1.0,
         Some((_, Some(lipschitz))) if lipschitz > 0.0 => lipschitz,
@@ -170,7 +172,9 @@ fn sample_cloud(
             Ok((cloud, None))
         }
         Err(CloudError::TooFine { needed, .. }) if dense == DenseSampling::Certify => {
-            let cloud = sample()?;
+            let progress = Progress::spinner("sampling", json);
+            let cloud = Cloud::sample(mesh, by_number)?;
+            drop(progress);
             message!(
                 "{reason}, and so about {needed:.0e} points: depth is certified on the triangles instead, and \
                  force is computed at {} points",
@@ -211,8 +215,7 @@ pub(crate) fn sample(arguments: &Sample, json: bool) -> Result<(), Failure> {
     let tool = loaded.as_ref().map(LoadedTool::tool);
     let output = &arguments.output;
     if !is_saved(output) {
-        let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
-        return Err(Failure::SavedName { file, better });
+        return Err(Failure::extension("a saved part ends in `.touchoff`", output, SAVED));
     }
     let LoadedPart { part, .. } =
         load(&arguments.part, tool.map(Tool::info), DenseSampling::Sample, json)?;

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::Path;
 use touchoff::Unit;
 use touchoff::tool::ToolInfo;
@@ -14,30 +15,20 @@ use touchoff_verify::{Approach, ClData, VerifyReport};
 /// If it cannot be read, or its unit, poses or cutter do not fit.
 pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<ClData, Failure> {
     let program = ClData::read(path)?;
-    check(&program, info, unit, path)?;
-    Ok(program)
-}
-
-/// Checks that a program is meant for a tool and a part in that unit.
-///
-/// # Errors
-/// If its unit, poses or cutter do not fit.
-pub(crate) fn check(
-    program: &ClData,
-    info: &ToolInfo,
-    unit: Unit,
-    path: &Path,
-) -> Result<(), Failure> {
     program.check_unit(unit)?;
     program.check_poses(info)?;
     if let Some(line) = program.check_cutter(info, unit)? {
-        message!(
-            "{}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
-            path.display(),
-            info.name
-        );
+        warn_of_cutter(&path.display(), line, info);
     }
-    Ok(())
+    Ok(program)
+}
+
+/// Warns of a cutter in a program that is not compared with the tool.
+pub(crate) fn warn_of_cutter(program: &dyn Display, line: usize, info: &ToolInfo) {
+    message!(
+        "{program}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
+        info.name
+    );
 }
 
 /// Prints the boxes of part and program, the travelled length, and the nearest approach of the tool.
@@ -45,6 +36,7 @@ pub(crate) fn print_approach(report: &VerifyReport, unit: Unit) {
     let Approach {
         part, program: tips, travel, distance, line, diameter, proved_clearance, ..
     } = report.approach;
+    // Without a motion nothing was approached.
     if report.moves == 0 {
         return;
     }
@@ -93,9 +85,4 @@ pub(crate) fn print_ignored(programs: &[ClData]) {
 /// Formats a box by its two corners.
 pub(crate) fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     format!("{} to {}", unit.format_point(&low), unit.format_point(&high))
-}
-
-/// Returns whether a machine or a control is given by its file, and not by its name.
-pub(crate) fn is_toml(name: &Path) -> bool {
-    name.extension().is_some_and(|extension| extension == "toml")
 }

@@ -27,7 +27,7 @@ impl Progress {
     }
 
     /// Returns a bar that is never shown.
-    pub(crate) fn hidden() -> Progress {
+    fn hidden() -> Progress {
         Progress(ProgressBar::hidden())
     }
 

@@ -44,6 +44,29 @@ struct Row<'a> {
     certified: Option<Certified<'a>>,
 }
 
+impl Row<'_> {
+    /// Returns a row with what a wrench tells.
+    fn of(evaluation: &Wrench, unit: Unit) -> Self {
+        Row {
+            location: 0,
+            line: 0,
+            unit: unit.symbol(),
+            contacts: evaluation.colliding,
+            depth: evaluation.depth(),
+            depth_bound: None,
+            force: evaluation.force.into(),
+            torque: evaluation.torque.into(),
+            niceness: evaluation.niceness,
+            magnitude_integral: evaluation.integral,
+            energy: evaluation.energy,
+            query_time_ns: 0,
+            law: evaluation.law.to_string(),
+            surface_depths: BTreeMap::new(),
+            certified: None,
+        }
+    }
+}
+
 /// Proved results at a pose.
 #[derive(Serialize)]
 struct Certified<'a> {
@@ -87,12 +110,12 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
     let program = program::read(&arguments.program, tool.info(), unit)?;
     let LoadedPart { part, mesh, certify } =
         part::load(&arguments.part, Some(tool.info()), DenseSampling::Certify, json)?;
+    // A sampling error that needs too many points has become a tolerance of its own; the stricter one holds.
     let certify = [arguments.certify, certify].into_iter().flatten().reduce(f64::min);
     let bvh = match (certify, &mesh) {
         (Some(tolerance), Some(mesh)) => Some((TriangleBvh::new(mesh), tolerance)),
         (Some(_), None) => {
-            let file = arguments.part.part.display().to_string();
-            return Err(Failure::NoTriangles { file, what: "--certify" });
+            return Err(part::no_triangles(&arguments.part.part, "--certify"));
         }
         (None, _) => None,
     };
@@ -113,6 +136,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
         .with_weights(arguments.weights)
         .with_centre(arguments.center.unwrap_or(Point3::origin()));
     let proved = part.tree().covering_radius().is_some_and(|cover| cover.proved);
+    // An estimated covering radius bounds nothing.
     let sampling_error = probe.sampling_error_bound().filter(|_| proved);
     let mut summary = Summary::default();
     // Rows on the same terminal show the progress themselves.
@@ -130,6 +154,7 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
             let start = Instant::now();
             let penetration = certifier.deepest(&location.pose, *tolerance);
             let ns = nanoseconds(start.elapsed());
+            // A triangle in the tool shows that some of the tool is outside the material.
             let inside = match penetration.witness {
                 Some(_) => Some(false),
                 None => certifier.is_buried(&location.pose),
@@ -140,11 +165,17 @@ pub(crate) fn run(arguments: &Run, json: bool) -> Result<(), Failure> {
         if json {
             let sampled = sampling_error.map(|sampling_error| evaluation.depth() + sampling_error);
             let proved = certified.as_ref().map(|certified| certified.certified_depth[1]);
-            let bound = [sampled, proved].into_iter().flatten().reduce(f64::min);
-            let row =
-                row((index, location.line, unit), (&evaluation, bound), ns, surfaces, certified);
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            let row = Row {
+                location: index,
+                line: location.line,
+                // Both hold, so the lower one does.
+                depth_bound: [sampled, proved].into_iter().flatten().reduce(f64::min),
+                query_time_ns: ns,
+                surface_depths: surfaces,
+                certified,
+                ..Row::of(&evaluation, unit)
+            };
+            out.json(&row)?;
         } else if evaluation.colliding > 0
             || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
         {
@@ -190,32 +221,6 @@ fn by_surface<'a>(contacts: &[Contact], info: &'a ToolInfo) -> BTreeMap<&'a str,
         *deepest = deepest.max(contact.depth);
     }
     surfaces
-}
-
-fn row<'a>(
-    (location, line, unit): (usize, usize, Unit),
-    (evaluation, depth_bound): (&Wrench, Option<f64>),
-    query_time_ns: u64,
-    surface_depths: BTreeMap<&'a str, f64>,
-    certified: Option<Certified<'a>>,
-) -> Row<'a> {
-    Row {
-        location,
-        line,
-        unit: unit.symbol(),
-        contacts: evaluation.colliding,
-        depth: evaluation.depth(),
-        depth_bound,
-        force: evaluation.force.into(),
-        torque: evaluation.torque.into(),
-        niceness: evaluation.niceness,
-        magnitude_integral: evaluation.integral,
-        energy: evaluation.energy,
-        query_time_ns,
-        law: evaluation.law.to_string(),
-        surface_depths,
-        certified,
-    }
 }
 
 /// Summary of the whole path.

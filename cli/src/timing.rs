@@ -19,9 +19,10 @@ impl Timing {
     /// Panics if there are no times.
     pub(crate) fn of(all: &mut [u64]) -> Timing {
         all.sort_unstable();
-        let at = |fraction: f64| all[((all.len() - 1) as f64 * fraction).round() as usize];
+        let [p50, p99, max] = [0.5, 0.99, 1.0]
+            .map(|fraction| all[((all.len() - 1) as f64 * fraction).round() as usize]);
         let sum: u64 = all.iter().sum();
-        Timing { mean: sum as f64 / all.len() as f64, p50: at(0.5), p99: at(0.99), max: at(1.0) }
+        Timing { mean: sum as f64 / all.len() as f64, p50, p99, max }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::arguments::{ParamArguments, Tools, ToolsCommand};
 use crate::failure::Failure;
 use crate::import;
-use crate::loaded_tool::{built_in, load_file, sources};
+use crate::loaded_tool::{SourceFiles, load_file, source_files};
 use crate::output::{Output, extension, unwritable, write_file};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
@@ -73,8 +73,8 @@ pub(crate) fn tools(arguments: &Tools, json: bool) -> Result<(), Failure> {
 
 /// Lists the tools in files; without files, the built-in tools.
 fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Failure> {
-    let is_library = |file: &&PathBuf| extension(file).is_some_and(|ending| ending != "tool");
-    let (libraries, files): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(is_library);
+    let (libraries, files): (Vec<&PathBuf>, Vec<&PathBuf>) =
+        files.iter().partition(|file| extension(file).is_some_and(|ending| ending != "tool"));
     let mut out = Output::lines();
     for library in &libraries {
         import::list(library, json, &mut out)?;
@@ -91,8 +91,7 @@ fn list(files: &[PathBuf], params: &ParamArguments, json: bool) -> Result<(), Fa
     };
     for info in infos {
         if json {
-            serde_json::to_writer(&mut out, &Row::of(info))?;
-            writeln!(out)?;
+            out.json(&Row::of(info))?;
         } else {
             writeln!(out, "{:<20} {:<5} {}", info.name, info.unit.symbol(), Escaped(&info.title))?;
         }
@@ -118,19 +117,16 @@ struct FileRow {
 /// Prints the source of a built-in tool. With `output`, writes it there, and the files that it mounts below the same
 /// folder.
 fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
-    // Fails with a hint if there is no such tool.
-    built_in(name)?;
-    let files @ [(_, text), mounted @ ..] = sources(name) else {
-        unreachable!("every built-in tool has a source")
-    };
+    let files = source_files(name)?;
     if let Some(output) = output {
-        return write_tool(name, output, (text, mounted));
+        return write_tool(name, output, &files);
     }
+    let SourceFiles { file, text, mounted } = files;
     let mut out = Output::bytes();
     if json {
-        let files = files.iter().map(|(file, text)| FileRow { file, text }).collect();
-        serde_json::to_writer(&mut out, &SourceRow { name, files })?;
-        writeln!(out)?;
+        let files = [(file, text)].into_iter().chain(mounted.iter().copied());
+        let files = files.map(|(file, text)| FileRow { file, text }).collect();
+        out.json(&SourceRow { name, files })?;
     } else {
         write!(out, "{text}")?;
     }
@@ -152,18 +148,14 @@ fn show(name: &str, output: Option<&Path>, json: bool) -> Result<(), Failure> {
 /// # Errors
 /// If `output` does not end in `.tool`, if a mounted file exists with other content or has the name of `output`, or if
 /// a file cannot be written.
-fn write_tool(
-    name: &str,
-    output: &Path,
-    (text, mounted): (&str, &[(&str, &str)]),
-) -> Result<(), Failure> {
+fn write_tool(name: &str, output: &Path, files: &SourceFiles) -> Result<(), Failure> {
     if extension(output).as_deref() != Some("tool") {
-        let file = output.display().to_string();
-        return Err(Failure::ToolFormat { file, better: output.with_extension("tool") });
+        return Err(Failure::extension("a tool's file ends in `.tool`", output, "tool"));
     }
     let folder = output.parent().unwrap_or(Path::new(""));
-    let mounted: Vec<(PathBuf, &str)> =
-        mounted.iter().map(|(file, text)| (folder.join(file), *text)).collect();
+    let mounted = files.mounted.iter().map(|(file, text)| (folder.join(file), *text));
+    let mounted: Vec<(PathBuf, &str)> = mounted.collect();
+    // Nothing is written before it is certain that nothing is overwritten.
     for (file, text) in &mounted {
         let differs = match std::fs::read(file) {
             Ok(present) => present != text.as_bytes(),
@@ -175,17 +167,13 @@ fn write_tool(
             return Err(Failure::MountedFileExists { file, name });
         }
     }
-    let create_folder_of = |file: &Path| {
+    // The tool comes last: once it is there, so is all that it mounts.
+    let tool = (output.to_owned(), files.text);
+    for (file, text) in mounted.iter().chain([&tool]) {
         let folder = file.parent().unwrap_or(folder);
-        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))
-    };
-    for (file, text) in &mounted {
-        create_folder_of(file)?;
+        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
         write_file(file, text)?;
         message!("{}: written", file.display());
     }
-    create_folder_of(output)?;
-    write_file(output, text)?;
-    message!("{}: written", output.display());
     Ok(())
 }

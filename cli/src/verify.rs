@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::loaded_tool::{LoadedTool, compile_named};
 use crate::output::{Output, extension, write_file};
 use crate::part;
-use crate::program::{print_approach, print_ignored};
+use crate::program::{print_approach, print_ignored, warn_of_cutter};
 use crate::progress::Progress;
 use anstyle::{AnsiColor, Style};
 use nalgebra::Point3;
@@ -14,8 +14,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use tool_dsl::Compiled;
-use touchoff::Mesh;
 use touchoff::certify::TriangleBvh;
+use touchoff::{Mesh, Unit};
 use touchoff_verify::job::{
     Body, CutStock, JobStock, JobTools, NO_INSIDE, NamedTool, Severity, StockEntry, StockShape,
     UsedTool,
@@ -36,6 +36,13 @@ pub(crate) struct LoadedBody {
 }
 
 impl LoadedBody {
+    /// Reads a body that moves with the workpiece.
+    fn read(name: &str, file: &Path, unit: Unit) -> Result<LoadedBody, Failure> {
+        let mesh = part::mesh(file, unit, "verify")?;
+        let bvh = TriangleBvh::new(&mesh);
+        Ok(LoadedBody { name: name.to_owned(), mesh, bvh, link: None, margin: None })
+    }
+
     /// Returns whether it moves with another axis than the workpiece. The tool's poses at it are then in its own frame.
     pub(crate) fn has_own_frame(&self) -> bool {
         self.link.is_some()
@@ -44,7 +51,7 @@ impl LoadedBody {
 
 /// A tool that the program uses, loaded.
 pub(crate) struct ProgramTool {
-    pub(crate) used: UsedTool,
+    used: UsedTool,
     loaded: LoadedTool,
 }
 
@@ -83,11 +90,7 @@ impl Inputs {
         for ProgramTool { used, loaded } in &tools {
             let info = loaded.tool().info();
             if let Some(line) = program.check_tool(used.motions, info, file.unit)? {
-                message!(
-                    "{}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
-                    program.name(),
-                    info.name
-                );
+                warn_of_cutter(&program.name(), line, info);
             }
         }
         let bodies = bodies(&file, &program)?;
@@ -142,6 +145,7 @@ pub(crate) fn job_file(
             return Err(Failure::MeshForJob { file: file.display().to_string() });
         }
         let mut job = JobFile::read(&file)?;
+        // Options go before the file; leniency holds if either states it.
         job.control = options.control.or(job.control);
         job.resolution = options.resolution.or(job.resolution);
         job.surface_only |= options.surface_only;
@@ -188,13 +192,9 @@ pub(crate) fn job_file(
 
 /// Reads the part and the fixtures.
 fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure> {
-    let read = |name: &str, path: &Path, link: Option<usize>, margin: Option<f64>| {
-        let mesh = part::mesh(path, file.unit, "verify")?;
-        let bvh = TriangleBvh::new(&mesh);
-        Ok::<_, Failure>(LoadedBody { name: name.to_owned(), mesh, bvh, link, margin })
-    };
-    let mut bodies = vec![read(touchoff_verify::job::PART, &file.part, None, None)?];
+    let mut bodies = vec![LoadedBody::read(touchoff_verify::job::PART, &file.part, file.unit)?];
     for fixture in &file.fixtures {
+        // NaN is in no range.
         if !(0.0..f64::INFINITY).contains(&fixture.margin) {
             return Err(Failure::Usage("the margin of a fixture is a length of 0 or more"));
         }
@@ -202,7 +202,8 @@ fn bodies(file: &JobFile, program: &Program) -> Result<Vec<LoadedBody>, Failure>
             None => None,
             Some(axis) => program.link(axis)?,
         };
-        bodies.push(read(&fixture.name, &fixture.mesh, link, Some(fixture.margin))?);
+        let body = LoadedBody::read(&fixture.name, &fixture.mesh, file.unit)?;
+        bodies.push(LoadedBody { link, margin: Some(fixture.margin), ..body });
     }
     Ok(bodies)
 }
@@ -234,8 +235,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let mut out = Output::rows();
     for finding in report.findings() {
         if json {
-            serde_json::to_writer(&mut out, &report.row(finding))?;
-            writeln!(out)?;
+            out.json(&report.row(finding))?;
         } else {
             let place = format!("{}:{}:", inputs.program.name(), finding.line);
             out.styled(style(finding.severity), &place)?;
@@ -244,8 +244,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     }
     if json {
         for row in report.gap_rows() {
-            serde_json::to_writer(&mut out, &row)?;
-            writeln!(out)?;
+            out.json(&row)?;
         }
     }
     out.flush()?;
@@ -284,6 +283,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
         message!("not verified: {reason}");
     }
     let unit = inputs.file.unit;
+    // Once per tool: at every body and in every reading it goes the same way.
     for pair in report.pairs.iter().filter(|pair| pair.body == 0 && pair.reading == 0) {
         print_approach(&pair.report, unit);
     }
@@ -297,6 +297,7 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
             }
         }
     }
+    // Gaps that are open and not accepted are among the refusals.
     for gap in report.gaps.iter().filter(|gap| !gap.is_open || inputs.file.anyway) {
         message!("not checked: {gap}");
     }

@@ -21,6 +21,7 @@ const VIRIDIS: [[u8; 3]; 11] = [
 pub fn colormap(part: f64) -> [u8; 3] {
     let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
     let position = part * (VIRIDIS.len() - 1) as f64;
+    // The brightest value is the end of the last step, not the start of another.
     let index = (position as usize).min(VIRIDIS.len() - 2);
     let fraction = position - index as f64;
     [0, 1, 2].map(|k| {

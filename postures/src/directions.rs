@@ -20,8 +20,10 @@ impl Directions {
     /// González, *Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices*, 2010).
     pub fn spread(hemisphere: usize) -> Directions {
         let count = 2 * hemisphere.min(Directions::MAX_HEMISPHERE);
+        // The golden angle: neighbours on the spiral never line up from turn to turn.
         let golden = PI * (3.0 - 5f64.sqrt());
         let list = (0..count).map(|k| {
+            // In the middles of layers of equal height, which cut equal areas from the sphere (Archimedes).
             let up = 1.0 - (2 * k + 1) as f64 / count as f64;
             let out = (1.0 - up * up).sqrt();
             let (sine, cosine) = (golden * k as f64).sin_cos();
@@ -78,6 +80,7 @@ impl From<Vec<[f64; 3]>> for Directions {
         let by_angle = vectors.iter().map(|direction| {
             let mut others: Vec<(f64, u16)> =
                 vectors.iter().zip(0..).map(|(other, k)| (-direction.dot(other), k)).collect();
+            // Descending cosines; ties by index, so that the order is the same everywhere.
             others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             others.into_iter().map(|(_, other)| other).collect()
         });

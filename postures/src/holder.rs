@@ -32,11 +32,8 @@ impl Holder {
     /// Creates the holder of a tool, or returns `None` if it has none. `length` is the factor from the tool's
     /// unit of length to the part's.
     pub(crate) fn new(info: &ToolInfo, length: f64) -> Option<Holder> {
-        let mount = |segment: &ProfileSegment| {
-            info.surface(segment.surface).name.split_once('.').map(|(mount, _)| mount)
-        };
-        let first = mount(info.outline.first()?)?;
-        let pieces = info.outline.iter().filter(|segment| mount(segment) != Some(first));
+        let first = mount(info, info.outline.first()?)?;
+        let pieces = info.outline.iter().filter(|segment| mount(info, segment) != Some(first));
         let corners: Vec<Corner> =
             pieces.flat_map(|segment| ring_corners(segment, length)).collect();
         let nose = corners.iter().map(|corner| corner.lowest).reduce(f64::min)?;
@@ -92,6 +89,8 @@ impl Holder {
             let radius =
                 [a, b, c].map(|corner| (corner - centroid).norm()).into_iter().fold(0.0, f64::max);
             let min_distance = ((centroid - axis * centroid.dot(axis)).norm() - radius).max(0.0);
+            // The whole triangle is taken as high as its highest corner and as near to the axis as its nearest point: more
+            // than it needs, and less so the smaller it is.
             let Some(needed) = self.height(min_distance).map(|height| high - height) else {
                 continue;
             };
@@ -114,6 +113,11 @@ impl Holder {
         }
         highest
     }
+}
+
+/// Returns the name of the component that a segment of the profile belongs to, if the tool's file mounts it.
+fn mount<'a>(info: &'a ToolInfo, segment: &ProfileSegment) -> Option<&'a str> {
+    info.surface(segment.surface).name.split_once('.').map(|(mount, _)| mount)
 }
 
 /// The lower outer corner of a ring of a holder, in the part's unit.

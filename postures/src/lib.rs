@@ -1,7 +1,6 @@
 //! Postures per triangle of a part: tool poses with a good contact and proved depth (Ho 1999, chapter 6).
 
 mod colormap;
-mod contact;
 mod directions;
 mod holder;
 mod map;

@@ -94,14 +94,20 @@ impl Piece {
 }
 
 /// Returns the halves of a triangle. Its longest edge is cut; of equal edges the first.
-pub(super) fn halves([a, b, c]: [Point3<f64>; 3]) -> [[Point3<f64>; 3]; 2] {
+fn halves([a, b, c]: [Point3<f64>; 3]) -> [[Point3<f64>; 3]; 2] {
     let turns = [[a, b, c], [b, c, a], [c, a, b]];
     let length = |[from, to, _]: &[Point3<f64>; 3]| (to - from).norm_squared();
-    let longest = |best, turn| if length(&turn) > length(&best) { turn } else { best };
-    let [from, to, tip] = turns.into_iter().fold(turns[0], longest);
-    // The sum does not depend on the order of the ends.
+    let [from, to, tip] = turns
+        .into_iter()
+        .fold(turns[0], |best, turn| if length(&turn) > length(&best) { turn } else { best });
+    // The sum does not depend on the order of the ends, so both triangles at the edge get the same point.
     let middle = center(&from, &to);
     [[from, middle, tip], [middle, to, tip]]
+}
+
+/// Returns the key of a point. Equal points have the same: the sum turns -0 into +0.
+pub(super) fn key(point: Point3<f64>) -> [u64; 3] {
+    [point.x, point.y, point.z].map(|coordinate| (coordinate + 0.0).to_bits())
 }
 
 /// Returns the length of the longest edge.
@@ -113,36 +119,44 @@ pub(super) fn longest_edge([a, b, c]: [Point3<f64>; 3]) -> f64 {
 /// both of them. `inner` has every piece of which a part was judged. The result is empty if nothing covers the triangle.
 pub(super) fn tiling(
     whole: Piece,
-    is_judged: &impl Fn(Piece) -> bool,
+    is_judged: impl Fn(Piece) -> bool,
     inner: &HashSet<Piece>,
 ) -> Vec<Piece> {
+    let mut tiling = Tiling { is_judged, inner, pieces: Vec::new() };
+    tiling.cover(whole);
+    tiling.pieces
+}
+
+/// The search for the pieces that cover a triangle.
+struct Tiling<'a, F> {
+    is_judged: F,
+    inner: &'a HashSet<Piece>,
+    pieces: Vec<Piece>,
+}
+
+impl<F: Fn(Piece) -> bool> Tiling<'_, F> {
     /// Appends the pieces that cover a piece; returns whether there are any.
-    fn cover(
-        piece: Piece,
-        (is_judged, inner): (&impl Fn(Piece) -> bool, &HashSet<Piece>),
-        pieces: &mut Vec<Piece>,
-    ) -> bool {
-        let known = pieces.len();
-        if inner.contains(&piece)
+    fn cover(&mut self, piece: Piece) -> bool {
+        let known = self.pieces.len();
+        if self.inner.contains(&piece)
             && let Some([one, other]) = piece.halves()
         {
-            if cover(one, (is_judged, inner), pieces) && cover(other, (is_judged, inner), pieces) {
+            if self.cover(one) && self.cover(other) {
                 return true;
             }
-            pieces.truncate(known);
+            // At most one half is covered, so the piece itself has to serve.
+            self.pieces.truncate(known);
         }
-        let judged = is_judged(piece);
-        pieces.extend(judged.then_some(piece));
-        judged
+        let is_judged = (self.is_judged)(piece);
+        self.pieces.extend(is_judged.then_some(piece));
+        is_judged
     }
-    let mut pieces = Vec::new();
-    cover(whole, (is_judged, inner), &mut pieces);
-    pieces
 }
 
 /// Adds all pieces that contain a piece to a set.
 pub(super) fn add_ancestors(piece: Piece, inner: &mut HashSet<Piece>) {
     let mut next = piece.parent();
+    // A piece that is there already has all its ancestors there.
     while let Some(piece) = next
         && inner.insert(piece)
     {
@@ -217,7 +231,7 @@ mod tests {
         let tiles = |judged: &[Piece]| {
             let mut inner = HashSet::new();
             judged.iter().for_each(|piece| add_ancestors(*piece, &mut inner));
-            tiling(whole, &|piece| judged.contains(&piece), &inner)
+            tiling(whole, |piece| judged.contains(&piece), &inner)
         };
         assert_eq!(tiles(&[]), []);
         assert_eq!(tiles(&[whole]), [whole]);

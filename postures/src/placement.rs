@@ -1,8 +1,9 @@
-//! Placement of a tool at a point of a part: the position of its tip, and the niceness of the contact.
+//! Placement of a tool at a point of a part: the points of its cutting profile that can touch a face, the position of its
+//! tip, and the niceness of the contact.
 
-use super::contact::ContactSites;
 use nalgebra::{Point3, Vector3};
-use touchoff::tool::{Evaluations, Outputs, PointBatch};
+use std::f64::consts::PI;
+use touchoff::tool::{Circle, Evaluations, Outputs, PointBatch, ProfileSegment, ToolInfo};
 use touchoff::{Level, Tool, Unit};
 
 /// A point of contact on the part's surface.
@@ -71,6 +72,7 @@ impl<'a> ToolPlacement<'a> {
         }
         let outputs = Outputs { niceness: true, ..Outputs::INSIDE };
         self.tool.evaluate(Level::new(), outputs, &self.points, self.length, &mut self.evaluations);
+        // Each contact has two points, one per surface that touches; the less nice of them counts.
         for index in self.evaluations.inside_indices() {
             let niceness = &mut postures[index / 2].niceness;
             *niceness = niceness.min(self.evaluations.niceness[index]);
@@ -80,37 +82,185 @@ impl<'a> ToolPlacement<'a> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Sites of the profile where a cutting surface is convex: arcs with their normals, and corners with the
+/// normals along which they may be touched.
+#[derive(Clone, Debug)]
+struct ContactSites {
+    sites: Vec<ContactSite>,
+    /// Size of the tool, in the part's unit.
+    size: f64,
+}
 
-    touchoff::tool! {
-        tool Flat "two surfaces that meet in a sharp corner" {
-            units mm;
-            profile {
-                start (0, 0);
-                line to (6, 0) as face cutting;
-                line to (6, 20) as flute cutting;
-                line to (6, 60), (0, 60) as shank;
+/// A contact of a tool with a face.
+struct Contact {
+    /// Position of the tip.
+    tip: Point3<f64>,
+    /// The touching point in the tool's half plane as `[d, z]`, moved slightly into the surface on either side
+    /// of it. Both surfaces touch, so the niceness of the contact is the lesser of the two.
+    within: [[f64; 2]; 2],
+}
+
+/// An arc, or a corner as an arc of radius 0. Lengths are in the part's unit.
+#[derive(Clone, Copy, Debug)]
+struct ContactSite {
+    centre: [f64; 2],
+    radius: f64,
+    /// Range of its normals' angles in the half plane, from d toward z, in radians.
+    angles: [f64; 2],
+    /// Two directions into a corner's material, nearer to the surface before it and to the surface after it. An
+    /// arc has `None`: its inward direction is the opposite of the normal.
+    inward: Option<[[f64; 2]; 2]>,
+}
+
+/// Tolerance of angles in radians, and of lengths relative to the circle or the tool; far above rounding
+/// errors.
+const TOLERANCE: f64 = 1e-9;
+
+impl ContactSites {
+    /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
+    fn new(info: &ToolInfo, length: f64) -> ContactSites {
+        let mut sites = Vec::new();
+        // The profile continues beyond the axis as its mirror image.
+        let mut previous = info.outline.first().map(|first| {
+            let [[d, z], _] = unit_tangents(first);
+            Previous { tangent: [d, -z], is_cutting: info.surface(first.surface).cutting }
+        });
+        for segment in info.outline.iter() {
+            let tangents = unit_tangents(segment);
+            let is_cutting = info.surface(segment.surface).cutting;
+            if is_cutting {
+                if let Some(Previous { tangent, is_cutting: true }) = previous {
+                    let corner = [tangent, tangents[0]];
+                    sites.extend(ContactSite::corner(segment.from, corner, length));
+                }
+                if let Some(circle) = segment.circle.filter(|circle| circle.convex) {
+                    sites.push(ContactSite::arc(circle, tangents, length));
+                }
             }
-            niceness flute: 1;
-            niceness face: 0.25 + z;
+            previous = Some(Previous { tangent: tangents[1], is_cutting });
         }
+        ContactSites { sites, size: info.size() * length }
     }
 
-    #[test]
-    fn a_corner_is_as_nice_as_the_less_nice_of_what_meets_there() {
-        let mut placement = ToolPlacement::new(&Flat, Unit::Metre);
-        let target = SurfacePoint { point: Point3::new(0.1, 0.0, 0.2), normal: Vector3::z() };
-        let axes = (1..90).map(|degrees| {
-            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
-            Vector3::new(sine, 0.0, cosine)
+    /// Returns the largest distance between the tip and a site, in the part's unit.
+    fn reach(&self) -> f64 {
+        let distances =
+            self.sites.iter().map(|site| site.centre[0].hypot(site.centre[1]) + site.radius);
+        distances.fold(0.0, f64::max)
+    }
+
+    /// Returns the contacts between a tool with the given axis and a face. The face has a point `point` and an
+    /// outward normal; the tool's outward normal at the contact is the opposite. `normal` and `axis` are unit vectors.
+    fn contacts(
+        &self,
+        point: Point3<f64>,
+        normal: Vector3<f64>,
+        axis: Vector3<f64>,
+    ) -> impl Iterator<Item = Contact> {
+        // The tool's outward normal is [out, up] in the half plane. No `out` is below 0: the angle is from -π/2 to π/2.
+        let up = -normal.dot(&axis);
+        let across = -normal - axis * up;
+        let out = across.norm();
+        let angle = up.atan2(out);
+        self.sites.iter().filter_map(move |site| {
+            let [from, to] = site.angles;
+            // The angles of a site begin anywhere from -π to π and may end a turn later, so they are compared modulo a turn.
+            let offset = (angle - from + TOLERANCE).rem_euclid(2.0 * PI) - TOLERANCE;
+            if offset > to - from + TOLERANCE {
+                return None;
+            }
+            let touched = [site.centre[0] + site.radius * out, site.centre[1] + site.radius * up];
+            // A face perpendicular to the axis leaves the radial direction undefined; only a site on the axis needs none.
+            if out < TOLERANCE && touched[0] > TOLERANCE * self.size {
+                return None;
+            }
+            let radial = if out > 0.0 { across / out } else { across };
+            let inward = site.inward.unwrap_or([[-out, -up]; 2]);
+            Some(Contact {
+                tip: point - radial * touched[0] - axis * touched[1],
+                within: inward.map(|direction| {
+                    [0, 1].map(|k| touched[k] + TOLERANCE * self.size * direction[k])
+                }),
+            })
+        })
+    }
+}
+
+impl ContactSite {
+    /// Returns the site of a corner of the profile between two unit tangents; `None` if it is not convex. `length` is
+    /// the factor from the tool's unit of length to the part's.
+    fn corner(
+        corner: [f64; 2],
+        [before, after]: [[f64; 2]; 2],
+        length: f64,
+    ) -> Option<ContactSite> {
+        let turn = cross(before, after).atan2(dot(before, after));
+        let from = normal_angle(before);
+        // The corner's material spans an angle of π less `turn` about the opposite of the mean normal. Halfway from there to
+        // a surface, a point is nearer to that surface than to the other.
+        let inward = [1.0, -1.0].map(|side| {
+            let (sine, cosine) = (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
+            [-cosine, -sine]
         });
-        let mut postures = Vec::new();
-        placement.list(target, axes, &mut postures);
-        assert_eq!(postures.len(), 89);
-        for posture in &postures {
-            assert!((posture.niceness - 0.25).abs() < 1e-6, "{posture:?}");
+        // A corner that turns the other way is concave, and no plane face touches it.
+        (turn > TOLERANCE).then(|| ContactSite {
+            centre: corner.map(|component| component * length),
+            radius: 0.0,
+            angles: [from, from + turn],
+            inward: Some(inward),
+        })
+    }
+
+    /// Returns the site of a convex arc with these unit tangents at its ends. `length` is the factor from the tool's unit
+    /// of length to the part's.
+    fn arc(circle: Circle, tangents: [[f64; 2]; 2], length: f64) -> ContactSite {
+        let [from, to] = tangents.map(normal_angle);
+        ContactSite {
+            centre: circle.centre.map(|component| component * length),
+            radius: circle.radius * length,
+            angles: [from, from + (to - from).rem_euclid(2.0 * PI)],
+            inward: None,
         }
     }
 }
+
+/// The end of the profile's segment before the one that is examined.
+struct Previous {
+    /// Unit tangent.
+    tangent: [f64; 2],
+    is_cutting: bool,
+}
+
+/// Returns the unit tangents at the beginning and the end of a profile segment.
+fn unit_tangents(segment: &ProfileSegment) -> [[f64; 2]; 2] {
+    let ends = [segment.from, segment.to];
+    let Some(Circle { centre, convex, .. }) = segment.circle else {
+        let [from, to] = ends;
+        return [unit([to[0] - from[0], to[1] - from[1]]); 2];
+    };
+    ends.map(|end| {
+        let [d, z] = unit([end[0] - centre[0], end[1] - centre[1]]);
+        if convex { [-z, d] } else { [z, -d] }
+    })
+}
+
+/// Returns the angle of the outward normal for a direction of travel with the material on its left, from -π to π.
+fn normal_angle([d, z]: [f64; 2]) -> f64 {
+    (-d).atan2(z)
+}
+
+fn unit(vector: [f64; 2]) -> [f64; 2] {
+    let length = vector[0].hypot(vector[1]);
+    vector.map(|component| component / length)
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,9 @@
 //! Data on record for a triangle.
 
 use super::Piece;
-use super::map::merge;
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::num::NonZeroU16;
 use touchoff::{Pose, PoseError};
 
@@ -89,13 +89,35 @@ impl MapRow {
         }
         joined
     }
+
+    /// Returns the fraction of a triangle's area at a piece of it, with this row, that a tool reaches; `None` if no sweep
+    /// tried the tool there.
+    pub(super) fn area_fraction(&self, piece: Piece, tool: u16) -> Option<f64> {
+        let access = self.access.iter().find(|access| access.tool == tool)?;
+        Some(if access.is_reached() { piece.fraction() } else { 0.0 })
+    }
 }
 
-/// Returns the fraction of a triangle's area that a tool reaches, by its pieces; `None` if no sweep tried it.
-pub(super) fn area_fraction(pieces: &[(Piece, MapRow)], tool: u16) -> Option<f64> {
-    let reach = |(piece, row): &(Piece, MapRow)| {
-        let access = row.access.iter().find(|access| access.tool == tool)?;
-        Some(if access.is_reached() { piece.fraction() } else { 0.0 })
-    };
-    pieces.iter().map(reach).sum()
+/// Orders the better posture first: the nicer one; of two that are equal but for rounding to `f32`, the one
+/// with more clearance; then the less deep. The remaining fields make the result independent of the order of
+/// arrival.
+fn order(one: &PostureRecord, other: &PostureRecord) -> Ordering {
+    // Rounding errors of niceness must not decide before clearance does.
+    let nicer = (other.niceness as f32).total_cmp(&(one.niceness as f32));
+    let clearer = other.clearance.total_cmp(&one.clearance);
+    let [rest, other_rest] = [one, other].map(|record| {
+        let ([x, y, z], [i, j, k]) = (record.tip, record.axis);
+        [record.depth, f64::from(record.tool), x, y, z, i, j, k, record.niceness]
+    });
+    let pairs = rest.into_iter().zip(other_rest);
+    let rest = pairs.map(|(a, b)| a.total_cmp(&b)).fold(Ordering::Equal, Ordering::then);
+    nicer.then(clearer).then(rest)
+}
+
+/// Adds postures to a list and keeps the best `keep` of them, each once, the best first.
+pub(crate) fn merge(best: &mut Vec<PostureRecord>, more: &[PostureRecord], keep: NonZeroU16) {
+    best.extend(more);
+    best.sort_by(order);
+    best.dedup_by(|one, other| order(one, other).is_eq());
+    best.truncate(keep.get().into());
 }

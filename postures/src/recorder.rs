@@ -1,10 +1,10 @@
 //! Recording of postures found by hand in the haptic loop, while it runs.
 
-use super::{MapError, PostureMap, PostureRecord, ToolFingerprint, Validator, ValidatorError};
+use super::{MapError, PostureMap, PostureRecord, Validator, ValidatorError};
 use std::fmt;
 use std::time::{Duration, Instant};
 use touchoff::certify::TriangleBvh;
-use touchoff::{Escaped, Part, Pose, Probe, Tool, TriangleId, Unit};
+use touchoff::{Part, Pose, Probe, Tool, TriangleId, Unit};
 use touchoff_haptics::{SessionState, StateStream};
 
 /// Takes the states of a running loop, and records those poses that are nice and proved acceptable.
@@ -105,10 +105,9 @@ impl<'a> Recorder<'a> {
         tool: &'a dyn Tool,
     ) -> Result<Recorder<'a>, RecorderError> {
         let (info, identity) = (tool.info(), map.identity());
-        let index = identity.tool(info).ok_or_else(|| {
-            let name = |tool: &ToolFingerprint| format!("`{}`", Escaped(&tool.name));
-            let known: Vec<String> = identity.tools.iter().map(name).collect();
-            RecorderError::Tool { tool: info.name.to_string(), known: known.join(", ") }
+        let index = identity.tool(info).ok_or_else(|| RecorderError::Tool {
+            tool: info.name.to_string(),
+            known: identity.tool_names(),
         })?;
         for unit in [part.unit(), bvh.unit()] {
             if unit != identity.part.unit {
@@ -179,11 +178,11 @@ impl<'a> Recorder<'a> {
             contacts.iter().map(|contact| contact.triangle).collect();
         touched.sort_unstable();
         touched.dedup();
-        let required_niceness = &self.required_niceness;
-        let may_improve = |triangle: &TriangleId| {
-            required_niceness.get(triangle.index()).is_none_or(|required| niceness >= *required)
-        };
-        touched.retain(may_improve);
+        // Most poses cannot improve any row, and are not worth a proof.
+        touched.retain(|triangle| {
+            let required = self.required_niceness.get(triangle.index());
+            required.is_none_or(|required| niceness >= *required)
+        });
         if touched.is_empty() || niceness < self.map.identity().rules.niceness {
             return Ok(());
         }
@@ -218,6 +217,7 @@ impl<'a> Recorder<'a> {
         }
         self.map.merge(&self.batch)?;
         self.stats.batches += 1;
+        // The rows that were merged into may require more now.
         let mut triangles: Vec<TriangleId> =
             self.batch.drain(..).map(|(triangle, _)| triangle).collect();
         triangles.sort_unstable();

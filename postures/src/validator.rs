@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use touchoff::certify::{AllowanceError, Certifier, NotCertifiable, PoseVerdict, TriangleBvh};
 use touchoff::tool::Symmetry;
-use touchoff::{Escaped, Pose, SurfaceId, Tool};
+use touchoff::{Escaped, Pose, SurfaceId, Tool, Unit};
 
 /// Rules that a posture has to meet to be accepted. Lengths are in the part's unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +56,11 @@ pub enum RulesError {
 }
 
 impl Rules {
+    /// Returns the tolerance that is taken if none is stated, 0.01 mm, in a unit.
+    pub fn default_tolerance(unit: Unit) -> f64 {
+        0.01 * Unit::Millimetre.factor_to(unit)
+    }
+
     /// Checks the rules for some tools: every surface with an allowance has to belong to at least one of them.
     ///
     /// # Errors
@@ -148,8 +153,9 @@ impl<'a> Validator<'a> {
         rules: &Rules,
     ) -> Result<Validator<'a>, ValidatorError> {
         let surfaces = &tool.info().surfaces;
-        let own = |(name, _): &&(String, f64)| surfaces.iter().any(|own| own.name == *name);
-        let allowed: Vec<(String, f64)> = rules.allowed.iter().filter(own).cloned().collect();
+        let own =
+            rules.allowed.iter().filter(|(name, _)| surfaces.iter().any(|own| own.name == *name));
+        let allowed: Vec<(String, f64)> = own.cloned().collect();
         Rules { allowed: allowed.clone(), ..*rules }.check(&[tool])?;
         let mut certifier = Certifier::new(bvh, tool)?;
         if let Symmetry::Solid { .. } = tool.info().symmetry {
@@ -159,6 +165,7 @@ impl<'a> Validator<'a> {
             let depth = if surface.cutting { rules.tolerance } else { 0.0 };
             certifier = certifier.with_allowance(&surface.name, depth)?;
         }
+        // After the defaults: the last allowance of a surface holds.
         for (surface, depth) in &allowed {
             certifier = certifier.with_allowance(surface, *depth)?;
         }
@@ -187,6 +194,7 @@ impl<'a> Validator<'a> {
         let (tip, axis) = (pose.tip().into(), pose.axis().into());
         let mut record =
             PostureRecord { tool, tip, axis, niceness, depth: 0.0, clearance: f64::INFINITY };
+        // The spin is not recorded, so the pose is proved without it.
         let recorded_pose = record.pose().ok()?;
         if !self.accepts(&recorded_pose) {
             return None;

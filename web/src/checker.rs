@@ -1,17 +1,21 @@
-//! The check of a program, for a thread of its own beside the loop.
+//! The check of a program, for a thread of its own beside the loop, and its findings as the page lists them.
 
 use crate::error::EngineError;
-use crate::findings::CheckResult;
 use crate::{part, program, tool};
 use nalgebra::UnitQuaternion;
 use self_cell::self_cell;
+use serde::Serialize;
 use std::fmt;
 use std::rc::Rc;
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::tool::Interpreted;
+use touchoff::tool::{Interpreted, ToolInfo};
 use touchoff::{Mesh, Pose, SurfaceId, Tool};
+use touchoff_verify::job::{FindingDetail, Severity};
 use touchoff_verify::machine::Machine;
-use touchoff_verify::{Job, JobTool, Move, Program, ToolSelection, VerifyError};
+use touchoff_verify::{
+    Finding, FindingGroup, FindingKind, Job, JobReport, JobTool, Move, Program, ToolSelection,
+    VerifyError,
+};
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// Tolerance of depth at a position, and of clearance, as fractions of the tool's length from its tip.
@@ -151,6 +155,7 @@ impl Checker {
 impl Checker {
     fn take_part(&mut self, mesh: &Mesh) {
         self.bvh = Some(Rc::new(TriangleBvh::new(mesh)));
+        // The motions were in the frame and the unit of the old part.
         self.judge = None;
         self.moves.clear();
     }
@@ -179,6 +184,7 @@ impl Checker {
         let program = self.program.as_ref().filter(|_| !self.moves.is_empty());
         let mut job = Job::new(program.ok_or(EngineError::NotLoaded)?, bvh);
         let mut tool = JobTool::of_all(&**tool);
+        // The page holds one tool; motions of others would be checked with the wrong one.
         tool.motions = ToolSelection::Number(self.number);
         job.tools.push(tool);
         job.tolerance = tolerance;
@@ -189,8 +195,9 @@ impl Checker {
         let (Some(judge), Some(last)) = (&mut self.judge, self.moves.len().checked_sub(1)) else {
             return Err(EngineError::NotLoaded);
         };
-        // A NaN is taken as the start.
+        // A NaN is taken as the start: `max` returns the other number.
         let position = position.max(0.0).min(last as f64);
+        // Motion `index` ends at the position of that index, so the fraction counts back from its end.
         let index = position.ceil();
         let step = &self.moves[index as usize];
         let pose = step.path.pose(1.0 - (index - position));
@@ -215,4 +222,112 @@ fn bounds(pair: &Pair, certifier: &mut Certifier<'_>, pose: &Pose) -> [f64; 6] {
     let whole = certifier.clearance(pose, coarse);
     let [others, whole] = [others.distance, whole.distance];
     [depth.low, depth.high, others.low, others.high, whole.low, whole.high]
+}
+
+/// The result of a check.
+#[derive(Debug, Serialize)]
+struct CheckResult {
+    motions: usize,
+    /// `true` if it is proved that nothing is deeper than allowed on the motions that were checked, in every reading of the program.
+    clear: bool,
+    /// `false` if the part has no inside, so that a tool wholly inside it is not found.
+    inside_known: bool,
+    /// Upper bound on the least distance between tool and part; 0 if they touch.
+    distance: f64,
+    /// `true` if the tool stays farther from the part than its diameter.
+    far: bool,
+    /// The factor by which all positions in feed, outside the part's box, would fit into it.
+    unit_factor: Option<f64>,
+    /// The findings at the part in the first reading, the worst first.
+    findings: Vec<FindingRow>,
+    /// Sentences about other violations: of the machine, and in other readings.
+    others: Vec<String>,
+    /// Sentences about what the machine does that is no violation.
+    remarks: Vec<String>,
+    /// Sentences about what allows no verdict.
+    open: Vec<String>,
+}
+
+/// A finding on consecutive motions.
+#[derive(Debug, Serialize)]
+struct FindingRow {
+    kind: &'static str,
+    surface: Option<String>,
+    /// Position of the worst in the program: the index of the cutter location before it, and the fraction of the motion.
+    at: f64,
+    /// Indices of the cutter locations at which the first and the last motion end.
+    span: [usize; 2],
+    /// Line of the worst, of the first and of the last motion.
+    lines: [usize; 3],
+    rapid: bool,
+    /// Proved bounds of depth or distance at the worst.
+    measured: Option<[f64; 2]>,
+    /// The allowed depth, or the margin.
+    limit: Option<f64>,
+    /// The point of the part, and its triangle.
+    point: Option<[f64; 3]>,
+    triangle: Option<u32>,
+}
+
+impl CheckResult {
+    /// Summarises the check of one tool at the part.
+    fn of(report: &JobReport<'_>) -> CheckResult {
+        let (mut findings, mut others, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
+        for finding in report.findings() {
+            match &finding.detail {
+                FindingDetail::Surface { pair: 0, group, .. } => {
+                    findings.push(FindingRow::of(group, report.job.tools[0].tool.info()));
+                }
+                _ => {
+                    let is_remark = finding.severity == Severity::Remark;
+                    let list = if is_remark { &mut remarks } else { &mut others };
+                    list.push(format!("line {}: {}", finding.line, finding.text));
+                }
+            }
+        }
+        let open = report.gaps.iter().filter(|gap| gap.is_open);
+        let first = &report.pairs[0].report;
+        CheckResult {
+            motions: first.motions,
+            clear: report.pairs.iter().all(|pair| pair.report.is_clear()),
+            inside_known: first.inside_known,
+            distance: first.approach.distance,
+            far: first.approach.is_far(),
+            unit_factor: first.approach.unit_factor,
+            findings,
+            others,
+            remarks,
+            open: open.map(ToString::to_string).collect(),
+        }
+    }
+}
+
+impl FindingRow {
+    fn of(group: &FindingGroup, info: &ToolInfo) -> FindingRow {
+        let Finding { location, line, rapid, time, kind, .. } = group.worst;
+        let (label, measured, limit, witness) = match kind {
+            FindingKind::Deep { allowed, depth, through, witness, .. } => {
+                let label = if through { "right through" } else { "deep" };
+                (label, Some([depth.low, depth.high]), Some(allowed), Some(witness))
+            }
+            FindingKind::Near { margin, distance, witness, .. } => {
+                ("near", Some([distance.low, distance.high]), Some(margin), Some(witness))
+            }
+            FindingKind::Inside { .. } => ("inside", None, None, None),
+            FindingKind::Undecided { .. } => ("undecided", None, None, None),
+            FindingKind::Ambiguous(_) => ("ambiguous", None, None, None),
+        };
+        FindingRow {
+            kind: label,
+            surface: kind.surface().map(|surface| info.surface(surface).name.to_string()),
+            at: (location as f64 - 1.0 + time).max(0.0),
+            span: [group.first.location, group.last.location],
+            lines: [line, group.first.line, group.last.line],
+            rapid,
+            measured,
+            limit,
+            point: witness.map(|witness| witness.point.coords.into()),
+            triangle: witness.map(|witness| witness.triangle.0),
+        }
+    }
 }

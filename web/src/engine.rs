@@ -1,11 +1,9 @@
 //! The interface to JavaScript.
 
 use crate::error::EngineError;
-use crate::hand::{self, Hand};
-use crate::outline::Triangles;
-use crate::part;
-use crate::tool;
-use crate::touch::{SurfaceContact, Touch, Touched};
+use crate::surface::{Triangles, triangles};
+use crate::touch::{Hand, SurfaceContact, Touch, Touched, pose_of};
+use crate::{part, tool};
 use serde::Serialize;
 use std::rc::Rc;
 use touchoff::tool::{Interpreted, Symmetry};
@@ -121,6 +119,7 @@ impl Engine {
     pub fn compile_tool(&mut self, name: &str, text: &str, files: &str) -> Result<String, JsError> {
         let (compiled, tool) = tool::compiled(name, text, files)?;
         if let Some(tool) = tool {
+            // The session is one of the old tool.
             self.tool = Some(Rc::new(tool));
             self.touch = None;
             self.make_triangles();
@@ -173,7 +172,8 @@ impl Engine {
     /// Fails for an invalid pose.
     #[wasm_bindgen(js_name = moveTo)]
     pub fn move_to(&mut self, pose: &[f64], cycles: f64) -> Result<(), JsError> {
-        let pose = hand::pose(pose)?;
+        let pose = pose_of(pose)?;
+        // Without a part the hand has no unit, and without a tool it is not known whether spin counts.
         if let Some((part, tool)) = self.part.as_ref().zip(self.tool.as_ref()) {
             let unit = part.unit().millimetres();
             self.hand.move_to(pose, cycles, tool.info().symmetry, unit);
@@ -222,15 +222,16 @@ impl Engine {
     /// Fails for an invalid pose.
     #[wasm_bindgen(js_name = shownContacts)]
     pub fn shown_contacts(&mut self, pose: &[f64]) -> Result<Vec<f32>, JsError> {
-        Ok(self.contacts_of(&hand::pose(pose)?))
+        Ok(self.contacts_of(&pose_of(pose)?))
     }
 
     /// Returns points, depth and least niceness by surface of the tool, as of the last [`contacts`](Engine::contacts).
     #[wasm_bindgen(js_name = surfaceContacts)]
     pub fn surface_contacts(&self) -> Vec<f64> {
-        let values =
-            |surface: &SurfaceContact| [surface.points as f64, surface.depth, surface.niceness];
-        self.surfaces.iter().flat_map(values).collect()
+        let surfaces = self.surfaces.iter();
+        surfaces
+            .flat_map(|contact| [contact.points as f64, contact.depth, contact.niceness])
+            .collect()
     }
 
     /// Returns the wrench at a pose: points in contact, force, torque, depth, niceness, integral and energy.
@@ -238,7 +239,7 @@ impl Engine {
     /// # Errors
     /// Fails for an invalid pose, and without a session.
     pub fn wrench(&mut self, pose: &[f64]) -> Result<Vec<f64>, JsError> {
-        let pose = hand::pose(pose)?;
+        let pose = pose_of(pose)?;
         let wrench = self.running()?.probe(|probe| probe.wrench(&pose));
         let [force, torque] = [wrench.force, wrench.torque];
         let niceness = wrench.niceness.unwrap_or(f64::INFINITY);
@@ -255,7 +256,7 @@ impl Engine {
     /// Fails for an invalid pose, and without a session.
     #[wasm_bindgen(js_name = contactsAt)]
     pub fn contacts_at(&mut self, pose: &[f64]) -> Result<Vec<f64>, JsError> {
-        let pose = hand::pose(pose)?;
+        let pose = pose_of(pose)?;
         Ok(self.running()?.probe(|probe| {
             let mut values = Vec::new();
             for contact in probe.contacts(&pose) {
@@ -272,6 +273,7 @@ impl Engine {
 
 impl Engine {
     fn take_mesh(&mut self, mesh: Mesh) {
+        // Points and session are those of the old part.
         self.mesh = Some(Rc::new(mesh));
         self.part = None;
         self.touch = None;
@@ -290,7 +292,7 @@ impl Engine {
     fn make_triangles(&mut self) {
         if let Some((mesh, tool)) = self.mesh.as_ref().zip(self.tool.as_ref()) {
             let scale = tool.info().unit.factor_to(mesh.unit());
-            self.triangles = tool::triangles(tool, scale);
+            self.triangles = triangles(&**tool, scale);
         }
     }
 
@@ -303,7 +305,7 @@ impl Engine {
             Symmetry::Solid { .. } => DeviceAxes::Six,
         };
         let limits = DeviceLimits { axes, ..DeviceLimits::default() };
-        self.hand = Hand::new(hand::pose(pose)?, limits);
+        self.hand = Hand::new(pose_of(pose)?, limits);
         let settings = SessionSettings {
             // From N/mm³ to N per cube of the part's unit.
             stiffness: self.stiffness * part.unit().millimetres().powi(3),
@@ -327,11 +329,12 @@ impl Engine {
     }
 
     fn held(&mut self, pose: &[f64]) -> Result<Vec<f64>, EngineError> {
-        let pose = hand::pose(pose)?;
+        let pose = pose_of(pose)?;
         let unit = self.part.as_ref().ok_or(EngineError::NotLoaded)?.unit().millimetres();
         let stiffness = self.stiffness * unit.powi(3);
         let wrench = self.running()?.probe(|probe| probe.wrench(&pose));
         let mut values = vec![0.0];
+        // Tool and hand are at one pose.
         for _ in 0..2 {
             values.extend(pose.tip().iter().chain(pose.rotation().iter()));
         }

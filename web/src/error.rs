@@ -1,6 +1,5 @@
 //! Errors that reach the page.
 
-use crate::program::MAX_MOTIONS;
 use touchoff::mesh::{GeometryError, MeshError};
 use touchoff::{CloudError, ParseUnitError, PoseError};
 use touchoff_haptics::SettingError;
@@ -43,13 +42,15 @@ pub(crate) enum EngineError {
     Verify(#[from] VerifyError),
     /// A program has more motions than the page holds.
     #[error(
-        "{name} has {motions} motions, and the page holds {MAX_MOTIONS}: check it with `touchoff verify`"
+        "{name} has {motions} motions, and the page holds {limit}: check it with `touchoff verify`"
     )]
     LongProgram {
         /// The program's file.
         name: String,
         /// The number of motions.
         motions: usize,
+        /// The greatest number that the page holds.
+        limit: usize,
     },
     /// The text of a tool that is checked has errors.
     #[error("{0} has errors: mend them in the editor, then the program is checked")]

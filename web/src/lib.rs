@@ -1,14 +1,13 @@
 //! The part of Touchoff that runs in a web page: a cycle of the haptic loop, the compiler of tools, the shapes to draw, and the
 //! check of programs.
 //!
-//! [`Engine`] and [`Checker`] are the interface to JavaScript, each for a thread of its own. Lengths are in the part's unit, forces in N, torques in N·mm. Structured
-//! results are JSON; coordinates are typed arrays.
+//! [`Engine`] and [`Checker`] are the interface to JavaScript, each for a thread of its own. Lengths are in the part's unit,
+//! forces in N, torques in N·mm. Structured results are JSON; coordinates are typed arrays.
 //!
 //! ```text
 //! STL ─▶ part ─┐
-//!              ├─▶ touch: a session and a probe ─▶ state, contacts
-//! text ─▶ tool ┘     ▲ target
-//!                    hand
+//!              ├─▶ touch: a hand, a session and a probe ─▶ state, contacts
+//! text ─▶ tool ┴─▶ surface: triangles to draw
 //!
 //! G-code, APT ─▶ program ─▶ checker ─▶ findings; depth and clearance at each position
 //! ```
@@ -18,13 +17,9 @@
 mod checker;
 mod engine;
 mod error;
-mod findings;
-mod hand;
-mod implicit;
-mod library;
-mod outline;
 mod part;
 mod program;
+mod surface;
 mod tool;
 mod touch;
 

@@ -68,11 +68,6 @@ const FLOOR: i32 = 4;
 /// Generates a plate of 40 by 30 by 10 mm with a pocket of 20 by 16 by 6 mm, in squares of 1 mm. The top is at z = 0 and
 /// the centre at x = y = 0.
 fn pocket() -> Result<Mesh, EngineError> {
-    let is_material = |cell: [i32; 3]| {
-        let in_plate = (0..3).all(|axis| (0..PLATE[axis]).contains(&cell[axis]));
-        let in_pocket = (0..2).all(|axis| POCKET[axis].contains(&cell[axis])) && cell[2] >= FLOOR;
-        in_plate && !in_pocket
-    };
     let mut vertices = Vec::new();
     let mut known = HashMap::new();
     let mut vertex = |corner: [i32; 3]| {
@@ -90,6 +85,7 @@ fn pocket() -> Result<Mesh, EngineError> {
         for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
             let mut neighbour = cell;
             neighbour[axis] += 2 * side - 1;
+            // Only a face between material and air is part of the surface.
             if !is_material(cell) || is_material(neighbour) {
                 continue;
             }
@@ -111,6 +107,12 @@ fn pocket() -> Result<Mesh, EngineError> {
         }
     }
     Ok(Mesh::new(vertices, triangles, Unit::Millimetre)?)
+}
+
+fn is_material(cell: [i32; 3]) -> bool {
+    let in_plate = (0..3).all(|axis| (0..PLATE[axis]).contains(&cell[axis]));
+    let in_pocket = (0..2).all(|axis| POCKET[axis].contains(&cell[axis])) && cell[2] >= FLOOR;
+    in_plate && !in_pocket
 }
 
 #[cfg(test)]

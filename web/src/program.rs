@@ -9,7 +9,7 @@ use touchoff_verify::machine::Machine;
 use touchoff_verify::{Move, Program, ToolSelection};
 
 /// Greatest number of motions that the page holds in memory.
-pub(crate) const MAX_MOTIONS: usize = 200_000;
+const MAX_MOTIONS: usize = 200_000;
 
 /// The facts about a program that the page shows before it is checked.
 #[derive(Debug, Serialize)]
@@ -44,7 +44,8 @@ pub(crate) fn read(bytes: &[u8], name: &str, machine: &str) -> Result<Program, E
     let program = Program::parse(bytes, name, machine, &ControlSetup::default())?;
     let motions = program.tools().iter().map(|tool| tool.motions).sum();
     if motions > MAX_MOTIONS {
-        return Err(EngineError::LongProgram { name: name.to_owned(), motions });
+        let name = name.to_owned();
+        return Err(EngineError::LongProgram { name, motions, limit: MAX_MOTIONS });
     }
     Ok(program)
 }

@@ -1,11 +1,10 @@
-//! Tools: compiled from text, with diagnostics where the editor shows them, a drawing, and triangles.
+//! Tools: the library's texts, and tools compiled from text, with diagnostics where the editor shows them, and a drawing.
 
 use crate::error::EngineError;
-use crate::outline::Triangles;
-use crate::{implicit, library, outline};
+use include_dir::{Dir, DirEntry, include_dir};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tool_drawing::{Content, TextRendering, svg};
 use tool_dsl::compile;
@@ -13,6 +12,8 @@ use tool_dsl::diagnostic::{Diagnostic, Severity};
 use tool_dsl::source::{Source, Sources, Span};
 use touchoff::Tool;
 use touchoff::tool::{Interpreted, Symmetry};
+
+static TOOLS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../tools-library/tools");
 
 /// A tool of the library.
 #[derive(Debug, Serialize)]
@@ -63,15 +64,35 @@ struct Shown {
     file: Option<String>,
 }
 
+/// Returns the texts of all files of the library, holders included, by path.
+fn library_files() -> BTreeMap<PathBuf, String> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![&TOOLS];
+    while let Some(folder) = folders.pop() {
+        for entry in folder.entries() {
+            match entry {
+                DirEntry::Dir(folder) => folders.push(folder),
+                DirEntry::File(file) => {
+                    let text = file.contents_utf8().unwrap_or_default();
+                    files.insert(file.path().to_owned(), text.to_owned());
+                }
+            }
+        }
+    }
+    files
+}
+
 /// Lists the tools of the library, by file.
 pub(crate) fn library() -> Vec<LibraryTool> {
-    let files = library::files();
+    let files = library_files();
+    // Files in folders are holders, which are only mounted.
     let own = files.iter().filter(|(path, _)| path.components().count() == 1);
     let listed = own.map(|(path, text)| {
-        let mut head = text
+        // The head has both; nothing is compiled for a list.
+        let head = text
             .lines()
-            .find(|line| ["tool ", "solid "].iter().any(|keyword| line.starts_with(keyword)));
-        let head = head.take().unwrap_or_default();
+            .find(|line| ["tool ", "solid "].iter().any(|keyword| line.starts_with(keyword)))
+            .unwrap_or_default();
         LibraryTool {
             file: path.display().to_string(),
             name: head.split_whitespace().nth(1).unwrap_or_default().to_owned(),
@@ -86,8 +107,8 @@ pub(crate) fn library() -> Vec<LibraryTool> {
 /// # Errors
 /// Fails if the library has no such file.
 pub(crate) fn library_text(file: &str) -> Result<String, EngineError> {
-    let unknown = || EngineError::UnknownTool(file.to_owned());
-    library::files().remove(&PathBuf::from(file)).ok_or_else(unknown)
+    let text = library_files().remove(Path::new(file));
+    text.ok_or_else(|| EngineError::UnknownTool(file.to_owned()))
 }
 
 /// Compiles a text. It can mount the library's files and those given, which are a JSON object from path to text. Returns
@@ -101,18 +122,15 @@ pub(crate) fn compiled(
     files: &str,
 ) -> Result<(CompiledTool, Option<Interpreted>), EngineError> {
     let given: BTreeMap<PathBuf, String> = serde_json::from_str(files)?;
-    let mut all = library::files();
+    let mut all = library_files();
     all.extend(given);
     let source = Source::new(name, text).with_path(name).with_files(Arc::new(all));
     let compiled = compile(&source);
     let diagnostics = compiled.diagnostics().iter().map(|one| shown(one, &compiled.sources));
     let diagnostics = diagnostics.collect();
-    let facts = compiled.tool().map(|tool| svg(tool, Content::Outline, TextRendering::Strokes));
-    let interpreted = match facts {
-        Some(_) => Interpreted::parse(&source).ok(),
-        None => None,
-    };
-    let facts = facts.zip(interpreted.as_ref()).map(|(svg, tool)| facts_of(tool, svg));
+    let drawing = compiled.tool().map(|tool| svg(tool, Content::Outline, TextRendering::Strokes));
+    let interpreted = drawing.as_ref().and_then(|_| Interpreted::parse(&source).ok());
+    let facts = drawing.zip(interpreted.as_ref()).map(|(svg, tool)| facts_of(tool, svg));
     Ok((CompiledTool { tool: facts, diagnostics }, interpreted))
 }
 
@@ -137,11 +155,11 @@ fn shown(diagnostic: &Diagnostic, sources: &Sources) -> Shown {
     let (source, Span { start, end }) = sources.locate(diagnostic.span);
     let main = sources.main();
     let is_main = std::ptr::eq(source, main);
-    let units = |offset: usize| {
+    // The editor counts in UTF-16 units, as JavaScript does.
+    let [from, to] = [start, end].map(|offset| {
         let offset = main.text.floor_char_boundary(offset.min(main.text.len()));
-        main.text[..offset].encode_utf16().count()
-    };
-    let (from, to) = if is_main { (units(start), units(end)) } else { (0, 0) };
+        if is_main { main.text[..offset].encode_utf16().count() } else { 0 }
+    });
     Shown {
         severity: match diagnostic.severity {
             Severity::Error => "error",
@@ -154,13 +172,5 @@ fn shown(diagnostic: &Diagnostic, sources: &Sources) -> Shown {
         from,
         to,
         file: (!is_main).then(|| source.name.clone()),
-    }
-}
-
-/// Returns the triangles of a tool's surface; lengths are multiplied by `scale`.
-pub(crate) fn triangles(tool: &Interpreted, scale: f64) -> Triangles {
-    match tool.info().outline.is_empty() {
-        true => implicit::surface(tool, scale),
-        false => outline::revolve(tool.info(), scale),
     }
 }

@@ -78,8 +78,8 @@ fn whole(text: &str, range: RangeInclusive<u64>) -> Result<u64, String> {
 
 /// Parses a finite length of 0 or more.
 pub(super) fn length(text: &str) -> Result<f64, String> {
-    let is_valid = |value: f64| value >= 0.0 && value.is_finite();
-    number_if(is_valid, text, "give a finite length of 0 or more, such as 0.01")
+    let remedy = "give a finite length of 0 or more, such as 0.01";
+    number_if(|value| value >= 0.0 && value.is_finite(), text, remedy)
 }
 
 /// Parses a finite length above 0.
@@ -94,8 +94,8 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 /// Parses a largest tilt in degrees.
 pub(super) fn tilt(text: &str) -> Result<f64, String> {
-    let is_valid = |value: f64| value > 0.0 && value <= 180.0;
-    number_if(is_valid, text, "give an angle in degrees above 0 and up to 180, such as 90")
+    let remedy = "give an angle in degrees above 0 and up to 180, such as 90";
+    number_if(|value| value > 0.0 && value <= 180.0, text, remedy)
 }
 
 /// Parses the number of a tool.
@@ -110,8 +110,8 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 
 /// Parses a rate in Hz, from 1 to 100000.
 pub(super) fn rate(text: &str) -> Result<f64, String> {
-    let is_valid = |value: f64| (1.0..=100_000.0).contains(&value);
-    number_if(is_valid, text, "give a rate of 1 to 100000 cycles per second")
+    let remedy = "give a rate of 1 to 100000 cycles per second";
+    number_if(|value| (1.0..=100_000.0).contains(&value), text, remedy)
 }
 
 /// Parses a surface and its allowance, `SURFACE=LENGTH`.

@@ -21,8 +21,8 @@ use touchoff::tool::{Symmetry, ToolInfo};
 use touchoff::{Part, Pose, Probe, Tool, Unit};
 use touchoff_haptics::{
     Coupling, Device, DeviceAxes, DeviceLimits, LoopReport, MonotonicClock, PlaybackDevice,
-    Realtime, Rendering, Session, SessionSettings, SessionState, SimulatedHand, StatePublisher,
-    Tremor, check_core, state_channel,
+    Realtime, Rendering, Session, SessionSettings, SessionState, SimulatedHand, Tremor, check_core,
+    state_channel,
 };
 use touchoff_postures::Recorder;
 
@@ -55,8 +55,7 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
             Some((map_of(file, mesh, &arguments.part.part, tool)?, TriangleBvh::new(mesh)))
         }
         (Some(_), None) => {
-            let file = arguments.part.part.display().to_string();
-            return Err(Failure::NoTriangles { file, what: "--postures" });
+            return Err(part::no_triangles(&arguments.part.part, "--postures"));
         }
     };
     let part = loaded.part;
@@ -76,6 +75,7 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
     let start = above(&part, tool.info(), unit);
     // At least one cycle is run, however short the duration.
     let cycles = (arguments.duration * arguments.rate).round().max(1.0) as u64;
+    let run = HapticRun { arguments, json, cycles, part: &part, tool };
     match arguments.device {
         DeviceKind::Hand => {
             let motion = pressing(start, unit);
@@ -83,15 +83,15 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
             let hand = SimulatedHand::new(limits, arguments.rate, motion)?
                 .with_centre(Point3::origin(), unit)?
                 .with_tremor(&tremor)?;
-            drive(hand, (arguments, json, cycles), (&part, tool), recordings)
+            run.drive(hand, recordings)
         }
         DeviceKind::Playback => {
             let file =
                 program.ok_or(Failure::Usage("`--device playback` plays `--program FILE`"))?;
             let program = program::read(file, tool.info(), unit)?;
             let poses: Vec<Pose> = program.locations.iter().map(|location| location.pose).collect();
-            let device = PlaybackDevice::new(poses, cycles, limits).map_err(Failure::Motion)?;
-            drive(device, (arguments, json, cycles), (&part, tool), recordings)
+            let device = PlaybackDevice::new(poses, cycles, limits)?;
+            run.drive(device, recordings)
         }
         #[cfg(not(unix))]
         DeviceKind::Spacenav => Err(Failure::Usage(
@@ -103,7 +103,7 @@ pub(crate) fn haptic(arguments: &Haptic, json: bool) -> Result<(), Failure> {
             let gains = SpeedGains { linear: 100.0, angular: 1.0 };
             let mouse = Spacenav::open(Path::new(SOCKET), start, unit, arguments.rate, gains)
                 .map_err(|source| Failure::Spacenav { socket: SOCKET, source })?;
-            drive(mouse, (arguments, json, cycles), (&part, tool), recordings)
+            run.drive(mouse, recordings)
         }
     }
 }
@@ -138,61 +138,74 @@ fn pressing(start: Pose, unit: Unit) -> impl FnMut(f64) -> Pose {
     }
 }
 
-/// Runs the loop in a thread of its own, and monitors it from this one.
-fn drive(
-    mut device: impl Device + Send,
-    (arguments, json, cycles): (&Haptic, bool, u64),
-    (part, tool): (&Part, &dyn Tool),
-    mut recordings: Recordings<'_>,
-) -> Result<(), Failure> {
-    let limits = device.limits();
-    let rendering = match arguments.direct {
-        true => Rendering::Direct { scaled: true, damping: 0.0 },
-        false => Rendering::Coupled(Coupling::of(&limits)),
-    };
-    let settings = SessionSettings {
-        stiffness: arguments.stiffness,
-        rendering: Some(rendering),
-        ..SessionSettings::new(arguments.rate)
-    };
-    let probe = Probe::new(part, tool).with_law(arguments.law);
-    // Created before memory is locked, so that a lock which has no room for it is refused and reported.
-    let mut session = Session::new(probe, &settings, limits)?;
-    let (mut publisher, mut latest, mut states) = state_channel(STATE_BUFFER);
-    let stop = stopped_by_signals();
-    let mut run_loop = |publisher: &mut StatePublisher| {
-        let realtime = Realtime {
-            priority: arguments.realtime.then_some(80),
-            core: arguments.core,
-            locked: arguments.realtime,
+/// A session of the loop: a tool at a part, for some cycles.
+struct HapticRun<'a> {
+    arguments: &'a Haptic,
+    json: bool,
+    cycles: u64,
+    part: &'a Part,
+    tool: &'a dyn Tool,
+}
+
+impl HapticRun<'_> {
+    /// Runs the loop in a thread of its own, and monitors it from this one.
+    fn drive(
+        self,
+        mut device: impl Device + Send,
+        mut recordings: Recordings<'_>,
+    ) -> Result<(), Failure> {
+        let HapticRun { arguments, json, cycles, part, tool } = self;
+        let limits = device.limits();
+        let rendering = match arguments.direct {
+            true => Rendering::Direct { scaled: true, damping: 0.0 },
+            false => Rendering::Coupled(Coupling::of(&limits)),
         };
-        for error in realtime.apply() {
-            message!("{error}");
-        }
-        let clock = &mut MonotonicClock::new(Duration::from_micros(arguments.spin));
-        session.run(&mut device, clock, cycles, publisher, &stop)
-    };
-    let report = std::thread::scope(|scope| {
-        let looped = scope.spawn(|| run_loop(&mut publisher));
-        let mut shown = 0;
-        while !looped.is_finished() {
-            std::thread::sleep(Duration::from_millis(20));
-            recordings.take(&mut states);
-            if !json
-                && let Some(state) = latest.read()
-                && state.cycle >= shown
-            {
-                shown = state.cycle + (arguments.rate / STATUS_RATE) as u64;
-                show(state, arguments.rate);
+        let settings = SessionSettings {
+            stiffness: arguments.stiffness,
+            rendering: Some(rendering),
+            ..SessionSettings::new(arguments.rate)
+        };
+        let probe = Probe::new(part, tool).with_law(arguments.law);
+        // Created before memory is locked, so that a lock which has no room for it is refused and reported.
+        let mut session = Session::new(probe, &settings, limits)?;
+        let (mut publisher, mut latest, mut states) = state_channel(STATE_BUFFER);
+        let stop = stopped_by_signals();
+        let report = std::thread::scope(|scope| {
+            let looped = scope.spawn(|| {
+                // Priority and core are the thread's own, so they are set in it.
+                let realtime = Realtime {
+                    priority: arguments.realtime.then_some(80),
+                    core: arguments.core,
+                    locked: arguments.realtime,
+                };
+                for error in realtime.apply() {
+                    message!("{error}");
+                }
+                let clock = &mut MonotonicClock::new(Duration::from_micros(arguments.spin));
+                session.run(&mut device, clock, cycles, &mut publisher, &stop)
+            });
+            let mut shown = 0;
+            while !looped.is_finished() {
+                std::thread::sleep(Duration::from_millis(20));
+                recordings.take(&mut states);
+                if !json
+                    && let Some(state) = latest.read()
+                    && state.cycle >= shown
+                {
+                    shown = state.cycle + (arguments.rate / STATUS_RATE) as u64;
+                    show(state, arguments.rate);
+                }
             }
-        }
-        looped.join().expect("the loop panics at nothing")
-    });
-    recordings.take(&mut states);
-    let recorded = recordings.end();
-    if json { print_json(&report, arguments) } else { print_text(&report, arguments) }?;
-    recorded?;
-    if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
+            looped.join().expect("the loop panics at nothing")
+        });
+        // What came after the last look.
+        recordings.take(&mut states);
+        let recorded = recordings.end();
+        // The report is printed even if a recording failed.
+        if json { print_json(&report, arguments) } else { print_text(&report, arguments) }?;
+        recorded?;
+        if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
+    }
 }
 
 /// Returns a flag that Ctrl-C and the other termination signals set, so that a session ends in order and its
@@ -266,8 +279,8 @@ struct Quantiles {
 
 impl Quantiles {
     fn of(times: &touchoff_haptics::LatencyHistogram) -> Quantiles {
-        let at = |share: f64| times.value_at_quantile(share);
-        Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: times.max() }
+        let [p50, p99, p999] = [0.5, 0.99, 0.999].map(|share| times.value_at_quantile(share));
+        Quantiles { p50, p99, p999, max: times.max() }
     }
 
     fn format(&self) -> String {
@@ -305,10 +318,8 @@ fn print_json(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
         law: arguments.law.to_string(),
     };
     let mut out = Output::lines();
-    serde_json::to_writer(&mut out, &summary)?;
-    writeln!(out)?;
-    out.flush()?;
-    Ok(())
+    out.json(&summary)?;
+    Ok(out.flush()?)
 }
 
 fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
@@ -342,6 +353,5 @@ fn print_text(report: &LoopReport, arguments: &Haptic) -> Result<(), Failure> {
     for (count, what) in wrong.into_iter().filter(|(count, _)| *count > 0) {
         writeln!(out, "  {count} {what}")?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }

@@ -2,7 +2,6 @@
 
 use crate::failure::Failure;
 use crate::output::unwritable;
-use crate::postures::default_tolerance;
 use crate::postures::map::check_part;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,9 +21,11 @@ pub(super) struct Table {
 
 impl Table {
     pub(super) fn create(path: &Path, rate: f64) -> Result<Table, Failure> {
-        let wrong = |source| unwritable(path, source);
-        let mut out = AtomicFile::create(path).map_err(wrong)?;
-        writeln!(out, "{COLUMNS}").and_then(|()| out.flush()).map_err(wrong)?;
+        let created = AtomicFile::create(path).and_then(|mut out| {
+            writeln!(out, "{COLUMNS}").and_then(|()| out.flush())?;
+            Ok(out)
+        });
+        let out = created.map_err(|source| unwritable(path, source))?;
         Ok(Table { out, file: path.to_owned(), rate })
     }
 
@@ -125,7 +126,10 @@ pub(super) fn map_of(
         check_part(&map, file, mesh, part)?;
         return Ok(map);
     }
-    let rules =
-        Rules { tolerance: default_tolerance(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
+    let rules = Rules {
+        tolerance: Rules::default_tolerance(mesh.unit()),
+        niceness: 0.0,
+        allowed: Vec::new(),
+    };
     Ok(PostureMap::open(file, &MapIdentity::new(mesh, &[tool], rules)?)?)
 }

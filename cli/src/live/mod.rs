@@ -1,23 +1,20 @@
 //! `touchoff live`: a page on loopback in which one drags a tool against a part.
 
-mod page;
 mod server;
 
 use crate::arguments::{Live, ParamArguments};
 use crate::failure::Failure;
-use crate::loaded_tool::{built_in, load_file, read_source};
+use crate::loaded_tool::{SourceFiles, load_file, read_source, source_files};
 use crate::output::{Output, file_name};
 use crate::part;
-use crate::program::is_toml;
-use page::{Content, Page};
 use serde::Serialize;
+use server::{Content, Page};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::Path;
 use tool_dsl::compile;
-use tools_library::{SOURCES, TOOLS};
 use touchoff::Unit;
 use touchoff_verify::Program;
 use touchoff_verify::gcode::ControlSetup;
@@ -90,13 +87,13 @@ pub(crate) fn live(arguments: &Live, json: bool) -> Result<(), Failure> {
     let address = format!("http://127.0.0.1:{port}/");
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &AddressRow { address: &address })?;
-        writeln!(out)?;
+        out.json(&AddressRow { address: &address })?;
     } else {
         writeln!(out, "{address}")?;
         message!("serving the page until Ctrl-C");
     }
     out.flush()?;
+    // The lock of standard output, as the server never ends.
     drop(out);
     if !arguments.no_open
         && let Err(error) = open::that_detached(&address)
@@ -120,7 +117,9 @@ fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Ve
         Program::Locations(_) => None,
         Program::Machine(_) => {
             let machine = machine.unwrap_or(Path::new(DEFAULT_MACHINE));
-            let text = is_toml(machine).then(|| std::fs::read_to_string(machine));
+            // The page has the machines of the library, by their names.
+            let is_file = machine.extension().is_some_and(|extension| extension == "toml");
+            let text = is_file.then(|| std::fs::read_to_string(machine));
             Some(BeginMachine { name: file_name(machine), text: text.transpose()? })
         }
     };
@@ -131,12 +130,8 @@ fn read_program(file: &Path, machine: Option<&Path>) -> Result<(BeginProgram, Ve
 fn begin_tool(name: &OsStr) -> Result<BeginTool, Failure> {
     let path = Path::new(name);
     if path.extension().is_none_or(|extension| extension != "tool") {
-        let name = name.to_string_lossy();
-        built_in(&name)?;
-        let mut sources = TOOLS.iter().zip(SOURCES);
-        let files = sources.find(|(tool, _)| tool.info().name == name).map(|(_, files)| files);
-        let Some([(file, _), ..]) = files else { unreachable!("every built-in tool has a source") };
-        return Ok(BeginTool { name: (*file).to_owned(), text: None, files: BTreeMap::new() });
+        let SourceFiles { file, .. } = source_files(&name.to_string_lossy())?;
+        return Ok(BeginTool { name: file.to_owned(), text: None, files: BTreeMap::new() });
     }
     let arguments = ParamArguments::default();
     // Fails with the diagnostics if the file has errors.

@@ -1,10 +1,11 @@
-//! A server of files on loopback.
+//! A server on loopback of the page's files, which are built into the program (`web/dist`).
 //!
 //! It answers `GET` and `HEAD` of its own page only: the `Host` must be the address it listens at, so that no other
 //! site's name leads here, and an `Origin` must be the page's own. Requests are at most `MAX_REQUEST` bytes long, without
 //! a body, and must arrive within `TIMEOUT`.
 
-use super::page::{Content, Page};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
@@ -23,6 +24,61 @@ const HEADERS: &str = "Connection: close\r\n\
     Cross-Origin-Opener-Policy: same-origin\r\n\
     Cross-Origin-Embedder-Policy: require-corp\r\n\
     Cross-Origin-Resource-Policy: same-origin\r\n";
+
+/// A file and its media type.
+pub(super) struct Content {
+    media_type: &'static str,
+    bytes: Cow<'static, [u8]>,
+}
+
+impl Content {
+    /// Returns a JSON file.
+    pub(super) fn json(bytes: Vec<u8>) -> Content {
+        Content { media_type: "application/json", bytes: bytes.into() }
+    }
+
+    /// Returns a file of bytes.
+    pub(super) fn bytes(bytes: Vec<u8>) -> Content {
+        Content { media_type: "application/octet-stream", bytes: bytes.into() }
+    }
+}
+
+/// All files by their path; nothing else is served.
+pub(super) struct Page(BTreeMap<&'static str, Content>);
+
+macro_rules! file {
+    ($name:literal, $media_type:literal) => {
+        Content {
+            media_type: $media_type,
+            bytes: Cow::Borrowed(include_bytes!(concat!("../../../web/dist/", $name))),
+        }
+    };
+}
+
+impl Page {
+    /// Returns the files that are built into the program.
+    pub(super) fn embedded() -> Page {
+        Page(BTreeMap::from([
+            ("/", file!("index.html", "text/html; charset=utf-8")),
+            ("/page.css", file!("page.css", "text/css; charset=utf-8")),
+            ("/page.js", file!("page.js", "text/javascript; charset=utf-8")),
+            ("/checker.js", file!("checker.js", "text/javascript; charset=utf-8")),
+            ("/worker.js", file!("worker.js", "text/javascript; charset=utf-8")),
+            ("/engine.js", file!("engine.js", "text/javascript; charset=utf-8")),
+            ("/engine.wasm.gz", file!("engine.wasm.gz", "application/octet-stream")),
+        ]))
+    }
+
+    /// Adds or replaces a file.
+    pub(super) fn add(&mut self, path: &'static str, content: Content) {
+        self.0.insert(path, content);
+    }
+
+    /// Returns the file of a path, if there is one.
+    fn get(&self, path: &str) -> Option<&Content> {
+        self.0.get(path)
+    }
+}
 
 /// The reasons for which a request is not answered with a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +107,7 @@ pub(super) fn serve(listener: &TcpListener, port: u16, page: Page) {
     let page = Arc::new(page);
     let connections = Arc::new(AtomicUsize::new(0));
     for stream in listener.incoming().flatten() {
+        // Each connection has a thread; a page needs few at once.
         if connections.fetch_add(1, Ordering::Relaxed) >= MAX_CONNECTIONS {
             connections.fetch_sub(1, Ordering::Relaxed);
             continue;
@@ -120,17 +177,16 @@ fn find<'p>(head: &[u8], port: u16, page: &'p Page) -> Result<(&'p Content, bool
         Err(httparse::Error::TooManyHeaders) => return Err(Refusal::TooLarge),
         Err(_) => return Err(Refusal::Malformed),
     }
-    let values = |name: &str| -> Vec<&[u8]> {
-        let named = request.headers.iter().filter(|one| one.name.eq_ignore_ascii_case(name));
-        named.map(|one| one.value).collect()
-    };
     let own = ["127.0.0.1", "localhost"].map(|host| format!("{host}:{port}"));
     let is_own = |host: &[u8]| own.iter().any(|own| own.as_bytes() == host);
-    if !matches!(values("host")[..], [host] if is_own(host)) {
+    let hosts: Vec<&[u8]> = values(request.headers, "host").collect();
+    if !matches!(hosts[..], [host] if is_own(host)) {
         return Err(Refusal::Forbidden);
     }
-    let is_page = |origin: &&[u8]| origin.strip_prefix(b"http://").is_some_and(is_own);
-    if !values("origin").iter().all(is_page) {
+    // Programs other than browsers state no origin.
+    if !values(request.headers, "origin")
+        .all(|origin| origin.strip_prefix(b"http://").is_some_and(is_own))
+    {
         return Err(Refusal::Forbidden);
     }
     let with_body = match request.method {
@@ -138,9 +194,18 @@ fn find<'p>(head: &[u8], port: u16, page: &'p Page) -> Result<(&'p Content, bool
         Some("HEAD") => false,
         _ => return Err(Refusal::Method),
     };
+    // Files are looked up by their whole path, so that none leads out of the page.
     let path = request.path.unwrap_or_default();
     let path = path.split_once('?').map_or(path, |(path, _)| path);
     page.get(path).map(|content| (content, with_body)).ok_or(Refusal::NotFound)
+}
+
+/// Returns the values of all headers with a name.
+fn values<'h>(
+    headers: &'h [httparse::Header<'h>],
+    name: &'static str,
+) -> impl Iterator<Item = &'h [u8]> {
+    headers.iter().filter(move |one| one.name.eq_ignore_ascii_case(name)).map(|one| one.value)
 }
 
 #[cfg(test)]

@@ -21,19 +21,28 @@ pub(crate) struct Scale {
     pub(crate) has_values: bool,
 }
 
+/// A quantity to be shown by colours.
+pub(crate) struct Measure<'a> {
+    /// The quantity with its unit.
+    pub(crate) quantity: String,
+    /// Symbol of the unit; empty for a number without one.
+    pub(crate) unit: &'a str,
+    /// Set if the scale is to begin at 0.
+    pub(crate) from_zero: bool,
+    /// Meaning of triangles without a value.
+    pub(crate) nothing: &'static str,
+}
+
 /// Largest number of steps between labels.
 const MAX_STEPS: f64 = 6.0;
 /// Number of decimals above which numbers have an exponent.
 const MAX_DECIMALS: i32 = 9;
 
 impl Scale {
-    /// Creates a scale that begins and ends at round numbers, around all values. With `from_zero` it begins at 0.
-    /// Values of one number alone have that number as their only label.
-    pub(crate) fn new(
-        (quantity, unit): (String, &str),
-        values: impl Iterator<Item = f64>,
-        (nothing, from_zero): (&'static str, bool),
-    ) -> Scale {
+    /// Creates a scale that begins and ends at round numbers, around all values. Values of one number alone have that
+    /// number as their only label.
+    pub(crate) fn new(measure: Measure<'_>, values: impl Iterator<Item = f64>) -> Scale {
+        let Measure { quantity, unit, from_zero, nothing } = measure;
         let given = values.fold(None, |known: Option<[f64; 2]>, value| {
             let [low, high] = known.unwrap_or([value; 2]);
             Some([low.min(value), high.max(value)])
@@ -57,8 +66,10 @@ impl Scale {
     /// Returns the labels with their positions from 0 to 1, evenly apart.
     pub(super) fn labels(&self) -> impl Iterator<Item = (f64, &str)> {
         let last = self.labels.len().saturating_sub(1);
-        let share = move |index: usize| if last == 0 { 1.0 } else { index as f64 / last as f64 };
-        self.labels.iter().enumerate().map(move |(index, label)| (share(index), &**label))
+        self.labels.iter().enumerate().map(move |(index, label)| {
+            // A single label stands at the bright end, whose colour its values have.
+            (if last == 0 { 1.0 } else { index as f64 / last as f64 }, &**label)
+        })
     }
 
     /// Returns the look of a triangle.
@@ -102,7 +113,9 @@ mod tests {
     use super::*;
 
     fn scale(values: &[f64], from_zero: bool, unit: &str) -> Scale {
-        Scale::new(("depth".to_owned(), unit), values.iter().copied(), ("none", from_zero))
+        let quantity = "depth".to_owned();
+        let measure = Measure { quantity, unit, from_zero, nothing: "none" };
+        Scale::new(measure, values.iter().copied())
     }
 
     fn labels(values: &[f64], from_zero: bool) -> Vec<String> {

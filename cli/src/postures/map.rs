@@ -1,6 +1,6 @@
 //! `touchoff map`: a summary of a posture map, and its other formats.
 
-use super::picture;
+use super::picture::{MapQuantity, of_map};
 use crate::arguments::postures::{Map, Quantity};
 use crate::failure::Failure;
 use crate::output::{Output, extension, refuse_inputs, unwritable};
@@ -63,13 +63,16 @@ pub(crate) fn map(arguments: &Map, json: bool) -> Result<(), Failure> {
             (MapFormat::Csv, _) => map.write_csv(&mut out)?,
             (MapFormat::Json, _) => map.write_json(&mut out)?,
             (MapFormat::Ply, Some((mesh, _))) => {
+                // Tools state niceness on any scale, so colours are relative to the best.
                 let greatest = max_niceness(&map)?;
                 map.write_ply(&mut out, mesh, |niceness| colormap(niceness / greatest))?;
             }
             (MapFormat::Png, Some((mesh, part))) => {
-                let picture = picture::of(&map, (mesh, part), (arguments.color_by, tool))?;
+                let quantity = MapQuantity { by: arguments.color_by, tool };
+                let picture = of_map(&map, mesh, part, quantity)?;
                 out.write_all(&picture).map_err(unwritable)?;
             }
+            // Refused above.
             (MapFormat::Ply | MapFormat::Png, None) => (),
         }
         out.commit().map_err(unwritable)?;
@@ -132,8 +135,7 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
     };
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         let tools: Vec<String> =
             summary.tools.iter().map(|name| Escaped(name).to_string()).collect();
@@ -152,8 +154,7 @@ fn print_summary(map: &PostureMap, json: bool) -> Result<(), Failure> {
             )?;
         }
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// An output format, chosen by the file's extension.
@@ -171,7 +172,10 @@ impl MapFormat {
             Some("json") => Ok(MapFormat::Json),
             Some("ply") => Ok(MapFormat::Ply),
             Some("png") => Ok(MapFormat::Png),
-            _ => Err(Failure::MapFormat { file: file.display().to_string() }),
+            _ => Err(Failure::Format {
+                formats: "a map is written as `.csv`, `.json`, `.ply` or `.png`",
+                file: file.display().to_string(),
+            }),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `touchoff path`: a program over all that a tool reaches.
 
-use super::left_out;
 use super::map::read_part;
+use super::picture;
 use super::post::{Post, Words};
 use super::prove::{Location, Prover, planning_rules};
 use crate::arguments::postures::Path as Arguments;
@@ -14,9 +14,9 @@ use serde::Serialize;
 use std::io::Write;
 use std::mem;
 use std::path::Path;
-use touchoff::Motion;
 use touchoff::certify::TriangleBvh;
-use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern};
+use touchoff::{Motion, Unit};
+use touchoff_postures::path::{LeftOutReason, PathRequest, Pattern, ToolPath};
 use touchoff_postures::{Directions, MapRow, PostureMap, Rules};
 use touchoff_verify::ClData;
 use touchoff_verify::program::{AptHeader, Cutter, Decimals, apt_unit};
@@ -82,9 +82,52 @@ impl<'a> Format<'a> {
                 };
                 Ok(Format::Gcode(machine, Words { tool_number, feed, spindle }))
             }
-            _ => Err(Failure::ProgramFormat { file: arguments.output.display().to_string() }),
+            _ => Err(Failure::Format {
+                formats: "a program is written as `.apt`, `.csv` or `.nc`",
+                file: arguments.output.display().to_string(),
+            }),
         }
     }
+}
+
+impl Summary {
+    /// Summarises a path, with the cutter locations of its program.
+    fn new(path: &ToolPath, locations: &[Location], unit: Unit) -> Summary {
+        let [before, after] = path.turns.map(f64::to_degrees);
+        let [feed_length, rapid_length] = lengths(locations);
+        let upside_down = locations.iter().filter(|location| is_upside_down(location));
+        Summary {
+            unit: unit.symbol(),
+            locations: locations.len(),
+            contact_points: path.contact_points,
+            inserted_locations: 0,
+            points_left_out: path.left_out.len(),
+            points_not_reached: path.count_left_out(LeftOutReason::NotReached),
+            points_without_motion: path.count_left_out(LeftOutReason::NoMotion),
+            retracts: path.retracts,
+            turn_before_smoothing_degrees: before,
+            turn_degrees: after,
+            feed_length,
+            rapid_length,
+            upside_down_locations: upside_down.count(),
+            first_upside_down_location: locations.iter().position(is_upside_down),
+        }
+    }
+}
+
+/// Returns per triangle the directions from which a sweep found that a tool of the map reaches it.
+fn accessibility(map: &PostureMap, tool: u16) -> Result<Vec<Vec<u64>>, Failure> {
+    let identity = map.identity();
+    let mut access = vec![Vec::new(); identity.part.triangles as usize];
+    map.for_each_triangle(|triangle, pieces| {
+        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
+        let row = MapRow::joined(&pieces, identity.keep);
+        if let Some(reach) = row.access.into_iter().find(|access| access.tool == tool) {
+            access[triangle.index()] = reach.directions;
+        }
+        Ok::<(), Failure>(())
+    })?;
+    Ok(access)
 }
 
 /// Plans a path of a tool over a part, proves the program as it is written, and writes it.
@@ -111,15 +154,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         tool: tool.info().name.to_string(),
     })?;
     let mesh = read_part(&map, &arguments.map, &arguments.part)?;
-    let mut access = vec![Vec::new(); mesh.triangles().len()];
-    map.for_each_triangle(|triangle, pieces| {
-        // Of a divided triangle, a point may take the directions of all pieces: each posture is proved at its own point.
-        let row = MapRow::joined(&pieces, identity.keep);
-        if let Some(reach) = row.access.into_iter().find(|access| access.tool == index) {
-            access[triangle.index()] = reach.directions;
-        }
-        Ok::<(), Failure>(())
-    })?;
+    let access = accessibility(&map, index)?;
     let tolerance = arguments.tolerance.unwrap_or(identity.rules.tolerance);
     let rules = Rules { tolerance, ..identity.rules.clone() };
     let pattern = Pattern {
@@ -132,6 +167,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
     let directions = Directions::from(identity.directions.clone());
     let progress = Progress::spinner("planning", json);
     let name = arguments.output.display().to_string();
+    // Created before the path is planned, so that a tool that cannot be proved is refused at once.
     let prover = Prover::new(&bvh, tool, &rules, &name)?;
     let request = PathRequest {
         mesh: &mesh,
@@ -154,9 +190,10 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         feed: arguments.feed,
         decimals: Some(Decimals::of(unit)),
     };
-    let written = |locations: &[Location]| {
+    let (locations, text) = prover.settle(mem::take(&mut path.locations), |locations| {
         let program = ClData::new(&name, Some(unit), locations.iter().copied())?;
         let mut text = Vec::new();
+        // Its text follows below, where each motion of the machine is proved again.
         if post.is_some() {
             return Ok((program, text));
         }
@@ -166,8 +203,7 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
             program.write_csv(&mut text).map_err(|source| unwritable(&arguments.output, source))?;
         }
         Ok((ClData::parse(&text, &name)?, text))
-    };
-    let (locations, text) = prover.settle(mem::take(&mut path.locations), written)?;
+    })?;
     let (text, locations) = match &post {
         Some(post) => {
             let (text, locations) = post.program(&prover, &locations, &name)?;
@@ -176,34 +212,18 @@ pub(crate) fn path(arguments: &Arguments, json: bool) -> Result<(), Failure> {
         None => (text, locations),
     };
     drop(progress);
-    let below = |(pose, _): &Location| pose.axis().z < 0.0;
-    let [before, after] = path.turns.map(f64::to_degrees);
-    let [feed_length, rapid_length] = lengths(&locations);
     let summary = Summary {
-        unit: unit.symbol(),
-        locations: locations.len(),
-        contact_points: path.contact_points,
         inserted_locations: locations.len() - planned,
-        points_left_out: path.left_out.len(),
-        points_not_reached: path.count_left_out(LeftOutReason::NotReached),
-        points_without_motion: path.count_left_out(LeftOutReason::NoMotion),
-        retracts: path.retracts,
-        turn_before_smoothing_degrees: before,
-        turn_degrees: after,
-        feed_length,
-        rapid_length,
-        upside_down_locations: locations.iter().filter(|location| below(location)).count(),
-        first_upside_down_location: locations.iter().position(below),
+        ..Summary::new(&path, &locations, unit)
     };
     write_file(&arguments.output, text)?;
     if let Some(file) = &arguments.picture {
-        let picture = left_out::picture(&mesh, &arguments.part, &tool.info().name, &path)?;
+        let picture = picture::of_left_out(&mesh, &arguments.part, &tool.info().name, &path)?;
         write_file(file, picture)?;
     }
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         print_text(&mut out, &arguments.output, &summary)?;
     }
@@ -246,6 +266,11 @@ fn print_text(out: &mut impl Write, output: &Path, summary: &Summary) -> std::io
         )?;
     }
     Ok(())
+}
+
+/// Returns whether the spindle is below the tip, if z points up.
+fn is_upside_down(location: &Location) -> bool {
+    location.0.axis().z < 0.0
 }
 
 /// Returns the length of the tip's path in feed and in rapid traverse.

@@ -1,19 +1,20 @@
 //! G-code for a machine: the rotary axes follow from its inverse kinematics, and the tip is programmed in the frame of
-//! the part, with tool centre point control.
+//! the part, with tool centre point control. Of both solutions at each cutter location those are taken whose rotary axes
+//! travel least along the path.
 
-use super::joints::{Target, rotary_travel, sequence};
 use super::prove::{Location, Prover};
 use crate::arguments::postures::MachineArguments;
 use crate::failure::Failure;
-use std::collections::{BTreeMap, BTreeSet};
+use nalgebra::{Point3, Vector3};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 use touchoff::{Motion, Pose, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, Rule};
 use touchoff_verify::job::read_machine;
-use touchoff_verify::machine::{Chain, Joints, Letter, Machine, Setup};
+use touchoff_verify::machine::{Chain, InverseError, Joints, Letter, Machine, Setup};
 use touchoff_verify::program::Decimals;
-use touchoff_verify::{MachineProgram, ToolSelection};
+use touchoff_verify::{Finding, MachineProgram, ToolSelection};
 
 /// Largest number of times that the motion between two cutter locations is halved.
 const MAX_HALVINGS: u32 = 8;
@@ -65,6 +66,36 @@ struct PostedText {
     text: String,
     /// Number of lines before the first motion. Then each cutter location has one line.
     header_lines: usize,
+    locations: usize,
+}
+
+impl PostedText {
+    /// Returns the index of the cutter location of a line; of lines before and after all of them, the nearest.
+    fn location(&self, line: usize) -> usize {
+        line.saturating_sub(self.header_lines + 1).min(self.locations - 1)
+    }
+}
+
+/// The reason for which the motion to a cutter location is divided.
+enum Fault<'f> {
+    /// In its middle the tool axis is far off the great circle.
+    Astray,
+    /// It is not proved.
+    Found(&'f Finding),
+}
+
+impl Fault<'_> {
+    /// Returns the failure for a motion that cannot be divided any further.
+    fn failure(&self, prover: &Prover<'_>, location: &PostedLocation) -> Failure {
+        match self {
+            Fault::Astray => {
+                let reason =
+                    "the rotary axes turn far, and there is no way out along the tool axis";
+                prover.refusal(None, location.planned, reason.to_owned())
+            }
+            Fault::Found(finding) => prover.failure(finding, location.planned),
+        }
+    }
 }
 
 impl Post {
@@ -113,38 +144,32 @@ impl Post {
         locations: &[Location],
         file: &str,
     ) -> Result<(String, Vec<Location>), Failure> {
-        let posted = |(planned, (pose, rapid)): (usize, &Location)| PostedLocation {
+        let posted = locations.iter().enumerate().map(|(planned, (pose, rapid))| PostedLocation {
             pose: *pose,
             rapid: *rapid,
             planned,
             halvings: 0,
-        };
-        let mut locations: Vec<PostedLocation> = locations.iter().enumerate().map(posted).collect();
+        });
+        let mut locations: Vec<PostedLocation> = posted.collect();
         loop {
             let joints = self.joints(&locations)?;
             let astray = self.astray(&locations, &joints, prover)?;
             if !astray.is_empty() {
-                let failure = |index: usize| {
-                    let reason =
-                        "the rotary axes turn far, and there is no way out along the tool axis";
-                    prover.refusal(None, locations[index].planned, reason.to_owned())
-                };
-                locations = refined(&locations, &joints, &astray, (prover, &failure))?;
+                locations = refined(&locations, &joints, &astray, prover)?;
                 continue;
             }
-            let PostedText { text, header_lines } = self.text(&locations, &joints);
+            let posted = self.text(&locations, &joints);
+            // The text is read as any other program is, so that what is proved is what is written.
             let program = MachineProgram::new(
                 file,
-                text.clone(),
+                posted.text.clone(),
                 self.machine.clone(),
                 self.control.clone(),
             )?;
-            let index =
-                |line: usize| line.saturating_sub(header_lines + 1).min(locations.len() - 1);
             if let Some((line, violation)) = program.summary().limits.first() {
                 return Err(Failure::AxisLimit {
                     machine: self.machine.name().to_owned(),
-                    location: locations[index(*line)].planned + 1,
+                    location: locations[posted.location(*line)].planned + 1,
                     letter: violation.letter,
                     value: violation.value,
                     limit: violation.limit,
@@ -155,15 +180,13 @@ impl Post {
             if findings.is_empty() {
                 let locations =
                     locations.iter().map(|location| (location.pose, location.rapid)).collect();
-                return Ok((text, locations));
+                return Ok((posted.text, locations));
             }
             let mut found = BTreeMap::new();
             for finding in &findings {
-                found.entry(index(finding.line)).or_insert(finding);
+                found.entry(posted.location(finding.line)).or_insert(Fault::Found(finding));
             }
-            let failure = |index: usize| prover.failure(found[&index], locations[index].planned);
-            let too_deep = found.keys().copied().collect();
-            locations = refined(&locations, &joints, &too_deep, (prover, &failure))?;
+            locations = refined(&locations, &joints, &found, prover)?;
         }
     }
 
@@ -175,8 +198,8 @@ impl Post {
         locations: &[PostedLocation],
         joints: &[Joints],
         prover: &Prover<'_>,
-    ) -> Result<BTreeSet<usize>, Failure> {
-        let mut astray = BTreeSet::new();
+    ) -> Result<BTreeMap<usize, Fault<'static>>, Failure> {
+        let mut astray = BTreeMap::new();
         for index in 1..locations.len() {
             let [from, to] = [&locations[index - 1], &locations[index]];
             let is_free = prover.is_away(&from.pose) && prover.is_away(&to.pose);
@@ -186,9 +209,9 @@ impl Post {
             let middle: Joints =
                 std::array::from_fn(|k| 0.5 * (joints[index - 1][k] + joints[index][k]));
             let axis = self.chain.pose(&middle)?.axis();
-            let motion = Motion::new(&from.pose, &to.pose).map_err(Failure::Motion)?;
+            let motion = Motion::new(&from.pose, &to.pose)?;
             if axis.angle(&motion.pose(0.5).axis()) > ASTRAY {
-                astray.insert(index);
+                astray.insert(index, Fault::Astray);
             }
         }
         Ok(astray)
@@ -223,6 +246,7 @@ impl Post {
             for letter in &rotary {
                 let _ = write!(text, " {letter}{}", word(joints[letter.index()], ANGLE_DECIMALS));
             }
+            // The feed is modal: one word holds for all of the program.
             if !location.rapid && !std::mem::replace(&mut has_feed, true) {
                 let _ = write!(text, " F{}", word(feed * scale, decimals));
             }
@@ -230,17 +254,17 @@ impl Post {
         }
         // A control can keep tool centre point control for its next program.
         text += if rotary.is_empty() { "M30\n" } else { "G49\nM30\n" };
-        PostedText { text, header_lines }
+        PostedText { text, header_lines, locations: locations.len() }
     }
 
     /// Returns the joint values of cutter locations.
     fn joints(&self, locations: &[PostedLocation]) -> Result<Vec<Joints>, Failure> {
-        let target = |location: &PostedLocation| Target {
+        let targets = locations.iter().map(|location| Target {
             tip: location.pose.tip() * self.unit.millimetres(),
             axis: location.pose.axis(),
             rapid: location.rapid,
-        };
-        let targets: Vec<Target> = locations.iter().map(target).collect();
+        });
+        let targets: Vec<Target> = targets.collect();
         let home = self.machine.home().map(|value| value.unwrap_or(0.0));
         sequence(&self.chain, &targets, home).map_err(|(index, source)| Failure::Unreachable {
             machine: self.machine.name().to_owned(),
@@ -251,29 +275,31 @@ impl Post {
     }
 }
 
-/// Inserts cutter locations into motions, given by the indices of the cutter locations at which they end.
+/// Inserts cutter locations into motions with a fault, by the indices of the cutter locations at which they end.
 ///
 /// # Errors
-/// The given failure, if a motion was halved as often as allowed, or cannot be.
+/// The fault's failure, if a motion was halved as often as allowed, or cannot be.
 fn refined(
     locations: &[PostedLocation],
     joints: &[Joints],
-    motions: &BTreeSet<usize>,
-    (prover, failure): (&Prover<'_>, &dyn Fn(usize) -> Failure),
+    faults: &BTreeMap<usize, Fault<'_>>,
+    prover: &Prover<'_>,
 ) -> Result<Vec<PostedLocation>, Failure> {
-    let mut refined = Vec::with_capacity(locations.len() + motions.len());
+    let mut refined = Vec::with_capacity(locations.len() + faults.len());
     for (index, location) in locations.iter().enumerate() {
-        if !motions.contains(&index) {
+        let Some(fault) = faults.get(&index) else {
             refined.push(*location);
             continue;
-        }
-        let failure = || failure(index);
+        };
+        let failure = || fault.failure(prover, location);
+        // The first motion begins at the home position, which is no cutter location to halve from.
         let from = index.checked_sub(1).ok_or_else(failure)?;
         if location.halvings >= MAX_HALVINGS {
             return Err(failure());
         }
         let (before, travel) = (&locations[from], rotary_travel(&joints[from], &joints[index]));
         if location.halvings >= HALVINGS_BEFORE_REWIND && travel > REWIND_TRAVEL {
+            // Away from the part the axes may turn as they like: none of these motions is halved again.
             let last = PostedLocation { halvings: MAX_HALVINGS, ..*location };
             let [out, back] = [before, location].map(|l| prover.away(&l.pose));
             let ([lead, outer], [lead_back, outer_back]) = out.zip(back).ok_or_else(failure)?;
@@ -285,7 +311,7 @@ fn refined(
             }));
             refined.push(last);
         } else {
-            let motion = Motion::new(&before.pose, &location.pose).map_err(Failure::Motion)?;
+            let motion = Motion::new(&before.pose, &location.pose)?;
             let last = PostedLocation { halvings: location.halvings + 1, ..*location };
             refined.extend([PostedLocation { pose: motion.pose(0.5), ..last }, last]);
         }
@@ -300,6 +326,102 @@ fn word(value: f64, decimals: usize) -> String {
     if short == "-0." { "0.".to_owned() } else { short.to_owned() }
 }
 
+/// A cutter location: the tip in mm and the tool axis, in the frame of the part.
+struct Target {
+    tip: Point3<f64>,
+    axis: Vector3<f64>,
+    rapid: bool,
+}
+
+/// A candidate for the joint values of a cutter location.
+struct Candidate {
+    joints: Joints,
+    /// Travel of the rotary axes until then, in degrees, with that in rapid traverse at a lower weight.
+    cost: f64,
+    /// Index of the candidate before.
+    from: usize,
+}
+
+/// Weight of travel in rapid traverse, where a turn of the axes rather does no harm.
+const RAPID_WEIGHT: f64 = 0.1;
+
+/// Number of candidates that are kept per cutter location. There are two solutions, each with several whole turns.
+const MAX_CANDIDATES: usize = 8;
+
+/// Difference of joint values, in degrees, below which they are the same.
+const SAME: f64 = 1e-6;
+
+/// Returns the joint values of cutter locations: a shortest path (Viterbi) over the solutions within limits. `start` has
+/// the joint values before the first.
+///
+/// # Errors
+/// The index of the first cutter location that no sequence reaches, and the reason.
+fn sequence(
+    chain: &Chain,
+    targets: &[Target],
+    start: Joints,
+) -> Result<Vec<Joints>, (usize, InverseError)> {
+    let mut layers: Vec<Vec<Candidate>> = Vec::with_capacity(targets.len());
+    let first = [Candidate { joints: start, cost: 0.0, from: 0 }];
+    for (index, target) in targets.iter().enumerate() {
+        let before = layers.last().map_or(&first[..], Vec::as_slice);
+        let layer = candidates(chain, target, before).map_err(|error| (index, error))?;
+        layers.push(layer);
+    }
+    // Candidates are sorted by cost.
+    let mut at = 0;
+    let mut joints: Vec<Joints> = layers
+        .iter()
+        .rev()
+        .map(|layer| {
+            let candidate = &layer[at];
+            at = candidate.from;
+            candidate.joints
+        })
+        .collect();
+    joints.reverse();
+    Ok(joints)
+}
+
+/// Returns the candidates of a cutter location by ascending cost, at least one.
+fn candidates(
+    chain: &Chain,
+    target: &Target,
+    before: &[Candidate],
+) -> Result<Vec<Candidate>, InverseError> {
+    let weight = if target.rapid { RAPID_WEIGHT } else { 1.0 };
+    let (mut all, mut fault) = (Vec::new(), None);
+    for (from, last) in before.iter().enumerate() {
+        match chain.solutions(&target.tip, &target.axis, &last.joints) {
+            Ok(solutions) => all.extend(solutions.into_iter().map(|solution| Candidate {
+                joints: solution.joints,
+                cost: last.cost + weight * rotary_travel(&last.joints, &solution.joints),
+                from,
+            })),
+            Err(error) => fault = fault.or(Some(error)),
+        }
+    }
+    if let (true, Some(fault)) = (all.is_empty(), fault) {
+        return Err(fault);
+    }
+    // Of candidates with the same joint values the cheapest is kept: what follows is the same for all of them.
+    all.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    let mut kept: Vec<Candidate> = Vec::new();
+    for candidate in all {
+        let is_known =
+            kept.iter().any(|known| rotary_travel(&known.joints, &candidate.joints) < SAME);
+        if !is_known && kept.len() < MAX_CANDIDATES {
+            kept.push(candidate);
+        }
+    }
+    Ok(kept)
+}
+
+/// Returns the travel of the rotary axes between joint values, in degrees.
+fn rotary_travel(from: &Joints, to: &Joints) -> f64 {
+    (3..6).map(|k| (to[k] - from[k]).abs()).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -310,5 +432,49 @@ mod tests {
         {
             assert_eq!(word(value, 5), text);
         }
+    }
+
+    /// An axis that turns about z by more than a turn at a tilt, which only one of both solutions follows within the
+    /// limits of A, although the other is nearer to the start.
+    #[test]
+    fn takes_the_solution_that_lasts() {
+        let machine = Machine::named("A-C trunnion").expect("a machine");
+        let setup = Setup { work_offset: [0.0, 0.0, -480.0, 0.0, 0.0, 0.0], tool_length: 100.0 };
+        let chain = machine.chain(&setup).expect("a chain");
+        let target = |tilt: f64| {
+            let (sine, cosine) = tilt.to_radians().sin_cos();
+            Target { tip: Point3::origin(), axis: Vector3::new(0.0, -sine, cosine), rapid: false }
+        };
+        // The limits of A are -120 and 30: from 20 on the way leads to 30 at most with A above 0.
+        let targets: Vec<Target> = (20..60).map(|tilt| target(f64::from(tilt))).collect();
+        let joints = sequence(&chain, &targets, [0.0; 6]).expect("a sequence");
+        for (joints, target) in joints.iter().zip(&targets) {
+            let pose = chain.pose(joints).expect("a pose");
+            assert!((pose.axis() - target.axis).norm() < 1e-9 && joints[3] < 0.0, "{joints:?}");
+        }
+        let jumps = joints.windows(2).map(|pair| rotary_travel(&pair[0], &pair[1]));
+        assert!(jumps.fold(0.0, f64::max) < 1.1);
+        // The nearest solution at each step runs into the limit, and has to turn by half a turn in between.
+        let mut near = [0.0; 6];
+        let greedy = targets.iter().map(|target| {
+            let joints =
+                chain.inverse(&target.tip, &target.axis, &near).expect("a solution").joints;
+            let jump = rotary_travel(&near, &joints);
+            near = joints;
+            jump
+        });
+        assert!(greedy.skip(1).fold(0.0, f64::max) > 180.0);
+    }
+
+    #[test]
+    fn names_what_is_not_reached() {
+        let machine = Machine::named("3-axis").expect("a machine");
+        let chain = machine.chain(&Setup::default()).expect("a chain");
+        let target =
+            |axis: Vector3<f64>| Target { tip: Point3::new(0.0, 0.0, -100.0), axis, rapid: true };
+        let targets = [target(Vector3::z()), target(Vector3::new(0.0, 0.1, 1.0))];
+        let (index, error) = sequence(&chain, &targets, [0.0; 6]).expect_err("three axes");
+        assert_eq!(index, 1);
+        assert!(matches!(error, InverseError::Unreachable { .. }), "{error}");
     }
 }

@@ -3,9 +3,8 @@
 
 use crate::failure::Failure;
 use nalgebra::Point3;
-use touchoff::Pose;
 use touchoff::certify::TriangleBvh;
-use touchoff::tool::Tool;
+use touchoff::{Pose, SurfaceId, Tool};
 use touchoff_postures::Rules;
 use touchoff_postures::path::MOTION_TOLERANCE_FRACTION;
 use touchoff_verify::{ClData, Finding, FindingKind, Move, Verifier};
@@ -56,6 +55,7 @@ impl<'a> Prover<'a> {
             .with_tolerance(rules.tolerance - resolution)?
             .with_resolution(resolution)?;
         for surface in tool.info().surfaces.iter() {
+            // Of several allowances for a surface the last holds, as in a sweep.
             let stated = rules.allowed.iter().rev().find(|(name, _)| *name == surface.name);
             let allowed = match stated {
                 Some((_, allowed)) => allowed + motion,
@@ -85,6 +85,7 @@ impl<'a> Prover<'a> {
             let (program, written) = write(&locations)?;
             let findings = self.verifier.check(&program)?.findings;
             let Some(first) = findings.first() else { return Ok((locations, written)) };
+            // Each round changes a motion to feed, so the loop ends.
             let rapid: Vec<&Finding> = findings.iter().filter(|finding| finding.rapid).collect();
             if rapid.is_empty() {
                 return Err(self.failure(first, first.location));
@@ -120,25 +121,28 @@ impl<'a> Prover<'a> {
 
     /// Returns the failure for a finding in the motion to a cutter location.
     pub(super) fn failure(&self, finding: &Finding, location: usize) -> Failure {
-        let name = |surface| format!("{}", self.verifier.info().surface(surface).name);
         let reason = match finding.kind {
             FindingKind::Deep { surface, allowed, max_depth, .. } => {
                 format!(
                     "{} is up to {max_depth:.6} deep, and {allowed:.6} is allowed",
-                    name(surface)
+                    self.surface_name(surface)
                 )
             }
             FindingKind::Near { surface, margin, min_distance, .. } => format!(
                 "{} comes as near as {min_distance:.6}, and has to keep {margin:.6}",
-                name(surface)
+                self.surface_name(surface)
             ),
             FindingKind::Inside { .. } => "the tool is inside the material".to_owned(),
             FindingKind::Undecided { surface } => {
-                format!("rounding decides whether {} is too deep", name(surface))
+                format!("rounding decides whether {} is too deep", self.surface_name(surface))
             }
             FindingKind::Ambiguous(error) => error.to_string(),
         };
         self.refusal(Some(finding.line), location, reason)
+    }
+
+    fn surface_name(&self, surface: SurfaceId) -> &str {
+        &self.verifier.info().surface(surface).name
     }
 
     /// Returns the failure for the motion to a cutter location, with its line in the program if it has one.

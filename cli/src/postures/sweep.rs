@@ -1,6 +1,7 @@
-//! `touchoff sweep`: a part and tools, every triangle in every direction, and pieces of triangles with `--refine`.
+//! `touchoff sweep`: a part and tools, every triangle in every direction, and pieces of triangles with `--refine`, round by
+//! round.
 
-use super::{TriangleTotals, default_tolerance, percent, refine, touched};
+use super::touched;
 use crate::arguments::postures::Sweep;
 use crate::failure::Failure;
 use crate::loaded_tool::LoadedTool;
@@ -8,14 +9,15 @@ use crate::output::{Output, refuse_inputs};
 use crate::part;
 use crate::progress::Progress;
 use serde::Serialize;
-use std::ffi::OsString;
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Tool, TriangleId, Unit};
-use touchoff_postures::sweep::{Batch, PostureSweep, Refinement, Refiner, SweepStats};
+use touchoff_postures::sweep::{
+    BATCH_TRIANGLES, Batch, PieceBatch, PostureSweep, Refinement, Refiner, SweepStats,
+};
 use touchoff_postures::{Directions, MapIdentity, MapRow, Piece, PostureMap, Rules};
 
 /// Summary of a sweep.
@@ -43,14 +45,14 @@ struct Summary {
 
 /// Summary of the pieces of triangles.
 #[derive(Serialize)]
-pub(super) struct RefinementSummary {
+struct RefinementSummary {
     /// Longest edge of pieces that differ from their neighbours.
-    pub(super) finest: f64,
-    pub(super) triangles_divided: usize,
+    finest: f64,
+    triangles_divided: usize,
     /// Number of their pieces.
-    pub(super) pieces: usize,
+    pieces: usize,
     /// Number of triangles of which only some pieces are reached.
-    pub(super) triangles_partly_reached: usize,
+    triangles_partly_reached: usize,
 }
 
 /// Number of postures of this run by outcome.
@@ -66,35 +68,34 @@ struct PostureCounts {
 }
 
 #[derive(Serialize)]
-pub(super) struct ToolSummary {
+struct ToolSummary {
     name: String,
     /// Number of triangles that the tool reaches.
-    pub(super) triangles_reached: usize,
+    triangles_reached: usize,
     /// Number of triangles at which it has the best posture.
-    pub(super) triangles_best: usize,
+    triangles_best: usize,
     /// Least stick-out: the smallest and the largest over the triangles.
     stick_out: Option<[f64; 2]>,
 }
 
 /// Counts, collected row by row.
-pub(super) struct Count {
+struct Count<'a> {
     /// Per triangle, the fraction of its area that is reached.
-    pub(super) reached: Vec<f64>,
-    pub(super) tools: Vec<ToolSummary>,
+    reached: Vec<f64>,
+    tools: Vec<ToolSummary>,
+    /// Takes the rows too, if triangles are to be divided.
+    refiner: Option<Refiner<'a>>,
 }
 
-impl Count {
-    fn new(mesh: &Mesh, tools: &[&dyn Tool]) -> Count {
-        let none = |tool: &&dyn Tool| ToolSummary {
+impl<'a> Count<'a> {
+    fn new(mesh: &Mesh, tools: &[&dyn Tool], refiner: Option<Refiner<'a>>) -> Count<'a> {
+        let tools = tools.iter().map(|tool| ToolSummary {
             name: tool.info().name.to_string(),
             triangles_reached: 0,
             triangles_best: 0,
             stick_out: None,
-        };
-        Count {
-            reached: vec![0.0; mesh.triangles().len()],
-            tools: tools.iter().map(none).collect(),
-        }
+        });
+        Count { reached: vec![0.0; mesh.triangles().len()], tools: tools.collect(), refiner }
     }
 
     fn add(&mut self, triangle: TriangleId, row: &MapRow) {
@@ -107,10 +108,13 @@ impl Count {
             tool.triangles_reached += usize::from(access.is_reached());
         }
         self.add_stickout(row);
+        if let Some(refiner) = &mut self.refiner {
+            refiner.add(Piece::whole(triangle), row);
+        }
     }
 
     /// Includes the stick-outs of a row.
-    pub(super) fn add_stickout(&mut self, row: &MapRow) {
+    fn add_stickout(&mut self, row: &MapRow) {
         for access in &row.access {
             let tool = &mut self.tools[usize::from(access.tool)];
             if let Some(stickout) = access.stickout {
@@ -119,6 +123,121 @@ impl Count {
             }
         }
     }
+
+    /// Replaces the counts of triangles by those of their pieces.
+    fn refine(&mut self, refiner: &Refiner<'_>, finest: f64) -> RefinementSummary {
+        for tool in &mut self.tools {
+            (tool.triangles_reached, tool.triangles_best) = (0, 0);
+        }
+        let mut summary = RefinementSummary {
+            finest,
+            triangles_divided: 0,
+            pieces: 0,
+            triangles_partly_reached: 0,
+        };
+        for reach in refiner.reach() {
+            self.reached[reach.triangle.index()] = reach.area_fraction;
+            for (tool, fraction) in self.tools.iter_mut().zip(&reach.by_tool) {
+                tool.triangles_reached += usize::from(*fraction > 0.0);
+            }
+            if let Some(best) = reach.best {
+                self.tools[usize::from(best)].triangles_best += 1;
+            }
+            if reach.pieces > 1 {
+                summary.triangles_divided += 1;
+                summary.pieces += reach.pieces;
+            }
+            let is_partial = reach.area_fraction > 0.0 && reach.area_fraction < 1.0;
+            summary.triangles_partly_reached += usize::from(is_partial);
+        }
+        summary
+    }
+}
+
+/// The sweep whose triangles are divided, and the map of their pieces.
+struct Pieces<'a> {
+    sweep: &'a PostureSweep<'a>,
+    map: Option<&'a PostureMap>,
+    json: bool,
+}
+
+impl Pieces<'_> {
+    /// Judges pieces until the refiner, which has the rows of all triangles, asks for no more.
+    ///
+    /// # Errors
+    /// If there are too many pieces, or the map cannot be read or written.
+    fn judge(
+        &self,
+        refiner: &mut Refiner<'_>,
+        count: &mut Count<'_>,
+    ) -> Result<SweepStats, Failure> {
+        let mut known = self.map.map(PostureMap::piece_rows).transpose()?.unwrap_or_default();
+        let mut stats = SweepStats::default();
+        loop {
+            let pieces = refiner.next_pieces()?;
+            if pieces.is_empty() {
+                return Ok(stats);
+            }
+            // A batch is in the map as a whole or not at all.
+            let mut open = Vec::new();
+            for (index, batch) in pieces.chunks(BATCH_TRIANGLES).enumerate() {
+                if batch.iter().all(|piece| known.contains_key(piece)) {
+                    for (piece, row) in batch.iter().filter_map(|piece| known.remove_entry(piece)) {
+                        count.add_stickout(&row);
+                        refiner.add(piece, &row);
+                    }
+                } else {
+                    open.push(index);
+                }
+            }
+            let progress = Progress::steps(open.len(), "batches of pieces", self.json);
+            let stopped = self.sweep.run_pieces(&pieces, &open, |batch: PieceBatch| {
+                stats += batch.stats;
+                progress.advance(1);
+                if let Some(Err(error)) = self.map.map(|map| map.record_pieces(&batch.rows)) {
+                    return ControlFlow::Break(error);
+                }
+                for (piece, row) in &batch.rows {
+                    count.add_stickout(row);
+                    refiner.add(*piece, row);
+                }
+                ControlFlow::Continue(())
+            });
+            drop(progress);
+            if let ControlFlow::Break(error) = stopped {
+                return Err(error.into());
+            }
+        }
+    }
+}
+
+/// Formats a fraction in percent; 0 % of an empty whole.
+fn percent(amount: f64, whole: f64) -> String {
+    format!("{:.1} %", if whole > 0.0 { 100.0 * amount / whole } else { 0.0 })
+}
+
+/// A number of triangles, and an area.
+#[derive(Clone, Copy, Default)]
+struct TriangleTotals {
+    triangles: usize,
+    /// In the square of the mesh's unit.
+    area: f64,
+}
+
+impl TriangleTotals {
+    /// Counts the triangles of which a fraction above 0 belongs to a set, and adds up the area of the set.
+    fn count(mesh: &Mesh, fraction: impl Fn(TriangleId) -> f64) -> TriangleTotals {
+        mesh.ids().fold(TriangleTotals::default(), |totals, id| TriangleTotals {
+            triangles: totals.triangles + usize::from(fraction(id) > 0.0),
+            area: totals.area + fraction(id) * mesh.area(id),
+        })
+    }
+
+    /// Formats these totals as percentages of `all`.
+    fn percent_of(self, all: TriangleTotals) -> String {
+        let triangles = percent(self.triangles as f64, all.triangles as f64);
+        format!("{triangles} of the triangles, {} of the area", percent(self.area, all.area))
+    }
 }
 
 /// Sweeps a part with tools, and prints a summary.
@@ -126,15 +245,15 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     let inputs = arguments.tools.iter().map(Path::new).chain([&*arguments.mesh.part]);
     let inputs = inputs.chain(arguments.touched.as_deref());
     refuse_inputs(arguments.output.as_deref(), inputs)?;
-    let load = |name: &OsString| LoadedTool::load(name, &arguments.params);
-    let loaded: Vec<LoadedTool> = arguments.tools.iter().map(load).collect::<Result<_, _>>()?;
+    let loaded = arguments.tools.iter().map(|name| LoadedTool::load(name, &arguments.params));
+    let loaded: Vec<LoadedTool> = loaded.collect::<Result<_, _>>()?;
     let tools: Vec<&dyn Tool> = loaded.iter().map(LoadedTool::tool).collect();
     let unit = arguments.mesh.unit;
     let mesh = part::mesh(&arguments.mesh.part, unit, "sweep")?;
     let bvh = TriangleBvh::new(&mesh);
     part::require_inside(&bvh, &arguments.mesh.part, arguments.surface_only)?;
     let rules = Rules {
-        tolerance: arguments.tolerance.unwrap_or_else(|| default_tolerance(unit)),
+        tolerance: arguments.tolerance.unwrap_or_else(|| Rules::default_tolerance(unit)),
         niceness: arguments.min_niceness,
         allowed: arguments.allow.clone(),
     };
@@ -153,36 +272,31 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     if let Some((file, map)) = arguments.touched.as_ref().zip(map.as_ref()) {
         return touched::record(file, map, &mesh, &bvh, &tools, json);
     }
-    let mut count = Count::new(&mesh, &tools);
     let refinement = arguments.refine.map(|finest| match finest {
         Some(finest) => Refinement::down_to(finest),
         None => Refinement::of_tools(&tools, unit),
     });
     let refiner = refinement.map(|how| Refiner::new(&mesh, tools.len(), how)).transpose()?;
-    let mut refiner = refiner.zip(refinement);
+    let mut count = Count::new(&mesh, &tools, refiner);
     let open = open_batches(&sweep, map.as_ref())?;
     let progress = Progress::steps(open.len(), "batches", json);
     let start = Instant::now();
     let mut stats = SweepStats::default();
-    let mut add = |triangle: TriangleId, row: &MapRow| {
-        count.add(triangle, row);
-        if let Some((refiner, _)) = &mut refiner {
-            refiner.add(Piece::whole(triangle), row);
-        }
-    };
     let stopped = sweep.run(&open, |batch: Batch| {
         stats += batch.stats;
         progress.advance(1);
+        // With a map the rows are read from it at the end, together with those of earlier sweeps.
         match &map {
             Some(map) => {
                 if let Err(error) = map.record(&batch.rows) {
                     return ControlFlow::Break(error);
                 }
             }
-            None => batch.rows.iter().for_each(|(id, row)| add(*id, row)),
+            None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
         }
         ControlFlow::Continue(())
     });
+    // Cleared before anything is printed.
     drop(progress);
     if let ControlFlow::Break(error) = stopped {
         return Err(error.into());
@@ -190,12 +304,12 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     if let Some(map) = &map {
         for entry in map.rows()? {
             let (triangle, row) = entry?;
-            add(triangle, &row);
+            count.add(triangle, &row);
         }
     }
-    let refinement = match refiner {
+    let refinement = match count.refiner.take().zip(refinement) {
         Some((mut refiner, Refinement { finest, .. })) => {
-            let pieces = refine::Pieces { sweep: &sweep, map: map.as_ref(), json };
+            let pieces = Pieces { sweep: &sweep, map: map.as_ref(), json };
             stats += pieces.judge(&mut refiner, &mut count)?;
             Some(count.refine(&refiner, finest))
         }
@@ -228,21 +342,20 @@ pub(crate) fn sweep(arguments: &Sweep, json: bool) -> Result<(), Failure> {
     };
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         summary.print(&mut out, unit, &reached.percent_of(all))?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// Returns the batches that are not in the map.
 fn open_batches(sweep: &PostureSweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
     let Some(map) = map else { return Ok((0..sweep.batches()).collect()) };
     let swept = map.swept()?;
-    let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept.contains(id));
-    Ok((0..sweep.batches()).filter(is_open).collect())
+    let open = (0..sweep.batches())
+        .filter(|batch| sweep.triangles(*batch).iter().any(|id| !swept.contains(id)));
+    Ok(open.collect())
 }
 
 impl Summary {
@@ -307,5 +420,17 @@ impl Summary {
             )?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn nothing_is_no_percentage_of_nothing() {
+        assert_eq!(percent(0.0, 0.0), "0.0 %");
+        assert_eq!(percent(3.0, 0.0), "0.0 %");
+        assert_eq!(percent(1.0, 8.0), "12.5 %");
     }
 }

@@ -1,7 +1,7 @@
 //! `touchoff sweep --touched`: the postures that were touched in the page of `touchoff live`, proved and added to a map.
 
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, unreadable};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -47,8 +47,7 @@ pub(super) fn record(
     tools: &[&dyn Tool],
     json: bool,
 ) -> Result<(), Failure> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|source| Failure::Unreadable { file: file.display().to_string(), source })?;
+    let text = std::fs::read_to_string(file).map_err(|source| unreadable(file, source))?;
     let touched = read(&text, mesh, tools).map_err(|(line, reason)| Failure::Touched {
         file: file.display().to_string(),
         line,
@@ -83,8 +82,7 @@ pub(super) fn record(
     summary.triangles = triangles.len();
     let mut out = Output::lines();
     if json {
-        serde_json::to_writer(&mut out, &summary)?;
-        writeln!(out)?;
+        out.json(&summary)?;
     } else {
         let Summary { postures, accepted, without_contact, triangles } = summary;
         writeln!(
@@ -94,8 +92,7 @@ pub(super) fn record(
             postures - accepted - without_contact
         )?;
     }
-    out.flush()?;
-    Ok(())
+    Ok(out.flush()?)
 }
 
 /// Reads the table; an error is a line and the reason.
@@ -107,32 +104,28 @@ fn read(text: &str, mesh: &Mesh, tools: &[&dyn Tool]) -> Result<Vec<Touched>, (u
             format!("the columns are not `{COLUMNS}`: export the table from the page"),
         ));
     }
-    let row = |(line, row): (usize, &str)| {
-        let wrong = |reason: String| (line, reason);
-        let cells: Vec<&str> = row.trim_end().split(',').collect();
-        let [triangle, _, tool, pose @ ..] = &cells[..] else {
-            return Err(wrong("the row is too short".to_owned()));
-        };
-        let triangle =
-            triangle.parse::<usize>().ok().filter(|id| mesh.triangles().get(*id).is_some());
-        let triangle = triangle.ok_or_else(|| {
-            wrong(format!(
-                "the part has no triangle `{}`: name the part that was touched",
-                cells[0]
-            ))
-        })?;
-        let position = tools.iter().position(|known| known.info().name == **tool);
-        let position = position.ok_or_else(|| {
-            wrong(format!("the tool `{}` is none of `--tool`: name it, too", cells[2]))
-        })?;
-        let numbers: Result<Vec<f64>, _> = pose.iter().map(|cell| cell.parse::<f64>()).collect();
-        let numbers = numbers.ok().and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
-        let [x, y, z, rotation @ ..] =
-            numbers.ok_or_else(|| wrong("the pose is not seven numbers".to_owned()))?;
-        let pose = Pose::from_quaternion([x, y, z].into(), rotation);
-        let pose = pose.map_err(|error| wrong(error.to_string()))?;
-        let triangle = TriangleId(triangle as u32);
-        Ok(Touched { triangle, tool: position as u16, pose })
+    let rows = lines.filter(|(_, row)| !row.trim().is_empty());
+    rows.map(|(line, row)| read_row(row, mesh, tools).map_err(|reason| (line, reason))).collect()
+}
+
+/// Reads a row of the table; an error is the reason.
+fn read_row(row: &str, mesh: &Mesh, tools: &[&dyn Tool]) -> Result<Touched, String> {
+    let cells: Vec<&str> = row.trim_end().split(',').collect();
+    // Niceness is computed anew, so the page's is passed over.
+    let [triangle, _, tool, pose @ ..] = &cells[..] else {
+        return Err("the row is too short".to_owned());
     };
-    lines.filter(|(_, row)| !row.trim().is_empty()).map(row).collect()
+    let id = triangle.parse::<usize>().ok().filter(|id| mesh.triangles().get(*id).is_some());
+    let id = id.ok_or_else(|| {
+        format!("the part has no triangle `{triangle}`: name the part that was touched")
+    })?;
+    let position = tools.iter().position(|known| known.info().name == **tool);
+    let position =
+        position.ok_or_else(|| format!("the tool `{tool}` is none of `--tool`: name it, too"))?;
+    let numbers: Result<Vec<f64>, _> = pose.iter().map(|cell| cell.parse::<f64>()).collect();
+    let numbers = numbers.ok().and_then(|numbers| <[f64; 7]>::try_from(numbers).ok());
+    let [x, y, z, rotation @ ..] = numbers.ok_or("the pose is not seven numbers")?;
+    let pose = Pose::from_quaternion([x, y, z].into(), rotation);
+    let pose = pose.map_err(|error| error.to_string())?;
+    Ok(Touched { triangle: TriangleId(id as u32), tool: position as u16, pose })
 }

@@ -1,12 +1,15 @@
 //! The values that colour the triangles of a body.
 
-use super::body::{Shown, normal};
+use super::shapes::{Shown, normal};
+use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
-use crate::picture::Scale;
-use crate::postures::picture::MapValues;
+use crate::picture::{Measure, Scale};
+use crate::postures::picture::MapQuantity;
+use crate::verify::LoadedBody;
 use nalgebra::Point3;
 use std::collections::HashMap;
 use touchoff::{Cloud, Escaped, Mesh, Part, Probe, TriangleId, Unit};
+use touchoff_postures::PostureMap;
 use touchoff_verify::job::CutStock;
 use touchoff_verify::stock::PartComparison;
 use touchoff_verify::{FindingKind, JobReport};
@@ -20,21 +23,97 @@ pub(super) struct Layer {
     pub(super) values: Vec<Option<f64>>,
 }
 
+/// The bodies of a report as they are shown, and the quantities on them.
+pub(super) struct ColouredBodies {
+    pub(super) bodies: Vec<Shown>,
+    pub(super) layers: Vec<Layer>,
+}
+
+impl ColouredBodies {
+    /// Returns part and fixtures with the depths of findings; the part's layer is there even without a finding.
+    ///
+    /// # Errors
+    /// If the points of a body cannot be made ready for queries.
+    pub(super) fn new(
+        checked: &JobReport<'_>,
+        bodies: &[LoadedBody],
+    ) -> Result<ColouredBodies, Failure> {
+        let shown = bodies.iter().enumerate().map(|(index, body)| Shown {
+            is_fixture: index > 0,
+            has_own_frame: body.has_own_frame(),
+            ..Shown::new(&body.name, &body.mesh)
+        });
+        let bodies: Vec<Shown> = shown.collect();
+        let mut layers = Vec::new();
+        for (index, body) in bodies.iter().enumerate() {
+            let layer = depths(checked, index, body)?;
+            if index == 0 || layer.scale.has_values {
+                layers.push(layer);
+            }
+        }
+        Ok(ColouredBodies { bodies, layers })
+    }
+
+    /// Adds the quantities of a map of the part. They come after the depths: close-ups and the viewer show a finding by the
+    /// first layer of its body.
+    ///
+    /// # Errors
+    /// If the map cannot be read.
+    pub(super) fn add_map(&mut self, map: &PostureMap, mesh: &Mesh) -> Result<(), Failure> {
+        let tools = 0..map.identity().tools.len() as u16;
+        let quantities = [Quantity::Niceness, Quantity::Accessibility]
+            .map(|by| MapQuantity { by, tool: None })
+            .into_iter()
+            .chain(tools.map(|tool| MapQuantity { by: Quantity::StickOut, tool: Some(tool) }));
+        for quantity in quantities {
+            let (values, scale) = quantity.values(map)?;
+            if !scale.has_values {
+                continue;
+            }
+            // At the centre of each piece, as a piece has one colour.
+            let part = &self.bodies[0];
+            let values = part.corners().zip(&part.sources).map(|([a, b, c], source)| {
+                let centre = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+                values.at(mesh, TriangleId(*source), centre)
+            });
+            self.layers.push(Layer { body: 0, values: values.collect(), scale });
+        }
+        Ok(())
+    }
+
+    /// Adds what remains of the stock as a body, coloured by its distance from the finished part, unless nothing remains or
+    /// its surface has too many triangles.
+    ///
+    /// # Errors
+    /// If the stock cannot be compared with the part.
+    pub(super) fn add_stock(
+        &mut self,
+        cut: &CutStock,
+        comparison: &PartComparison,
+    ) -> Result<(), Failure> {
+        if cut.stock.is_empty() {
+            return Ok(());
+        }
+        let mesh = cut.stock.remaining_mesh()?;
+        if mesh.triangles().len() > MAX_STOCK_TRIANGLES {
+            return Ok(());
+        }
+        let values = excesses(&mesh, cut.stock.spacing(), comparison);
+        let quantity = format!("material left over the finished part, {}", mesh.unit());
+        let scale = scale_of_lengths(quantity, "on the part", &values, mesh.unit());
+        self.layers.push(Layer { body: self.bodies.len(), scale, values });
+        self.bodies.push(Shown::undivided("what remains of the stock", &mesh));
+        Ok(())
+    }
+}
+
 /// Returns the depth of the deepest finding at each triangle of a body: at its centre, near its corners, and at the
 /// deepest points of findings.
 ///
 /// # Errors
 /// If the points of the body cannot be made ready for queries.
-pub(super) fn depths(
-    checked: &JobReport<'_>,
-    index: usize,
-    shown: &Shown,
-) -> Result<Layer, Failure> {
+fn depths(checked: &JobReport<'_>, index: usize, shown: &Shown) -> Result<Layer, Failure> {
     let mut values = vec![None; shown.triangles.len()];
-    let mut include = |triangle: usize, depth: f64| {
-        let value: &mut Option<f64> = &mut values[triangle];
-        *value = Some(value.map_or(depth, |known| known.max(depth)));
-    };
     let part = Part::from_cloud(&cloud(shown)?);
     let pairs = checked.pairs.iter().filter(|pair| pair.body == index);
     for pair in pairs.filter(|pair| !pair.report.findings.is_empty()) {
@@ -45,11 +124,12 @@ pub(super) fn depths(
             };
             for contact in probe.contacts(&finding.pose) {
                 if contact.surface == surface && contact.depth > allowed {
-                    include(contact.triangle.index(), contact.depth);
+                    include(&mut values[contact.triangle.index()], contact.depth);
                 }
             }
+            // The deepest point is seldom one of the samples.
             if let Some(piece) = piece(shown, witness.triangle, &witness.point) {
-                include(piece, depth.low);
+                include(&mut values[piece], depth.low);
             }
         }
     }
@@ -57,6 +137,11 @@ pub(super) fn depths(
     let quantity = format!("depth of the deepest finding{place}, {}", shown.unit);
     let scale = scale_of_lengths(quantity, "no finding", &values, shown.unit);
     Ok(Layer { body: index, scale, values })
+}
+
+/// Raises a value to a depth, if it is not as deep.
+fn include(value: &mut Option<f64>, depth: f64) {
+    *value = Some(value.map_or(depth, |known| known.max(depth)));
 }
 
 /// Returns points of the triangles: their centres, and points near their corners.
@@ -68,6 +153,7 @@ fn cloud(shown: &Shown) -> Result<Cloud, Failure> {
         let [a, b, c] = corners;
         let centre = a + ((b - a) + (c - a)) / 3.0;
         let area = 0.5 * (b - a).cross(&(c - a)).norm();
+        // A little inside, so that each point is in one triangle only. Four points share the area.
         let near = corners.map(|corner| corner + (centre - corner) / 16.0);
         for point in near.into_iter().chain([centre]) {
             points.push(point);
@@ -97,85 +183,41 @@ fn scale_of_lengths(
     values: &[Option<f64>],
     unit: Unit,
 ) -> Scale {
-    let known = values.iter().copied().flatten();
-    Scale::new((quantity, unit.symbol()), known, (nothing, true))
-}
-
-/// Returns the values of a map at the centres of the pieces of a body's triangles.
-pub(super) fn of_map(
-    index: usize,
-    shown: &Shown,
-    mesh: &Mesh,
-    values: &MapValues,
-    scale: Scale,
-) -> Layer {
-    let pieces = shown.corners().zip(&shown.sources);
-    let values = pieces.map(|([a, b, c], source)| {
-        let centre = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-        values.at(mesh, TriangleId(*source), centre)
-    });
-    Layer { body: index, values: values.collect(), scale }
+    let measure = Measure { quantity, unit: unit.symbol(), from_zero: true, nothing };
+    Scale::new(measure, values.iter().copied().flatten())
 }
 
 /// Number of triangles above which what remains of the stock is not shown.
 const MAX_STOCK_TRIANGLES: usize = 300_000;
 
-/// Returns what remains of the stock as a body, coloured by its distance from the finished part; `None` if nothing remains,
-/// or if its surface has too many triangles.
-///
-/// # Errors
-/// If the stock cannot be compared with the part.
-pub(super) fn stock(
-    cut: &CutStock,
-    comparison: &PartComparison,
-    index: usize,
-) -> Result<Option<(Shown, Layer)>, Failure> {
-    if cut.stock.is_empty() {
-        return Ok(None);
-    }
-    let mesh = cut.stock.remaining_mesh()?;
-    if mesh.triangles().len() > MAX_STOCK_TRIANGLES {
-        return Ok(None);
-    }
-    let unit = mesh.unit();
-    let spacing = cut.stock.spacing();
-    // The nodes of the lattice are far enough apart for keys of a quarter of the spacing.
-    let key = |point: Point3<f64>| {
-        let [x, y, z]: [f64; 3] = (point.coords * (4.0 / spacing)).into();
-        [x, y, z].map(|part| part.round() as i64)
-    };
-    let near = |point: Point3<f64>| {
-        let [x, y, z] = key(point);
-        let around = [-1, 0, 1];
-        around.into_iter().flat_map(move |i| {
-            around.into_iter().flat_map(move |j| around.map(move |k| [x + i, y + j, z + k]))
-        })
-    };
+/// Returns the distance from the finished part of each triangle of what remains of the stock, where there is an excess.
+fn excesses(mesh: &Mesh, spacing: f64, comparison: &PartComparison) -> Vec<Option<f64>> {
+    let points = comparison.excess.iter();
     let excess: HashMap<[i64; 3], f64> =
-        comparison.excess.iter().map(|point| (key(point.point), point.distance)).collect();
-    let values: Vec<Option<f64>> = mesh
-        .ids()
-        .map(|id| {
-            let corners = mesh.triangle(id);
-            // A face of a cell is two triangles, whose longest edge goes through its middle.
-            let edges = [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|end: usize| corners[end]));
-            let length = |[from, to]: &[Point3<f64>; 2]| (to - from).norm();
-            let diagonal = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
-            let node =
-                nalgebra::center(&diagonal[0], &diagonal[1]) - mesh.normal(id)? * (0.5 * spacing);
-            near(node).find_map(|key| excess.get(&key).copied())
-        })
-        .collect();
-    let shown = Shown {
-        name: "what remains of the stock".to_owned(),
-        unit,
-        vertices: mesh.vertices().to_vec(),
-        triangles: mesh.triangles().to_vec(),
-        sources: (0..mesh.triangles().len() as u32).collect(),
-        is_fixture: false,
-        has_own_frame: false,
-    };
-    let quantity = format!("material left over the finished part, {unit}");
-    let scale = scale_of_lengths(quantity, "on the part", &values, unit);
-    Ok(Some((shown, Layer { body: index, scale, values })))
+        points.map(|point| (key(point.point, spacing), point.distance)).collect();
+    let values = mesh.ids().map(|id| {
+        // A face of a cell is two triangles, whose longest edge goes through its middle.
+        let [a, b, c] = mesh.triangle(id);
+        let length = |[from, to]: &[Point3<f64>; 2]| (to - from).norm();
+        let edges = [[a, b], [b, c], [c, a]].into_iter();
+        let [from, to] = edges.max_by(|one, other| length(one).total_cmp(&length(other)))?;
+        let node = nalgebra::center(&from, &to) - mesh.normal(id)? * (0.5 * spacing);
+        near(key(node, spacing)).find_map(|key| excess.get(&key).copied())
+    });
+    values.collect()
+}
+
+/// Returns the key of a node of a lattice, in quarters of its spacing: far finer than nodes lie apart, and far coarser than
+/// rounding errors.
+fn key(point: Point3<f64>, spacing: f64) -> [i64; 3] {
+    let [x, y, z]: [f64; 3] = (point.coords * (4.0 / spacing)).into();
+    [x, y, z].map(|part| part.round() as i64)
+}
+
+/// Returns a key and those around it, as rounding may lead to any of them.
+fn near([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
+    let around = [-1, 0, 1];
+    around.into_iter().flat_map(move |i| {
+        around.into_iter().flat_map(move |j| around.map(move |k| [x + i, y + j, z + k]))
+    })
 }

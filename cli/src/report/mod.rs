@@ -1,41 +1,34 @@
 //! `touchoff report`: one HTML file about a program, to send around.
 //!
 //! ```text
-//! job ──verify──▶ findings ──cameras──▶ places ─┐
-//! bodies ──body──▶ pieces ──colouring──▶ layers ─┼─scene──▶ the 3-D view ─┐
-//! tools ──tool_shape──▶ profiles ────────────────┴─picture─▶ pictures ────┼─page──▶ HTML
-//! program ──along──▶ samples ──charts──▶ charts ──────────────────────────┘
+//! job ──verify──▶ findings ──scene──▶ places ──────┐
+//! bodies ──shapes──▶ pieces ──colouring──▶ layers ─┼─scene──▶ the 3-D view ─┐
+//! tools ──shapes──▶ profiles ──────────────────────┴─picture─▶ pictures ────┼─page──▶ HTML
+//! program ──along──▶ samples, charts ───────────────────────────────────────┘
 //! ```
 
 mod along;
-mod body;
-mod cameras;
-mod charts;
 mod colouring;
-mod files;
 mod page;
 mod scene;
-mod tool_shape;
+mod shapes;
 
 use crate::arguments::Report;
-use crate::arguments::postures::Quantity;
 use crate::failure::Failure;
-use crate::output::{extension, file_name, refuse_inputs, write_file};
+use crate::output::{extension, file_name, refuse_inputs, unreadable, write_file};
 use crate::picture::{Heading, Legend, close_up, facets, sheet};
 use crate::postures::map::check_part;
-use crate::postures::picture::quantity;
 use crate::progress::Progress;
 use crate::verify::{self, Inputs};
 use along::Along;
-use body::Shown;
-use cameras::Place;
-use colouring::Layer;
-use files::InputFile;
-use scene::Scene;
+use colouring::{ColouredBodies, Layer};
+use scene::{Place, Scene};
+use sha2::{Digest, Sha256};
+use shapes::ToolShape;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use tool_shape::ToolShape;
 use touchoff::Escaped;
 use touchoff_postures::PostureMap;
 use touchoff_verify::JobReport;
@@ -53,8 +46,7 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let start = Instant::now();
     let Report { job: subject, check, map, output } = arguments;
     if extension(&output).as_deref() != Some("html") {
-        let better = output.with_extension("html");
-        return Err(Failure::ReportFormat { file: output.display().to_string(), better });
+        return Err(Failure::extension("a report ends in `.html`", &output, "html"));
     }
     let is_job = extension(&subject).as_deref() == Some("toml");
     if is_job && check.states_subject() {
@@ -67,10 +59,9 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
             "a report on a part needs `--unit`, `--tool` and `--program`; or name a job file",
         ));
     }
-    let job = match is_job {
-        true => verify::job_file(Some(subject.clone()), None, check)?,
-        false => verify::job_file(None, Some(subject.clone()), check)?,
-    };
+    let (job_file, part) =
+        if is_job { (Some(subject.clone()), None) } else { (None, Some(subject.clone())) };
+    let job = verify::job_file(job_file, part, check)?;
     let named = job.files().into_iter().map(|(_, file)| file.to_owned());
     let named: Vec<PathBuf> = named.chain([subject.clone()]).chain(map.clone()).collect();
     refuse_inputs([&*output], named.iter().map(|file| &**file))?;
@@ -91,14 +82,47 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
 
     let progress = Progress::spinner("writing the report", json);
     let job_file = is_job.then_some(&*subject);
-    let map = map.as_ref().map(|(map, file)| (map, &**file));
-    let content = Content::new(&inputs, &checked, (job_file, map), times)?;
+    let map = map.as_ref().map(|(map, file)| NamedMap { map, file });
+    let content = Content::new(&inputs, &checked, job_file, map, times)?;
     let html = page::html(&content)?;
     drop(progress);
     let megabytes = html.len() as f64 / 1e6;
     write_file(&output, html)?;
     message!("{}: {megabytes:.1} MB, opens in a browser", output.display());
     Ok(verify::exit(checked.verdict()))
+}
+
+/// A posture map and its file.
+#[derive(Clone, Copy)]
+struct NamedMap<'a> {
+    map: &'a PostureMap,
+    file: &'a Path,
+}
+
+/// A file as it was read.
+struct InputFile {
+    role: String,
+    name: String,
+    bytes: usize,
+    /// SHA-256 of its content, in hexadecimal digits.
+    digest: String,
+}
+
+impl InputFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Failure::Unreadable`].
+    fn read(role: String, file: &Path) -> Result<InputFile, Failure> {
+        let name = file.display().to_string();
+        let content = std::fs::read(file).map_err(|source| unreadable(file, source))?;
+        let mut digest = String::new();
+        for byte in Sha256::digest(&content) {
+            // Writing to a String does not fail.
+            let _ = write!(digest, "{byte:02x}");
+        }
+        Ok(InputFile { role, name, bytes: content.len(), digest })
+    }
 }
 
 /// A picture, as PNG.
@@ -112,7 +136,7 @@ struct Content<'a> {
     inputs: &'a Inputs,
     checked: &'a JobReport<'a>,
     /// The map that colours the part.
-    map: Option<(&'a PostureMap, &'a Path)>,
+    map: Option<NamedMap<'a>>,
     comparison: Option<PartComparison>,
     files: Vec<InputFile>,
     shapes: Vec<ToolShape>,
@@ -135,7 +159,8 @@ impl<'a> Content<'a> {
     fn new(
         inputs: &'a Inputs,
         checked: &'a JobReport<'a>,
-        (job_file, map): (Option<&Path>, Option<(&'a PostureMap, &'a Path)>),
+        job_file: Option<&Path>,
+        map: Option<NamedMap<'a>>,
         mut times: Vec<(&'static str, Duration)>,
     ) -> Result<Content<'a>, Failure> {
         let (unit, bodies) = (inputs.file.unit, &inputs.bodies);
@@ -147,42 +172,14 @@ impl<'a> Content<'a> {
         times.push(("depth, clearance and force along the program", start.elapsed()));
 
         let start = Instant::now();
-        let mut shown: Vec<Shown> = bodies
-            .iter()
-            .enumerate()
-            .map(|(index, body)| {
-                Shown::new(&body.name, &body.mesh, [index > 0, body.has_own_frame()])
-            })
-            .collect();
-        // A body's depths come first: close-ups and the viewer show a finding by the first layer of its body.
-        let mut layers = Vec::new();
-        for (index, body) in shown.iter().enumerate() {
-            let layer = colouring::depths(checked, index, body)?;
-            if index == 0 || layer.scale.has_values {
-                layers.push(layer);
-            }
-        }
-        if let Some((map, _)) = map {
-            let tools = 0..map.identity().tools.len() as u16;
-            let each = tools.map(|tool| (Quantity::StickOut, Some(tool)));
-            for (by, tool) in [(Quantity::Niceness, None), (Quantity::Accessibility, None)]
-                .into_iter()
-                .chain(each)
-            {
-                let (values, scale) = quantity(map, by, tool)?;
-                let layer = colouring::of_map(0, &shown[0], &bodies[0].mesh, &values, scale);
-                if layer.scale.has_values {
-                    layers.push(layer);
-                }
-            }
+        let mut shown = ColouredBodies::new(checked, bodies)?;
+        if let Some(NamedMap { map, .. }) = map {
+            shown.add_map(map, &bodies[0].mesh)?;
         }
         let mut comparison = None;
         if let Some(cut) = checked.cut() {
             let deviations = cut.stock.compare(&bodies[0].bvh)?;
-            if let Some((body, layer)) = colouring::stock(cut, &deviations, shown.len())? {
-                shown.push(body);
-                layers.push(layer);
-            }
+            shown.add_stock(cut, &deviations)?;
             comparison = Some(deviations);
         }
         let shapes: Vec<ToolShape> =
@@ -190,16 +187,17 @@ impl<'a> Content<'a> {
         let places: Vec<Option<Place>> = checked
             .findings()
             .iter()
-            .map(|finding| Place::of(finding, inputs, checked, &shown, &shapes))
+            .map(|finding| Place::of(finding, inputs, checked, &shown.bodies, &shapes))
             .collect();
-        let pictures =
-            Pictures { inputs, checked, shown: &shown, layers: &layers, shapes: &shapes };
+        let pictures = Pictures { inputs, checked, shown: &shown, shapes: &shapes };
         let title = pictures.title();
-        let scene = Scene::new((&shown, &layers), &shapes, &places, (&title, unit));
-        let sheets = layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
+        let scene = Scene::new(&title, unit, &shown, &shapes, &places);
+        let sheets =
+            shown.layers.iter().map(|layer| pictures.sheet(layer)).collect::<Result<_, _>>()?;
         let mut close_ups: Vec<(usize, Picture)> = Vec::new();
         for (index, (finding, place)) in checked.findings().iter().zip(&places).enumerate() {
             let Some(place) = place else { continue };
+            // The worst come first, so a place is left out that the picture of a worse finding shows.
             let mut drawn = close_ups.iter().filter_map(|(drawn, _)| places[*drawn].as_ref());
             if close_ups.len() < CLOSE_UPS && !drawn.any(|drawn| drawn.shows(place)) {
                 close_ups.push((index, pictures.close_up(index, finding, place)?));
@@ -208,7 +206,7 @@ impl<'a> Content<'a> {
         times.push(("pictures", start.elapsed()));
 
         let job_file = job_file.map(|file| ("job".to_owned(), file));
-        let map_file = map.map(|(_, file)| ("posture map".to_owned(), file));
+        let map_file = map.map(|map| ("posture map".to_owned(), map.file));
         let files = job_file.into_iter().chain(inputs.file.files()).chain(map_file);
         Ok(Content {
             inputs,
@@ -234,15 +232,14 @@ impl<'a> Content<'a> {
 struct Pictures<'a> {
     inputs: &'a Inputs,
     checked: &'a JobReport<'a>,
-    shown: &'a [Shown],
-    layers: &'a [Layer],
+    shown: &'a ColouredBodies,
     shapes: &'a [ToolShape],
 }
 
 impl Pictures<'_> {
     /// Draws a quantity on its body, in several views.
     fn sheet(&self, layer: &Layer) -> Result<Picture, Failure> {
-        let shown = &self.shown[layer.body];
+        let shown = &self.shown.bodies[layer.body];
         let facets: Vec<_> = facets(shown.corners(), &layer.values, &layer.scale).collect();
         let body =
             if layer.body == 0 { file_name(&self.inputs.file.part) } else { shown.name.clone() };
@@ -261,17 +258,12 @@ impl Pictures<'_> {
         place: &Place,
     ) -> Result<Picture, Failure> {
         let body = place.body.unwrap_or(0);
-        let shown = &self.shown[body];
+        let shown = &self.shown.bodies[body];
         // Each body with findings has a layer of their depths, the first of its layers.
-        let layer = self.layers.iter().find(|layer| layer.body == body);
-        let layer = layer.unwrap_or(&self.layers[0]);
-        let plain;
-        let values = if layer.body == body {
-            &layer.values
-        } else {
-            plain = vec![None; shown.triangles.len()];
-            &plain
-        };
+        let layers = &self.shown.layers;
+        let layer = layers.iter().find(|layer| layer.body == body).unwrap_or(&layers[0]);
+        let plain = vec![None; shown.triangles.len()];
+        let values = if layer.body == body { &layer.values } else { &plain };
         let tool = place.tool.as_ref().map(|(tool, pose)| self.shapes[*tool].facets(pose));
         let facets =
             facets(shown.corners(), values, &layer.scale).chain(tool.into_iter().flatten());
@@ -291,13 +283,20 @@ impl Pictures<'_> {
 
     /// Describes the program, the tools and the unit.
     fn subtitle(&self) -> String {
-        let names = self.checked.job.tools.iter().map(|tool| {
-            let number = tool.number().map_or(String::new(), |number| format!("T{number} "));
-            format!("{number}{}", tool.tool.info().name)
-        });
+        let names = self
+            .checked
+            .job
+            .tools
+            .iter()
+            .map(|tool| format!("{}{}", prefix(tool.number()), tool.tool.info().name));
         let names: Vec<String> = names.collect();
         let program = file_name(&self.inputs.file.program);
         let text = format!("{program}, {}, lengths in {}", names.join(", "), self.inputs.file.unit);
         Escaped(&text).to_string()
     }
+}
+
+/// Returns a tool's number in the program as it stands before the name.
+fn prefix(number: Option<u32>) -> String {
+    number.map_or(String::new(), |number| format!("T{number} "))
 }

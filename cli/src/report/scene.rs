@@ -1,14 +1,121 @@
-//! The data of the 3-D view, as JSON in the page.
+//! The 3-D view: the place of each finding with its camera, and the data of the view, as JSON in the page.
 
-use super::body::Shown;
-use super::cameras::Place;
-use super::colouring::Layer;
-use super::tool_shape::ToolShape;
+use super::colouring::{ColouredBodies, Layer};
+use super::shapes::{Shown, ToolShape};
+use crate::picture::render::Camera;
+use crate::verify::Inputs;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use touchoff::{Escaped, Pose, Unit};
 use touchoff_postures::colormap;
+use touchoff_verify::job::{FindingDetail, JobFinding};
+use touchoff_verify::{FindingKind, JobReport};
+
+/// The place of a finding, and how to look at it.
+pub(super) struct Place {
+    /// The body that the tool touches; `None` for the stock.
+    pub(super) body: Option<usize>,
+    /// The index of the tool, if its pose is known.
+    pub(super) tool: Option<(usize, Pose)>,
+    /// The point to look at.
+    target: Point3<f64>,
+    /// Direction from there to the eye, of length 1.
+    toward: Vector3<f64>,
+    /// The length that the picture shows.
+    extent: f64,
+}
+
+/// Pitch of cameras above which the direction would be parallel to the upward one, as its sine.
+const MAX_RISE: f64 = 0.97;
+
+impl Place {
+    /// Returns the place of a finding; `None` if it has none, such as a limit of an axis.
+    pub(super) fn of(
+        finding: &JobFinding,
+        inputs: &Inputs,
+        checked: &JobReport<'_>,
+        shown: &[Shown],
+        shapes: &[ToolShape],
+    ) -> Option<Place> {
+        match &finding.detail {
+            FindingDetail::Machine(_) => None,
+            FindingDetail::Stock(finding) => {
+                let tools = &checked.job.tools;
+                let tool = tools.iter().position(|tool| tool.number() == finding.tool_number);
+                let shape = shapes.get(tool?)?;
+                // From above, as the first view of a sheet: a point of the stock has no normal.
+                let toward = above_horizon(Vector3::new(1.0, -1.5, 1.3));
+                let extent = extent(&shown[0], shape);
+                let target = finding.point;
+                Some(Place { body: None, tool: None, target, toward, extent })
+            }
+            FindingDetail::Surface { pair, group, .. } => {
+                let (finding, pair) = (&group.worst, &checked.pairs[*pair]);
+                let (tool, body) = (pair.tool, pair.body);
+                let witness = match finding.kind {
+                    FindingKind::Deep { witness, .. } | FindingKind::Near { witness, .. } => {
+                        Some(witness)
+                    }
+                    FindingKind::Inside { .. }
+                    | FindingKind::Undecided { .. }
+                    | FindingKind::Ambiguous(_) => None,
+                };
+                let axis = finding.pose.axis();
+                let mesh = &inputs.bodies[body].mesh;
+                let normal = witness.and_then(|witness| mesh.normal(witness.triangle));
+                let normal = normal.unwrap_or(axis);
+                // From the side of the tool, a little from above, and more from outside the material.
+                let side = axis.cross(&normal).try_normalize(1e-3);
+                // Where the end of the tool touches, the axis is the normal, and any side will do.
+                let side = side.unwrap_or_else(|| axis.cross(&Vector3::x()));
+                let toward = above_horizon(normal + 0.7 * side + 0.35 * axis);
+                let target = witness.map_or(finding.pose.tip(), |witness| witness.point);
+                let extent = extent(&shown[body], &shapes[tool]);
+                let tool = Some((tool, finding.pose));
+                Some(Place { body: Some(body), tool, target, toward, extent })
+            }
+        }
+    }
+
+    /// Returns whether the picture of this place also shows another one.
+    pub(super) fn shows(&self, other: &Place) -> bool {
+        let near = (other.target - self.target).norm() < 0.15 * self.extent;
+        self.body == other.body && near
+    }
+
+    /// Returns the camera. What stands in front of the place is cut away.
+    pub(super) fn camera(&self) -> Camera {
+        // `toward` is nowhere parallel to z.
+        let directions = [self.toward, Vector3::z()];
+        Camera::new(self.target, directions, self.extent).with_cut(self.cut())
+    }
+
+    /// Returns the distance in front of the place beyond which nothing is shown.
+    fn cut(&self) -> f64 {
+        0.6 * self.extent
+    }
+}
+
+/// Returns the length that a picture of a place shows: some diameters of the tool, and no more than the body.
+fn extent(body: &Shown, shape: &ToolShape) -> f64 {
+    let whole = body.extent();
+    let near = 10.0 * shape.radius();
+    if near > 0.0 { near.clamp(0.02 * whole, 1.2 * whole) } else { whole }
+}
+
+/// Returns a direction of length 1 that is not parallel to z.
+fn above_horizon(toward: Vector3<f64>) -> Vector3<f64> {
+    let toward = toward.try_normalize(0.0).unwrap_or_else(Vector3::x);
+    if toward.z.abs() <= MAX_RISE {
+        return toward;
+    }
+    let aside = Vector3::new(toward.x, toward.y, 0.0).try_normalize(1e-9);
+    let aside = aside.unwrap_or_else(|| Vector3::new(0.6, -0.8, 0.0));
+    let rise = MAX_RISE.copysign(toward.z);
+    aside * (1.0 - rise * rise).sqrt() + Vector3::z() * rise
+}
 
 /// Number of triangles above which there is no 3-D view, so that the file stays below 15 MB.
 const MAX_TRIANGLES: usize = 500_000;
@@ -78,44 +185,24 @@ struct PlaceRow {
 impl<'a> Scene<'a> {
     /// Returns the data of the view; `None` if there are too many triangles for one.
     pub(super) fn new(
-        (shown, layers): (&'a [Shown], &'a [Layer]),
+        title: &'a str,
+        unit: Unit,
+        shown: &'a ColouredBodies,
         shapes: &[ToolShape],
         places: &[Option<Place>],
-        (title, unit): (&'a str, Unit),
     ) -> Option<Scene<'a>> {
-        if shown.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
+        let ColouredBodies { bodies, layers } = shown;
+        if bodies.iter().map(|body| body.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
             return None;
         }
-        let tool = |shape: &ToolShape| Tool {
-            lines: shape
-                .lines
-                .iter()
-                .map(|(from, to, cuts)| {
-                    [from[0], from[1], to[0], to[1], f64::from(u8::from(*cuts))]
-                })
-                .collect(),
-        };
-        let place = |place: &Place| {
-            let pose = place.tool.as_ref().map(|(_, pose)| pose);
-            PlaceRow {
-                body: place.body,
-                tool: place.tool.as_ref().map(|(tool, _)| *tool),
-                tip: pose.map(|pose: &Pose| pose.tip().into()),
-                axis: pose.map(|pose| pose.axis().into()),
-                target: place.target.into(),
-                toward: place.toward.into(),
-                extent: place.extent,
-                cut: place.cut(),
-            }
-        };
         const COLOURS: usize = 33;
         Some(Scene {
             title,
             unit: unit.symbol(),
-            bodies: shown.iter().map(Body::new).collect(),
+            bodies: bodies.iter().map(Body::new).collect(),
             layers: layers.iter().map(LayerRow::new).collect(),
-            tools: shapes.iter().map(tool).collect(),
-            places: places.iter().map(|known| known.as_ref().map(place)).collect(),
+            tools: shapes.iter().map(Tool::new).collect(),
+            places: places.iter().map(|known| known.as_ref().map(PlaceRow::new)).collect(),
             colours: (0..COLOURS).map(|k| colormap(k as f64 / (COLOURS - 1) as f64)).collect(),
         })
     }
@@ -129,13 +216,11 @@ impl<'a> Scene<'a> {
 
 impl<'a> Body<'a> {
     fn new(shown: &'a Shown) -> Body<'a> {
-        let first = shown.vertices.first().copied().unwrap_or_default();
-        let ends = shown.vertices.iter();
-        let (low, high) =
-            ends.fold((first, first), |(low, high), vertex| (low.inf(vertex), high.sup(vertex)));
+        let [low, high] = shown.bounds();
         let step = (high - low) / COORDINATE_STEPS;
         let vertices = shown.vertices.iter().flat_map(|vertex| {
             [0, 1, 2].map(|k| {
+                // A flat body has no extent along one axis.
                 let steps = if step[k] > 0.0 { (vertex[k] - low[k]) / step[k] } else { 0.0 };
                 steps.round() as u16
             })
@@ -156,15 +241,41 @@ impl<'a> Body<'a> {
 impl<'a> LayerRow<'a> {
     fn new(layer: &'a Layer) -> LayerRow<'a> {
         let scale = &layer.scale;
-        let byte = |value: &Option<f64>| {
+        let values = layer.values.iter().map(|value| {
             value.map_or(0, |value| 1 + (scale.share(value) * COLOUR_STEPS).round() as u8)
-        };
+        });
         LayerRow {
             body: layer.body,
             quantity: &scale.quantity,
             ends: scale.has_values.then_some(&scale.ends),
             nothing: scale.nothing,
-            values: base64(layer.values.iter().map(byte)),
+            values: base64(values),
+        }
+    }
+}
+
+impl Tool {
+    fn new(shape: &ToolShape) -> Tool {
+        let lines = shape.lines.iter().map(|line| {
+            let ([d, z], [to_d, to_z]) = (line.from, line.to);
+            [d, z, to_d, to_z, f64::from(u8::from(line.cuts))]
+        });
+        Tool { lines: lines.collect() }
+    }
+}
+
+impl PlaceRow {
+    fn new(place: &Place) -> PlaceRow {
+        let (tool, pose) = place.tool.unzip();
+        PlaceRow {
+            body: place.body,
+            tool,
+            tip: pose.map(|pose| pose.tip().into()),
+            axis: pose.map(|pose| pose.axis().into()),
+            target: place.target.into(),
+            toward: place.toward.into(),
+            extent: place.extent,
+            cut: place.cut(),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Export of maps. Every number is written so that it reads back as the same double.
 
 use super::{MapError, MapIdentity, PartFingerprint, PostureMap};
-use crate::record::area_fraction;
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Rules};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -74,7 +73,9 @@ impl PostureMap {
         self.for_each_triangle(|triangle, pieces| {
             let row = MapRow::joined(&pieces, self.identity.keep);
             lines(&row).try_for_each(|(record, access)| {
-                let reached = access.and_then(|access| area_fraction(&pieces, access.tool));
+                let reached = access.and_then(|access| {
+                    pieces.iter().map(|(piece, row)| row.area_fraction(*piece, access.tool)).sum()
+                });
                 self.line(out, triangle, record, access, reached).map_err(export)
             })
         })?;
@@ -159,7 +160,10 @@ impl PostureMap {
                 tool: self.name(access.tool),
                 directions: direction_count(access),
                 stickout: access.stickout,
-                area_reached: area_fraction(&pieces, access.tool),
+                area_reached: pieces
+                    .iter()
+                    .map(|(piece, row)| row.area_fraction(*piece, access.tool))
+                    .sum(),
             });
             let (best, access) = (best.collect(), access.collect());
             let row = Triangle { triangle, pieces: pieces.len(), best, access };
@@ -188,11 +192,14 @@ impl PostureMap {
         }
         let mut faces = Vec::new();
         self.for_each_triangle(|triangle, pieces| {
+            // Triangles without a row are missing here, and are faces too.
             while faces.len() < triangle.index() {
                 faces.push(vec![]);
             }
-            let niceness = |row: &MapRow| row.best.first().map_or(f64::NAN, |best| best.niceness);
-            faces.push(pieces.iter().map(|(piece, row)| (*piece, niceness(row))).collect());
+            let pieces = pieces.iter().map(|(piece, row)| {
+                (*piece, row.best.first().map_or(f64::NAN, |best| best.niceness))
+            });
+            faces.push(pieces.collect());
             Ok::<(), MapError>(())
         })?;
         faces.resize(mesh.triangles().len(), Vec::new());
@@ -237,6 +244,7 @@ fn write_ply_body(
                     })
                 })
             });
+            // Two vertices of the mesh may be at one point, and an undivided triangle keeps its own.
             let corners = if piece.cuts() == 0 { triangle } else { corners };
             faces.push((id, corners, *niceness));
         }
@@ -268,11 +276,13 @@ fn write_ply_body(
 
 /// Returns the postures of a row, each with its tool's accessibility, and then the tools without a posture.
 fn lines(row: &MapRow) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&Accessibility>)> {
-    let of = |record: &PostureRecord| row.access.iter().find(|access| access.tool == record.tool);
-    let records = row.best.iter().map(move |record| (Some(record), of(record)));
-    let has_no_record =
-        |access: &&Accessibility| row.best.iter().all(|record| record.tool != access.tool);
-    records.chain(row.access.iter().filter(has_no_record).map(|access| (None, Some(access))))
+    let records = row
+        .best
+        .iter()
+        .map(|record| (Some(record), row.access.iter().find(|access| access.tool == record.tool)));
+    let others =
+        row.access.iter().filter(|access| row.best.iter().all(|record| record.tool != access.tool));
+    records.chain(others.map(|access| (None, Some(access))))
 }
 
 /// Returns the number of directions from which a tool reaches a triangle.

@@ -109,8 +109,14 @@ impl MapIdentity {
 
     /// Returns a tool's index in the list; `None` if no entry has its name and digest.
     pub fn tool(&self, info: &ToolInfo) -> Option<u16> {
-        let matches = |tool: &ToolFingerprint| tool.name == info.name && tool.digest == info.digest;
-        self.tools.iter().position(matches).map(|index| index as u16)
+        let fingerprint = ToolFingerprint::of(info);
+        self.tools.iter().position(|tool| *tool == fingerprint).map(|index| index as u16)
+    }
+
+    /// Returns the names of the tools, for messages.
+    pub(crate) fn tool_names(&self) -> String {
+        let names = self.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name)));
+        names.collect::<Vec<String>>().join(", ")
     }
 
     /// Returns the reason for which data do not fit a map of this identity; `None` if they fit.
@@ -132,23 +138,25 @@ impl MapIdentity {
             return Some("its tip and axis are no pose");
         }
         // A tool with nothing but cutting surfaces has infinite clearance.
-        let is_valid =
-            |r: &PostureRecord| r.niceness.is_finite() && r.depth.is_finite() && r.clearance >= 0.0;
-        if !best.iter().all(is_valid) {
+        if !best.iter().all(|r| r.niceness.is_finite() && r.depth.is_finite() && r.clearance >= 0.0)
+        {
             return Some("its niceness, depth or clearance is no number that they can be");
         }
         let ascending = access.is_sorted_by(|one, next| one.tool < next.tool);
-        let distinct = || access.iter().map(|access| access.tool).collect::<BTreeSet<u16>>().len();
-        if !ascending && distinct() < access.len() {
+        // A sweep writes them in order, so that a set is rarely made.
+        if !ascending
+            && access.iter().map(|access| access.tool).collect::<BTreeSet<u16>>().len()
+                < access.len()
+        {
             return Some("a tool has two accesses");
         }
         let count = self.directions.len();
-        let is_malformed = |access: &Accessibility| {
+        let has_others = access.iter().any(|access| {
             let last = access.directions.last().copied().unwrap_or(0);
             access.directions.len() != count.div_ceil(64)
                 || (!count.is_multiple_of(64) && last >> (count % 64) != 0)
-        };
-        access.iter().any(is_malformed).then_some("it has other directions than the map")
+        });
+        has_others.then_some("it has other directions than the map")
     }
 
     /// Returns a message if there are too many tools or directions: tools are numbered by 16 bits, and there
@@ -169,13 +177,9 @@ impl MapIdentity {
         if self.part != requested.part {
             return Some(Difference::Part { stored: self.part, requested: requested.part });
         }
-        let names = |of: &MapIdentity| -> Vec<String> {
-            of.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name))).collect()
-        };
-        let (stored, other_names) = (names(self), names(requested));
-        if stored != other_names {
-            let [stored, requested] = [stored, other_names].map(|names| names.join(", "));
-            return Some(Difference::Tools { stored, requested });
+        let (stored, other) = (self.tool_names(), requested.tool_names());
+        if stored != other {
+            return Some(Difference::Tools { stored, requested: other });
         }
         let mut tools = self.tools.iter().zip(&requested.tools);
         if let Some((tool, _)) = tools.find(|(tool, requested)| tool.digest != requested.digest) {
@@ -186,13 +190,14 @@ impl MapIdentity {
                 .map(|of| format!("{}, {} kept of each triangle", of.rules, of.keep));
             return Some(Difference::Rules { stored, requested });
         }
-        let (stored, other_names) = (&self.directions, &requested.directions);
+        let (stored, requested) = (&self.directions, &requested.directions);
         let first =
-            stored.iter().zip(other_names).position(|(stored, requested)| stored != requested);
-        (stored != other_names).then(|| Difference::Directions {
+            stored.iter().zip(requested).position(|(stored, requested)| stored != requested);
+        (stored != requested).then(|| Difference::Directions {
             stored: stored.len(),
-            requested: other_names.len(),
-            first: first.unwrap_or(stored.len().min(other_names.len())),
+            requested: requested.len(),
+            // One list is the beginning of the other.
+            first: first.unwrap_or(stored.len().min(requested.len())),
         })
     }
 }

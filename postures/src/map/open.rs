@@ -1,14 +1,16 @@
-//! Opening of maps, for reading and for recording.
+//! Opening of maps, for recording, and for reading a copy of the file at one moment.
 
-use super::codec::{decode, encode};
-use super::snapshot::{Header, MemoryStore, copy};
 use super::{
     FACTS, FORMAT_VERSION, IDENTITY, MapError, MapIdentity, PostureMap, ROWS, VERSION, as_damage,
+    decode, encode,
 };
-use redb::{Builder, Database, ReadableDatabase, StorageBackend as _};
+use redb::backends::InMemoryBackend;
+use redb::{Builder, Database, ReadableDatabase, StorageBackend};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Duration;
 use touchoff::AtomicFile;
 
@@ -66,8 +68,9 @@ impl PostureMap {
     pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        let (mut bytes, _) = open_store(path)?;
+        let mut bytes = open_store(path)?;
         for attempt in 0..MAX_COPY_ATTEMPTS {
+            // A commit is short, so the first copies follow at once.
             if attempt > 2 {
                 std::thread::sleep(RETRY_INTERVAL);
             }
@@ -139,21 +142,16 @@ pub(super) fn write_facts(database: &Database, identity: &MapIdentity) -> Result
 
 /// Reads the facts of a map, and returns its identity.
 fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> {
-    let store_error = |error: redb::Error| MapError::from_database(file, error);
-    let read = database.begin_read().map_err(|error| store_error(error.into()))?;
-    let facts = read.open_table(FACTS).map_err(|error| store_error(error.into()))?;
-    let fact = |name| {
-        let bytes = facts.get(name).map_err(|error| store_error(error.into()))?;
-        let bytes = bytes.map(|bytes| bytes.value().to_vec());
-        bytes.ok_or_else(|| MapError::Foreign { file: file.to_owned() })
-    };
-    let version = fact(VERSION)?;
-    let version = version.try_into().map(u32::from_le_bytes);
-    let version = version.map_err(|_| MapError::Foreign { file: file.to_owned() })?;
+    let foreign = || MapError::Foreign { file: file.to_owned() };
+    let version = read_fact(database, file, VERSION)?;
+    let version = version.and_then(|bytes| bytes.try_into().ok()).ok_or_else(foreign)?;
+    let version = u32::from_le_bytes(version);
+    // Before the identity is read, as a newer version may encode it in another way.
     if version > FORMAT_VERSION {
         return Err(MapError::Newer { file: file.to_owned(), version, reads: FORMAT_VERSION });
     }
-    let identity: MapIdentity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
+    let identity = read_fact(database, file, IDENTITY)?.ok_or_else(foreign)?;
+    let identity: MapIdentity = decode(&identity).ok_or_else(|| MapError::Damaged {
         file: file.to_owned(),
         what: "what it says of itself is not what was written".to_owned(),
     })?;
@@ -161,6 +159,15 @@ fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> 
         Some(what) => Err(MapError::Oversized { file: file.to_owned(), what }),
         None => Ok(identity),
     }
+}
+
+/// Returns the bytes of a fact, if there is such a fact.
+fn read_fact(database: &Database, file: &str, name: &str) -> Result<Option<Vec<u8>>, MapError> {
+    let read = || -> Result<Option<Vec<u8>>, redb::Error> {
+        let facts = database.begin_read()?.open_table(FACTS)?;
+        Ok(facts.get(name)?.map(|bytes| bytes.value().to_vec()))
+    };
+    read().map_err(|error| MapError::from_database(file, error))
 }
 
 /// Writes a new map beside its target and renames it when it is complete, so that no partial map is ever found.
@@ -182,23 +189,22 @@ fn create(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
     }
 }
 
-/// Opens a store's file for reading, and reads its header.
-fn open_store(path: &Path) -> Result<(File, Header), MapError> {
+/// Opens a store's file for reading.
+fn open_store(path: &Path) -> Result<File, MapError> {
     let file = path.display().to_string();
-    let open = || {
-        // Check before opening: opening a pipe would block.
-        if !fs::metadata(path)?.is_file() {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
-        }
-        let mut bytes = File::open(path)?;
-        let header = Header::read(&mut bytes)?;
-        Ok((bytes, header))
-    };
-    match open() {
-        Ok((bytes, header)) if header.is_store() => Ok((bytes, header)),
+    match open_regular(path).and_then(|mut bytes| Ok((Header::read(&mut bytes)?, bytes))) {
+        Ok((header, bytes)) if header.is_store() => Ok(bytes),
         Ok(_) => Err(MapError::Foreign { file }),
         Err(source) => Err(MapError::Unreadable { file, source }),
     }
+}
+
+fn open_regular(path: &Path) -> io::Result<File> {
+    // Check before opening: opening a pipe would block.
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+    }
+    File::open(path)
 }
 
 /// Returns an error, or [`MapError::Truncated`] instead of damage if the file is too short.
@@ -221,4 +227,189 @@ fn is_written(file: &File) -> bool {
 
 fn unreadable(file: &str, source: io::Error) -> MapError {
     MapError::Unreadable { file: file.to_owned(), source }
+}
+
+/// The first bytes of every `redb` store.
+const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
+
+/// Size of a store's header in bytes: its layout and two commit slots, of which each commit rewrites one.
+const HEADER: usize = 320;
+
+/// A store's header (redb's `docs/design.md`, "Database header").
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Header(Vec<u8>);
+
+impl Header {
+    /// Reads the header of a file, or as much of it as there is.
+    fn read(file: &mut File) -> io::Result<Header> {
+        file.seek(SeekFrom::Start(0))?;
+        let mut bytes = Vec::with_capacity(HEADER);
+        file.take(HEADER as u64).read_to_end(&mut bytes)?;
+        Ok(Header(bytes))
+    }
+
+    /// Returns whether this is the header of a store.
+    fn is_store(&self) -> bool {
+        self.0.starts_with(MAGIC)
+    }
+
+    /// Returns whether the last writer closed the file, so that the whole header is valid. A killed writer may
+    /// leave counts of regions that are not those of the file; they are counted again when it is opened.
+    fn is_closed(&self) -> bool {
+        const UNCLOSED: u8 = 2;
+        self.0.get(MAGIC.len()).is_some_and(|flags| flags & UNCLOSED == 0)
+    }
+
+    /// Returns the least size of the file in bytes that its header implies.
+    fn length(&self) -> u64 {
+        // In 128 bits, as the fields of a crafted header overflow 64.
+        let [page, head, max_region, full_regions, trailing_region] =
+            [12, 16, 20, 24, 28].map(|offset| {
+                let bytes = self.0.get(offset..offset + 4).and_then(|bytes| bytes.try_into().ok());
+                u128::from(bytes.map_or(0, u32::from_le_bytes))
+            });
+        let trailing_region = if trailing_region > 0 { head + trailing_region } else { 0 };
+        // The header takes one page.
+        let length = page * (1 + full_regions * (head + max_region) + trailing_region);
+        u64::try_from(length).unwrap_or(u64::MAX).max(HEADER as u64)
+    }
+}
+
+/// Copies a file that another process may be writing to. Returns `None` if that process committed meanwhile.
+///
+/// Pages of the last commit are not written before the next one, and every commit changes the header. A copy
+/// with the same header before and after therefore has all pages of that commit.
+fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
+    /// Bytes that are copied at once.
+    const CHUNK: usize = 1 << 20;
+    let before = Header::read(file)?;
+    let length = file.metadata()?.len();
+    let memory = InMemoryBackend::new();
+    memory.set_len(length)?;
+    let mut chunk = vec![0; CHUNK.min(usize::try_from(length).unwrap_or(CHUNK))];
+    file.seek(SeekFrom::Start(0))?;
+    let mut offset = 0;
+    while offset < length {
+        let size = chunk.len().min(usize::try_from(length - offset).unwrap_or(CHUNK));
+        match file.read_exact(&mut chunk[..size]) {
+            Ok(()) => memory.write(offset, &chunk[..size])?,
+            // The file was shortened meanwhile.
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
+            Err(error) => return Err(error),
+        }
+        offset += size as u64;
+    }
+    let same = Header::read(file)? == before && file.metadata()?.len() == length;
+    Ok(same.then(|| (before, Snapshot::new(memory, length))))
+}
+
+/// A copy of a file, with a limit on what the check may read: no more than a tree of its pages takes.
+///
+/// A crafted file can name a page as the child of another many times over, so that a traversal of a few pages
+/// takes forever.
+#[derive(Clone, Debug)]
+struct Snapshot {
+    memory: Arc<InMemoryBackend>,
+    /// Bytes that may still be read.
+    remaining: Arc<AtomicI64>,
+}
+
+impl Snapshot {
+    fn new(memory: InMemoryBackend, length: u64) -> Snapshot {
+        /// Number of times that each byte may be read; a check reads each page fewer than ten times.
+        const MAX_READS_PER_BYTE: u64 = 64;
+        /// Bytes that may be read in addition.
+        const EXTRA_BYTES: i64 = 1 << 24;
+        let remaining =
+            i64::try_from(length.saturating_mul(MAX_READS_PER_BYTE)).unwrap_or(i64::MAX);
+        let remaining = Arc::new(AtomicI64::new(remaining.saturating_add(EXTRA_BYTES)));
+        Snapshot { memory: Arc::new(memory), remaining }
+    }
+
+    /// Ends the check, and with it the limit on reading.
+    fn end_check(&self) {
+        self.remaining.store(i64::MAX, Ordering::Relaxed);
+    }
+}
+
+impl StorageBackend for Snapshot {
+    fn len(&self) -> io::Result<u64> {
+        self.memory.len()
+    }
+
+    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+        let size = i64::try_from(out.len()).unwrap_or(i64::MAX);
+        if self.remaining.fetch_sub(size, Ordering::Relaxed) < size {
+            // Make all later reads fail too.
+            self.remaining.store(0, Ordering::Relaxed);
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "its pages form no tree"));
+        }
+        self.memory.read(offset, out)
+    }
+
+    fn set_len(&self, len: u64) -> io::Result<()> {
+        self.memory.set_len(len)
+    }
+
+    fn sync_data(&self) -> io::Result<()> {
+        self.memory.sync_data()
+    }
+
+    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
+        self.memory.write(offset, data)
+    }
+}
+
+/// Memory in which a store is created, before its bytes are written to a file.
+#[derive(Clone, Debug, Default)]
+struct MemoryStore(Arc<InMemoryBackend>);
+
+impl MemoryStore {
+    /// Returns all bytes. The store has to be closed.
+    fn bytes(&self) -> io::Result<Vec<u8>> {
+        let length = usize::try_from(self.0.len()?).map_err(io::Error::other)?;
+        let mut bytes = vec![0; length];
+        self.0.read(0, &mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+impl StorageBackend for MemoryStore {
+    fn len(&self) -> io::Result<u64> {
+        self.0.len()
+    }
+
+    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+        self.0.read(offset, out)
+    }
+
+    fn set_len(&self, len: u64) -> io::Result<()> {
+        self.0.set_len(len)
+    }
+
+    fn sync_data(&self) -> io::Result<()> {
+        self.0.sync_data()
+    }
+
+    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
+        self.0.write(offset, data)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_walk_that_does_not_end_is_ended() {
+        let memory = InMemoryBackend::new();
+        memory.set_len(4096).expect("memory");
+        let snapshot = Snapshot::new(memory, 4096);
+        let mut page = [0; 4096];
+        let reads = (0..100_000).take_while(|_| snapshot.read(0, &mut page).is_ok()).count();
+        assert_eq!(reads, 64 + (1 << 24) / 4096);
+        assert!(snapshot.read(0, &mut page[..1]).is_err());
+        snapshot.end_check();
+        assert!((0..10_000).all(|_| snapshot.read(0, &mut page).is_ok()));
+    }
 }

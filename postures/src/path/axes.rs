@@ -150,6 +150,7 @@ impl PathPlanner<'_> {
         if !self.check_motion(&from.pose, &to.pose)? {
             let mut point_directions = *from;
             for (k, surface_point) in crossed.iter().enumerate() {
+                // The axis turns evenly over the edges.
                 let part = (k as f64 + 0.5) / crossed.len() as f64;
                 let axis = from.axis.lerp(&to.axis, part).try_normalize(MIN_MEAN_LENGTH)?;
                 // At a concave edge the tool does not reach the edge, and need not.
@@ -161,6 +162,7 @@ impl PathPlanner<'_> {
                 }
             }
             self.refine(&point_directions, to, MAX_HALVINGS, &mut locations)?;
+            // The last is the posture `to` itself.
             locations.pop();
         }
         Some(locations)
@@ -201,6 +203,7 @@ impl PathPlanner<'_> {
         point_directions: &ReachableDirections<'_>,
         direction: usize,
     ) -> Option<PathPosture> {
+        // The set holds for the centroid, and this point is another: the chosen direction may fail here.
         let others =
             directions.by_angle(direction).filter(|other| contains(point_directions.set, *other));
         let mut tried = others.take(MAX_DIRECTIONS_TRIED);
@@ -219,7 +222,7 @@ impl PathPlanner<'_> {
             for k in 1..run.len().saturating_sub(1) {
                 let [before, posture, after] = [run[k - 1].axis, run[k].axis, run[k + 1].axis];
                 let middle = posture + 0.5 * (before + after);
-                let Some(axis) = middle.try_normalize(1e-6) else { continue };
+                let Some(axis) = middle.try_normalize(MIN_MEAN_LENGTH) else { continue };
                 if axis.angle(&posture) > MIN_TURN
                     && let Some(better) = self.posture_at(&run[k].surface_point, axis)
                 {
@@ -251,6 +254,7 @@ fn smoothest_directions(
         let mut step = Vec::new();
         let mut next = Vec::new();
         for direction in members {
+            // The margin is a cosine: the cost falls from the rim to 0 where every direction is accessible.
             let rim =
                 RIM_COST * (1.0 + directions.margin(point_directions.set, direction)).max(0.0);
             let squared_turns = costs.iter().enumerate().map(|(k, (other, cost))| {

@@ -15,17 +15,15 @@
 
 mod axes;
 mod drawn;
-mod retract;
 mod slice;
 mod tilt;
 
 use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
 use super::{Directions, Rules, Validator, ValidatorError};
 use axes::PathPosture;
-use drawn::DrawnPath;
+use drawn::{DrawnPath, RetractSphere};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
-use retract::RetractSphere;
 use slice::{SlicePoint, length_of_lines, slices};
 use std::fmt;
 use tilt::TiltLimit;
@@ -218,15 +216,9 @@ impl PathRequest<'_> {
             return Err(PathError::TooFine { points, limit: MAX_POINTS });
         }
         let tilt = TiltLimit::new(max_tilt).ok_or(PathError::Tilt(max_tilt))?;
-        let steep;
-        let accessibility = match tilt.is_limited() {
-            true => {
-                steep = tilt.filter(directions, accessibility);
-                &steep[..]
-            }
-            false => accessibility,
-        };
-        let mut planner = PathPlanner::new(bvh, tool, (rules, tilt))?;
+        let within_tilt = tilt.is_limited().then(|| tilt.filter(directions, accessibility));
+        let accessibility = within_tilt.as_deref().unwrap_or(accessibility);
+        let mut planner = PathPlanner::new(bvh, tool, rules, tilt)?;
         let sphere = RetractSphere::new(mesh, planner.placement.reach());
         let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
         let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
@@ -236,14 +228,15 @@ impl PathRequest<'_> {
             .collect();
         let runs = lines.par_chunks(LINES_PER_TASK).map(|lines| {
             // Errors were reported for the planner above.
-            let Ok(mut planner) = PathPlanner::new(bvh, tool, (rules, tilt)) else {
+            let Ok(mut planner) = PathPlanner::new(bvh, tool, rules, tilt) else {
                 return Vec::new();
             };
-            let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
+            let runs = lines.iter().map(|(plane, line)| {
+                // So that the runs of a line do not depend on the lines before it.
                 planner.validator.certifier.clear_caches();
                 (*plane, planner.runs(mesh, directions, accessibility, line))
-            };
-            lines.iter().map(run).collect::<Vec<_>>()
+            });
+            runs.collect::<Vec<_>>()
         });
         let runs: Vec<Vec<_>> = runs.collect();
         let mut path = DrawnPath::default();
@@ -272,8 +265,10 @@ impl<'a> PathPlanner<'a> {
     fn new(
         bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
-        (rules, tilt): (&'a Rules, TiltLimit),
+        rules: &'a Rules,
+        tilt: TiltLimit,
     ) -> Result<PathPlanner<'a>, ValidatorError> {
+        // The rest of the tolerance is for motions, which are deeper between cutter locations than at them.
         let location_rules = Rules {
             tolerance: rules.tolerance * (1.0 - MOTION_TOLERANCE_FRACTION),
             ..rules.clone()

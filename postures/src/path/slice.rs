@@ -1,5 +1,6 @@
 //! Slices of a mesh by parallel planes, as ordered lines.
 
+use crate::piece::key;
 use crate::placement::SurfacePoint;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
@@ -30,19 +31,23 @@ pub(super) fn slices(
     [stepover, step]: [f64; 2],
 ) -> Vec<Vec<Vec<SlicePoint>>> {
     let [low, high] = range(mesh, normal);
+    // A mesh thinner than half a stepover is still cut once.
     let count = ((high - low) / stepover).round().max(1.0);
-    let plane = |k: usize| low + (high - low) * (k as f64 + 0.5) / count;
     let mut planes: Vec<Vec<SliceSegment>> = vec![Vec::new(); count as usize];
     for id in mesh.ids() {
         let corners = mesh.triangle(id);
         let heights = heights(mesh, normal, id);
-        let point = |height: f64| (height - low) / (high - low) * count - 0.5;
         let lowest = heights.into_iter().fold(f64::INFINITY, f64::min);
         let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let first = point(lowest).floor().max(0.0) as usize;
-        let last = point(highest).ceil().max(0.0) as usize;
+        // Rounded outward: a plane too many is crossed nowhere, and one too few would leave a gap in a line.
+        let [lowest, highest] =
+            [lowest, highest].map(|height| (height - low) / (high - low) * count - 0.5);
+        let first = lowest.floor().max(0.0) as usize;
+        let last = highest.ceil().max(0.0) as usize;
         for k in first..=last.min(planes.len() - 1) {
-            if let Some(ends) = crossed(corners, heights, plane(k)) {
+            // Planes are in the middles of equal layers, so that none lies in a face at the part's end.
+            let plane = low + (high - low) * (k as f64 + 0.5) / count;
+            if let Some(ends) = crossed(corners, heights, plane) {
                 planes[k].push(SliceSegment { triangle: id, ends });
             }
         }
@@ -82,6 +87,7 @@ fn crossed(corners: [Point3<f64>; 3], heights: [f64; 3], plane: f64) -> Option<[
     let above = heights.map(|height| height >= plane);
     let mut points = (0..3).filter_map(|k| {
         let next = (k + 1) % 3;
+        // From the lower corner in both triangles of the side, so that they round alike.
         let (low, high) = if above[k] { (next, k) } else { (k, next) };
         (above[k] != above[next]).then(|| {
             let fraction = (plane - heights[low]) / (heights[high] - heights[low]);
@@ -93,8 +99,6 @@ fn crossed(corners: [Point3<f64>; 3], heights: [f64; 3], plane: f64) -> Option<[
 
 /// Joins segments into lines: segments that have an end in common follow each other.
 fn join_segments(segments: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
-    let key =
-        |point: Point3<f64>| [point.x, point.y, point.z].map(|fraction| (fraction + 0.0).to_bits());
     let mut ends: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
         for end in segment.ends {
@@ -104,10 +108,10 @@ fn join_segments(segments: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
     let mut used = vec![false; segments.len()];
     let mut lines = Vec::new();
     // Open lines begin at an end that no other segment has; the remaining lines are closed.
-    let open =
-        |segment: &SliceSegment| segment.ends.iter().position(|end| ends[&key(*end)].len() == 1);
-    let starts =
-        (0..segments.len()).filter_map(|index| open(&segments[index]).map(|end| (index, end)));
+    let starts = segments.iter().enumerate().filter_map(|(index, segment)| {
+        let open = segment.ends.iter().position(|end| ends[&key(*end)].len() == 1)?;
+        Some((index, open))
+    });
     for (start, end) in starts.chain((0..segments.len()).map(|index| (index, 0))) {
         let mut line = Vec::new();
         let (mut at, mut from) = (start, segments[start].ends[end]);
@@ -140,8 +144,8 @@ fn sample_line(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint>
     for (index, SliceSegment { triangle, ends: [from, to] }) in line.iter().enumerate() {
         if let Some(before) = index.checked_sub(1) {
             let normals = [line[before].triangle, *triangle].map(|side| mesh.normal(side));
-            let spot = |normal| SurfacePoint { point: *from, normal };
-            crossed.extend(normals.into_iter().flatten().map(spot));
+            let normals = normals.into_iter().flatten();
+            crossed.extend(normals.map(|normal| SurfacePoint { point: *from, normal }));
         }
         let displacement = to - from;
         let parts = (displacement.norm() / step).ceil().max(1.0);
@@ -153,6 +157,7 @@ fn sample_line(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint>
             let mut next =
                 SlicePoint { point, triangle: *triangle, crossed: std::mem::take(&mut crossed) };
             match skipped.take() {
+                // Only the midpoint before is within a step of the last point.
                 Some((last, at)) if distance > step => {
                     points.push(last);
                     distance -= at;

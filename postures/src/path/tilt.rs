@@ -40,13 +40,11 @@ impl TiltLimit {
         }
         let normal = from.cross(to);
         let lowest = normal.cross(&normal.cross(&Vector3::z()));
-        let is_between =
-            |d: &Vector3<f64>| from.cross(d).dot(&normal) > 0.0 && d.cross(to).dot(&normal) > 0.0;
         // Parallel and opposite directions, and horizontal circles, have no lowest direction.
-        match lowest.try_normalize(0.0) {
-            Some(lowest) if is_between(&lowest) => self.allows(&lowest),
-            _ => true,
-        }
+        let Some(lowest) = lowest.try_normalize(0.0) else { return true };
+        let is_between =
+            from.cross(&lowest).dot(&normal) > 0.0 && lowest.cross(to).dot(&normal) > 0.0;
+        !is_between || self.allows(&lowest)
     }
 
     /// Returns a direction turned toward +z as far as the limit requires; +z for a direction along -z.
@@ -71,13 +69,11 @@ impl TiltLimit {
                 within[index / 64] |= 1 << (index % 64);
             }
         }
-        let filtered = |set: &Vec<u64>| -> Vec<u64> {
-            match set.len() == within.len() {
-                true => set.iter().zip(&within).map(|(word, within)| word & within).collect(),
-                false => Vec::new(),
-            }
-        };
-        sets.iter().map(filtered).collect()
+        let filtered = sets.iter().map(|set| match set.len() == within.len() {
+            true => set.iter().zip(&within).map(|(word, within)| word & within).collect(),
+            false => Vec::new(),
+        });
+        filtered.collect()
     }
 }
 

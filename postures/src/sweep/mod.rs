@@ -11,16 +11,14 @@
 //! [`PostureSweep::run_pieces`] judges the pieces as if they were triangles.
 
 mod refine;
-mod stats;
 mod worker;
 
 pub use refine::{Refinement, Refiner, TriangleReach};
-pub use stats::SweepStats;
 
 use super::{Directions, MapRow, Piece, Rules, RulesError, ValidatorError};
 use std::fmt;
 use std::num::NonZeroU16;
-use std::ops::ControlFlow;
+use std::ops::{AddAssign, ControlFlow};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use touchoff::certify::TriangleBvh;
@@ -76,6 +74,72 @@ pub enum SweepError {
         /// The largest number of pieces.
         limit: usize,
     },
+}
+
+/// Number of postures by the rule that decided them. A posture is a triangle, a tool and a direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SweepStats {
+    /// Pairs of a tool and a triangle, or a piece of one, that were processed.
+    pub triangles: u64,
+    /// Postures in which no cutting surface faces the triangle: the tool would be on its other side, or would
+    /// touch it with a surface that does not cut.
+    pub not_facing: u64,
+    /// Postures whose contact is not nice enough.
+    pub below_niceness: u64,
+    /// Postures obstructed by a point of the part that was in the way of a neighbouring posture in the same
+    /// direction.
+    pub cached_obstruction: u64,
+    /// Postures for which a search of the part's tree found an obstruction.
+    pub obstructed: u64,
+    /// Postures so close to a limit that rounding decides; they count as not acceptable.
+    pub undecided: u64,
+    /// Postures that are proved acceptable.
+    pub acceptable: u64,
+}
+
+/// The rule that decided a posture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PostureDecision {
+    BelowNiceness,
+    CachedObstruction,
+    Obstructed,
+    Undecided,
+    Acceptable,
+}
+
+impl SweepStats {
+    fn count_of(&mut self, decision: PostureDecision) -> &mut u64 {
+        match decision {
+            PostureDecision::BelowNiceness => &mut self.below_niceness,
+            PostureDecision::CachedObstruction => &mut self.cached_obstruction,
+            PostureDecision::Obstructed => &mut self.obstructed,
+            PostureDecision::Undecided => &mut self.undecided,
+            PostureDecision::Acceptable => &mut self.acceptable,
+        }
+    }
+
+    /// Returns the number of all postures.
+    pub fn postures(&self) -> u64 {
+        self.not_facing + self.below_niceness + self.searched() + self.cached_obstruction
+    }
+
+    /// Returns the number of postures for which the part's tree was searched.
+    pub fn searched(&self) -> u64 {
+        self.obstructed + self.undecided + self.acceptable
+    }
+}
+
+impl AddAssign for SweepStats {
+    fn add_assign(&mut self, other: SweepStats) {
+        self.triangles += other.triangles;
+        self.not_facing += other.not_facing;
+        self.below_niceness += other.below_niceness;
+        self.cached_obstruction += other.cached_obstruction;
+        self.obstructed += other.obstructed;
+        self.undecided += other.undecided;
+        self.acceptable += other.acceptable;
+    }
 }
 
 /// Rows of neighbouring triangles, with counters.
@@ -142,12 +206,15 @@ impl<'a> PostureSweep<'a> {
         batches: &[usize],
         each: impl FnMut(Batch) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        let judge = |worker: &mut Worker<'_>, batch: usize| {
-            let triangles = self.triangles(batch);
-            let (rows, stats) = worker.rows(triangles.iter().map(|id| Piece::whole(*id)));
-            Batch { rows: triangles.iter().copied().zip(rows).collect(), stats }
-        };
-        self.parallel(batches, judge, each)
+        self.parallel(
+            batches,
+            |worker, batch| {
+                let triangles = self.triangles(batch);
+                let (rows, stats) = worker.rows(triangles.iter().map(|id| Piece::whole(*id)));
+                Batch { rows: triangles.iter().copied().zip(rows).collect(), stats }
+            },
+            each,
+        )
     }
 
     /// Judges pieces of triangles at their centroids, on all cores, in batches of [`BATCH_TRIANGLES`]. `batches`
@@ -158,12 +225,15 @@ impl<'a> PostureSweep<'a> {
         batches: &[usize],
         each: impl FnMut(PieceBatch) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        let judge = |worker: &mut Worker<'_>, batch: usize| {
-            let pieces = pieces.chunks(BATCH_TRIANGLES).nth(batch).unwrap_or_default();
-            let (rows, stats) = worker.rows(pieces.iter().copied());
-            PieceBatch { rows: pieces.iter().copied().zip(rows).collect(), stats }
-        };
-        self.parallel(batches, judge, each)
+        self.parallel(
+            batches,
+            |worker, batch| {
+                let pieces = pieces.chunks(BATCH_TRIANGLES).nth(batch).unwrap_or_default();
+                let (rows, stats) = worker.rows(pieces.iter().copied());
+                PieceBatch { rows: pieces.iter().copied().zip(rows).collect(), stats }
+            },
+            each,
+        )
     }
 
     fn parallel<T: Send, B>(
@@ -175,10 +245,12 @@ impl<'a> PostureSweep<'a> {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         std::thread::scope(|scope| {
+            // Bounded, so that workers wait for an `each` that is slower than they are, and rows do not pile up in memory.
             let (done, batch) = mpsc::sync_channel(2 * workers);
             for _ in 0..workers.min(batches.len()) {
                 let (done, next, stop, judge) = (done.clone(), &next, &stop, &judge);
                 scope.spawn(move || {
+                    // `new` has reported the errors.
                     let Ok(mut worker) = Worker::new(self) else { return };
                     while !stop.load(Ordering::Relaxed)
                         && let Some(index) = batches.get(next.fetch_add(1, Ordering::Relaxed))
@@ -189,6 +261,7 @@ impl<'a> PostureSweep<'a> {
                     }
                 });
             }
+            // Only the workers' senders are left, so the channel closes when the last of them is done.
             drop(done);
             while let Ok(batch) = batch.recv() {
                 let flow = each(batch);

@@ -5,7 +5,8 @@
 
 use super::SweepError;
 use crate::MapRow;
-use crate::piece::{Piece, add_ancestors, longest_edge, tiling};
+use crate::directions::contains;
+use crate::piece::{Piece, add_ancestors, key, longest_edge, tiling};
 use nalgebra::{Point3, center};
 use std::collections::{HashMap, HashSet};
 use touchoff::{Mesh, Tool, TriangleId, Unit};
@@ -38,15 +39,16 @@ impl Refinement {
 
     /// Returns the refinement down to a quarter of the cutting radius of the tools' slimmest, in a part's unit.
     pub fn of_tools(tools: &[&dyn Tool], unit: Unit) -> Refinement {
-        let radius = |tool: &&dyn Tool| {
+        let radii = tools.iter().map(|tool| {
             let info = tool.info();
             let cutting = info.outline.iter().filter(|piece| info.surface(piece.surface).cutting);
             let farthest =
                 cutting.flat_map(|piece| [piece.from[0], piece.to[0]]).fold(0.0, f64::max);
             farthest * info.unit.factor_to(unit)
-        };
-        let least = tools.iter().map(radius).filter(|radius| *radius > 0.0);
-        Refinement::down_to(FINEST_TO_RADIUS * least.fold(f64::INFINITY, f64::min))
+        });
+        // A tool without a profile has no such radius. If all are so, the length is infinite, which `Refiner::new` refuses.
+        let least = radii.filter(|radius| *radius > 0.0).fold(f64::INFINITY, f64::min);
+        Refinement::down_to(FINEST_TO_RADIUS * least)
     }
 
     fn check(self) -> Result<Refinement, SweepError> {
@@ -137,8 +139,10 @@ impl<'a> Refiner<'a> {
         let room = MAX_PIECES.saturating_sub(leaves.len());
         let too_many = SweepError::TooManyPieces { finest, limit: MAX_PIECES };
         let mut next = Vec::new();
+        // The first rounds divide what is too long; only when nothing is are neighbours compared.
         let long = leaves.iter().filter(|(_, corners)| longest_edge(*corners) > longest);
         let mut open: Vec<Piece> = long.map(|(piece, _)| *piece).collect();
+        // The stack gives the last first; reversed, the pieces of a triangle stay together and in order.
         open.reverse();
         while let Some(piece) = open.pop() {
             match piece.halves() {
@@ -153,12 +157,11 @@ impl<'a> Refiner<'a> {
         }
         if next.is_empty() {
             let corners = Corners::new(leaves.iter().map(|(piece, at)| (*at, &self.judged[piece])));
-            let differs = |(piece, at): &(Piece, [Point3<f64>; 3])| {
-                (longest_edge(*at) > finest && corners.differ_around(*at))
-                    .then(|| piece.halves())
-                    .flatten()
-            };
-            next.extend(leaves.iter().filter_map(differs).flatten());
+            for (piece, at) in &leaves {
+                if longest_edge(*at) > finest && corners.differ_around(*at) {
+                    next.extend(piece.halves().into_iter().flatten());
+                }
+            }
         }
         if next.len() > room { Err(too_many) } else { Ok(next) }
     }
@@ -167,30 +170,30 @@ impl<'a> Refiner<'a> {
     pub fn reach(&self) -> impl Iterator<Item = TriangleReach> + '_ {
         self.mesh.ids().filter_map(|triangle| {
             let pieces = self.pieces(triangle);
-            let fraction = |is_reached: &dyn Fn(&Judgement) -> bool| {
-                let reached = pieces.iter().filter(|piece| is_reached(&self.judged[*piece]));
-                reached.map(|piece| piece.fraction()).sum::<f64>()
-            };
-            let by_tool = (0..self.tools).map(|tool| {
-                fraction(&|judgement| judgement.reached[tool / 64] >> (tool % 64) & 1 == 1)
-            });
+            let by_tool = (0..self.tools)
+                .map(|tool| self.fraction(&pieces, |judgement| contains(&judgement.reached, tool)));
             let best = pieces.iter().filter_map(|piece| self.judged[piece].best);
-            let nicest =
-                |one: (u16, f64), other: (u16, f64)| if other.1 > one.1 { other } else { one };
+            // `max_by` would return the last of several that are as nice.
+            let best = best.reduce(|one, other| if other.1 > one.1 { other } else { one });
             (!pieces.is_empty()).then(|| TriangleReach {
                 triangle,
                 pieces: pieces.len(),
-                area_fraction: fraction(&|judgement| judgement.best.is_some()),
+                area_fraction: self.fraction(&pieces, |judgement| judgement.best.is_some()),
                 by_tool: by_tool.collect(),
-                best: best.reduce(nicest).map(|(tool, _)| tool),
+                best: best.map(|(tool, _)| tool),
             })
         })
     }
 
+    /// Returns the fraction of a triangle's area at those of its pieces whose judgement meets a condition.
+    fn fraction(&self, pieces: &[Piece], is_reached: impl Fn(&Judgement) -> bool) -> f64 {
+        let reached = pieces.iter().filter(|piece| is_reached(&self.judged[*piece]));
+        reached.map(|piece| piece.fraction()).sum()
+    }
+
     /// Returns the pieces of a triangle.
     fn pieces(&self, triangle: TriangleId) -> Vec<Piece> {
-        let is_judged = |piece| self.judged.contains_key(&piece);
-        tiling(Piece::whole(triangle), &is_judged, &self.inner)
+        tiling(Piece::whole(triangle), |piece| self.judged.contains_key(&piece), &self.inner)
     }
 }
 
@@ -264,17 +267,13 @@ impl Corners {
         if middle == from || middle == to {
             return;
         }
+        // Every cut begins at the middle of an edge, so an edge without a corner there was not cut at all.
         if let Some(known) = self.0.get(&key(middle)) {
             summary.join(known);
             self.join_edge([from, middle], summary);
             self.join_edge([middle, to], summary);
         }
     }
-}
-
-/// Returns the key of a point. Both zeros have the same.
-fn key(point: Point3<f64>) -> [u64; 3] {
-    [point.x, point.y, point.z].map(|coordinate| (coordinate + 0.0).to_bits())
 }
 
 #[cfg(test)]

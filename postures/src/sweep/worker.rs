@@ -1,10 +1,9 @@
 //! One thread of a sweep.
 
-use super::stats::PostureDecision;
-use super::{PostureSweep, SweepError, SweepStats};
+use super::{PostureDecision, PostureSweep, SweepError, SweepStats};
 use crate::holder::Holder;
-use crate::map::merge;
 use crate::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
+use crate::record::merge;
 use crate::{Accessibility, MapRow, Piece, PostureRecord, Validator};
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{ContactVerdict, Containment, Location};
@@ -49,7 +48,7 @@ impl<'a> Worker<'a> {
     ) -> (Vec<MapRow>, SweepStats) {
         let mesh = self.sweep.mesh;
         let mut rows = vec![MapRow::default(); pieces.len()];
-        // A triangle without an area has no normal.
+        // A triangle without an area has no normal, so there is nothing to touch it with.
         let points: Vec<Option<SurfacePoint>> = pieces
             .map(|piece| {
                 let [a, b, c] = piece.corners(mesh);
@@ -67,6 +66,7 @@ impl<'a> Worker<'a> {
                 row.access.push(access);
             }
         }
+        // Each tool has appended its own best; only the best of all are kept.
         for row in &mut rows {
             merge(&mut row.best, &[], self.sweep.keep);
         }
@@ -108,6 +108,7 @@ impl<'a> CandidateTool<'a> {
         stats: &mut SweepStats,
     ) -> Accessibility {
         let mut directions = vec![0; sweep.directions.words()];
+        // Every direction counts as not facing until a contact in it is decided.
         stats.not_facing += sweep.directions.list().len() as u64;
         let Some(surface_point) = surface_point else {
             return Accessibility { tool: self.index, directions, stickout: None };
@@ -134,13 +135,15 @@ impl<'a> CandidateTool<'a> {
         }
         self.postures = postures;
         let stickout = self.stickout(sweep, &reached);
-        let rank = |posture: &CandidatePosture| {
-            // Comparing niceness in `f32` ignores rounding errors; ties go to the middle of the cone.
-            (posture.niceness as f32, -sweep.directions.margin(&directions, posture.direction))
-        };
-        let mut ranked: Vec<_> = reached.iter().map(|posture| (rank(posture), posture)).collect();
-        ranked.sort_by(|((niceness, margin), _), ((other_niceness, other_margin), _)| {
-            other_niceness.total_cmp(niceness).then(other_margin.total_cmp(margin))
+        // Comparing niceness in `f32` ignores rounding errors; ties go to the middle of the cone, where the margin's angle
+        // is largest and its cosine least.
+        let mut ranked: Vec<(f64, &CandidatePosture)> = reached
+            .iter()
+            .map(|posture| (sweep.directions.margin(&directions, posture.direction), posture))
+            .collect();
+        ranked.sort_by(|(cosine, one), (other_cosine, other)| {
+            let nicer = (other.niceness as f32).total_cmp(&(one.niceness as f32));
+            nicer.then(cosine.total_cmp(other_cosine))
         });
         for (_, posture) in ranked.into_iter().take(sweep.keep.get().into()) {
             let axis = sweep.directions.list()[posture.direction];
@@ -165,6 +168,7 @@ impl<'a> CandidateTool<'a> {
         if let Some(at) =
             obstructions.iter().position(|point| certifier.is_too_deep(&posture.tip, &axis, point))
         {
+            // In front it is tried first at the next triangle, where it is likely to be in the way, too.
             obstructions[..=at].rotate_right(1);
             return PostureDecision::CachedObstruction;
         }
@@ -179,7 +183,8 @@ impl<'a> CandidateTool<'a> {
             }
             ContactVerdict::Undecided(_) => PostureDecision::Undecided,
             ContactVerdict::No => {
-                // A point before the triangle and deep in the tool: if it is outside the part, so is the tool.
+                // A point before the triangle and deep in the tool: if it is outside the part, so is the tool. It is located
+                // once for all directions.
                 let point =
                     surface_point.point + surface_point.normal * (2.0 * sweep.rules.tolerance);
                 if self.one_piece && certifier.is_too_deep(&posture.tip, &axis, &point) {

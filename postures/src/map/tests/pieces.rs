@@ -1,6 +1,5 @@
 //! Rows of pieces, beside those of triangles.
 
-use super::super::pieces::PIECES;
 use super::*;
 use crate::Piece;
 

@@ -1,12 +1,8 @@
-//! Contacts of tools: closed forms, and a check that no point beside the contact is cut.
+//! Contacts of tools, and their niceness: closed forms, and a check that no point beside the contact is cut.
 
 use super::*;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use touchoff::{Level, Tool, Unit};
-
-use touchoff::tool::{Evaluations, Outputs, PointBatch};
-
 touchoff::tool! {
     tool Ball "a ball on a straight shank" {
         units mm;
@@ -256,4 +252,34 @@ fn each_step_touches_and_a_cove_never_does() {
         assert!((found[0] - wanted[0]).abs() < 1e-12 && (found[1] - wanted[1]).abs() < 1e-12);
     }
     assert_eq!(all.len(), 2);
+}
+
+touchoff::tool! {
+    tool Sharp "two surfaces that meet in a sharp corner" {
+        units mm;
+        profile {
+            start (0, 0);
+            line to (6, 0) as face cutting;
+            line to (6, 20) as flute cutting;
+            line to (6, 60), (0, 60) as shank;
+        }
+        niceness flute: 1;
+        niceness face: 0.25 + z;
+    }
+}
+
+#[test]
+fn a_corner_is_as_nice_as_the_less_nice_of_what_meets_there() {
+    let mut placement = ToolPlacement::new(&Sharp, Unit::Metre);
+    let target = SurfacePoint { point: Point3::new(0.1, 0.0, 0.2), normal: Vector3::z() };
+    let axes = (1..90).map(|degrees| {
+        let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+        Vector3::new(sine, 0.0, cosine)
+    });
+    let mut postures = Vec::new();
+    placement.list(target, axes, &mut postures);
+    assert_eq!(postures.len(), 89);
+    for posture in &postures {
+        assert!((posture.niceness - 0.25).abs() < 1e-6, "{posture:?}");
+    }
 }

@@ -1,22 +1,112 @@
-//! The certificate for people.
+//! The certificate for people: in a few lines for the author of a tool, and as a table.
 
-use super::niceness;
+use super::{niceness, sides};
 use std::io::Write;
 use tool_dsl::CheckedTool;
 use tool_dsl::diagnostic::format_number;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
 
+/// Writes the certificate in four lines: the verdict, the regions, the borders, and direction and niceness.
+pub(super) fn write_summary(
+    out: &mut impl Write,
+    tool: &CheckedTool,
+    certificate: &Certificate,
+) -> std::io::Result<()> {
+    writeln!(out, "  {}", verdict(tool, certificate))?;
+    let regions = &certificate.regions;
+    let distances = regions.iter().filter(|facts| facts.is_distance).count();
+    let share = match regions.len() - distances {
+        0 => "all".to_owned(),
+        others => format!("all but {others}"),
+    };
+    writeln!(out, "  regions: {}, depth is a distance in {share} of them", regions.len())?;
+    writeln!(out, "  borders: {}", worst_jump(tool, certificate))?;
+    writeln!(
+        out,
+        "  direction: {}; niceness: {}",
+        worst_direction(tool, certificate),
+        niceness_range(tool, certificate)
+    )
+}
+
+/// Describes the worst border.
+fn worst_jump(tool: &CheckedTool, certificate: &Certificate) -> String {
+    let unit = tool.model.unit.symbol();
+    let borders = borders(tool, certificate);
+    let open = match certificate.undecided.len() {
+        0 => String::new(),
+        count => format!("; {count} not decided"),
+    };
+    let jumping =
+        borders.iter().filter(|(border, _)| border.depth_jump.high > certificate.tolerance);
+    let depth = jumping.max_by(|(a, _), (b, _)| a.depth_jump.high.total_cmp(&b.depth_jump.high));
+    let magnitude = borders
+        .iter()
+        .max_by(|(a, _), (b, _)| a.magnitude_jump.high.total_cmp(&b.magnitude_jump.high));
+    match (depth, magnitude) {
+        (Some((border, name)), _) => {
+            let verb = verb(border.depth_jump, certificate.tolerance);
+            format!("depth {verb} by {} {unit} at {name}{open}", range(border.depth_jump))
+        }
+        (None, Some((border, name))) if border.magnitude_jump.high > certificate.tolerance => {
+            let verb = verb(border.magnitude_jump, certificate.tolerance);
+            let step = range(border.magnitude_jump);
+            format!("no jumps of depth; magnitude {verb} by {step} at {name}{open}")
+        }
+        _ => format!("no jumps{open}"),
+    }
+}
+
+/// Returns the verb for a jump: the interval of a border that is not proved begins at 0.
+fn verb(jump: Interval, tolerance: f64) -> &'static str {
+    if jump.low > tolerance { "jumps" } else { "may jump" }
+}
+
+/// Describes the region whose direction is farthest from the steepest descent of depth.
+fn worst_direction(tool: &CheckedTool, certificate: &Certificate) -> String {
+    let regions = tool.model.regions.iter().zip(&certificate.regions);
+    let unknown = regions.clone().find(|(_, facts)| facts.direction_error.is_none());
+    let errors = regions.filter_map(|(region, facts)| Some((region, facts.direction_error?)));
+    match (unknown, errors.max_by(|(_, a), (_, b)| a.high.total_cmp(&b.high))) {
+        (Some((region, _)), _) => format!("not known in {}", region.name),
+        (None, Some((region, error))) if error.high > 0.0 => {
+            format!(
+                "up to {} from steepest descent in {}",
+                degrees(Interval::new(error.high, error.high)),
+                region.name
+            )
+        }
+        _ => "steepest descent".to_owned(),
+    }
+}
+
+/// Describes the range of niceness, and the regions where it may rise with depth.
+fn niceness_range(tool: &CheckedTool, certificate: &Certificate) -> String {
+    let all = certificate
+        .regions
+        .iter()
+        .map(niceness)
+        .reduce(|one, other| Interval::new(one.low.min(other.low), one.high.max(other.high)));
+    let shown = all.map_or_else(|| "none".to_owned(), range);
+    let regions = tool.model.regions.iter().zip(&certificate.regions);
+    let rising = regions.filter(|(_, facts)| facts.rising_witness.is_some());
+    let rising: Vec<&str> = rising.map(|(region, _)| region.name.as_str()).collect();
+    match rising.as_slice() {
+        [] => shown,
+        names => format!("{shown}, rises with depth in {}", names.join(", ")),
+    }
+}
+
 /// Writes the certificate as a table.
-pub(super) fn write(
+pub(super) fn write_table(
     out: &mut impl Write,
     tool: &CheckedTool,
     certificate: &Certificate,
 ) -> std::io::Result<()> {
     let model = &tool.model;
     writeln!(out, "\n  {}\n", verdict(tool, certificate))?;
-    let column_width = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(8);
-    let names = column_width(&mut model.regions.iter().map(|region| region.name.len()));
+    let names = column_width(model.regions.iter().map(|region| region.name.len()));
     writeln!(
         out,
         "  {:<names$}  {:>7}  {:>13}  {:>15}  {:>13}  {:>8}  {:<11}  direction",
@@ -32,7 +122,7 @@ pub(super) fn write(
             range(facts.gradient_length),
             range(niceness(facts)),
             facts.rounding_error,
-            kind(facts),
+            if facts.is_distance { "a distance" } else { "other" },
             direction(tool, facts),
         )?;
     }
@@ -40,7 +130,7 @@ pub(super) fn write(
     if borders.is_empty() {
         return writeln!(out);
     }
-    let names = column_width(&mut borders.iter().map(|(_, name)| name.len()));
+    let names = column_width(borders.iter().map(|(_, name)| name.len()));
     writeln!(
         out,
         "\n  {:<names$}  {:>13}  {:>13}  {:>14}  {:>15}  {:>15}",
@@ -60,8 +150,12 @@ pub(super) fn write(
     writeln!(out)
 }
 
+fn column_width(names: impl Iterator<Item = usize>) -> usize {
+    names.max().unwrap_or(0).max(8)
+}
+
 /// Returns the borders between regions, each pair once, and the jumps at the outside.
-pub(super) fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
+fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
     let mut borders: Vec<(Border, String)> = Vec::new();
     let shown = certificate
         .borders
@@ -73,7 +167,7 @@ pub(super) fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Bor
     for border in shown {
         match borders.iter_mut().find(|(known, _)| known.sides == border.sides) {
             Some((known, _)) => known.merge(border),
-            None => borders.push((border.clone(), pair(tool, border))),
+            None => borders.push((border.clone(), sides(&tool.model, border).join(" | "))),
         }
     }
     borders
@@ -100,14 +194,15 @@ fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
 }
 
 /// Describes how a tool's depth relates to the distance to its surface.
-pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
-    let proved = |bound: Option<f64>| bound.map(format_number);
+fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     let boxes = certificate.examined_boxes;
     let slack = match certificate.slack {
         0.0 => String::new(),
         slack => format!(", to within {slack:.0e} {}", tool.model.unit.symbol()),
     };
-    match (proved(certificate.lower_slope()), proved(certificate.lipschitz())) {
+    let [least, most] =
+        [certificate.lower_slope(), certificate.lipschitz()].map(|bound| bound.map(format_number));
+    match (least, most) {
         _ if certificate.is_exact() => {
             format!("proved in {boxes} boxes: depth is the distance to the surface{slack}")
         }
@@ -125,7 +220,7 @@ pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
         _ if tool.bounds().lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \
              again in {boxes} boxes",
-            proved(tool.bounds().lipschitz).unwrap_or_default()
+            tool.bounds().lipschitz.map(format_number).unwrap_or_default()
         ),
         _ => format!(
             "not proved in {boxes} boxes: depth may jump, and does not bound the distance to the surface"
@@ -133,18 +228,7 @@ pub(super) fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     }
 }
 
-fn kind(facts: &RegionFacts) -> &'static str {
-    if facts.is_distance { "a distance" } else { "other" }
-}
-
-fn pair(tool: &CheckedTool, border: &Border) -> String {
-    let regions = &tool.model.regions;
-    let (own, other) = border.sides;
-    let other = other.map_or("outside", |other| regions[other].name.as_str());
-    format!("{} | {other}", regions[own].name)
-}
-
-pub(super) fn range(value: Interval) -> String {
+fn range(value: Interval) -> String {
     let [low, high] = [value.low, value.high].map(short);
     if !value.high.is_finite() {
         // No bound was found, which does not mean that such a value exists.
@@ -157,7 +241,7 @@ pub(super) fn range(value: Interval) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-pub(super) fn degrees(turn: Interval) -> String {
+fn degrees(turn: Interval) -> String {
     let [low, high] = [turn.low, turn.high].map(|end| short(end.to_degrees()));
     if low == high { format!("{low}°") } else { format!("{low}° to {high}°") }
 }
