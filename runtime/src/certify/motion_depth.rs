@@ -8,14 +8,13 @@
 //! no finer limit than pays off.
 
 use super::containment::{Containment, CorePoints};
-use super::query::DepthQuery;
-use super::rounding;
 use super::search::{MARGIN, QuerySetting, SearchState};
 use super::sweep::{SweepEnd, SweepTask, Sweeper};
 use super::tool_model::ToolModel;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
-use super::{Certifier, ContactVerdict, NoSuchSurface, penetration};
+use super::{Certifier, ContactVerdict, NoSuchSurface, penetration, rounding};
+use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::motion::Motion;
@@ -215,12 +214,12 @@ impl Certifier<'_> {
         if !determines_pose(info, motion) {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let new_query = |limit| setting.depth_query(limit, |other| other == surface);
         let min_tolerance = MIN_DEPTH_TOLERANCE * motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
-        let inside_query = surface_queries[surface].get_or_insert_with(|| new_query(0.0));
+        let inside_query = surface_queries[surface]
+            .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         let depth = allowed.max(0.0);
         let core_points = match &mut surface_core_points[surface] {
             Some((known, core_points)) if *known == depth => core_points,
@@ -246,10 +245,11 @@ impl Certifier<'_> {
         if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
             return Ok(found);
         }
+        // Without a profile the distance of a surface from outside points is unknown.
         if let ToolModel::Field(_) = &setting.tool_model {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let margin_query = new_query(allowed);
+        let margin_query = setting.depth_query(allowed, |other| other == surface);
         search.query = &margin_query;
         Ok(match search.deepest(allowed) {
             MotionDepth::Within => found,
@@ -321,9 +321,11 @@ impl MotionSearch<'_, '_> {
             let limit = (low + 0.5 * gap).max(allowed);
             match self.sweep(limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
                 None => return (best, high.max(any.min(limit + 0.5 * gap))),
+                // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at) {
                     Some(peak) if peak.depth.low > low => best = self.climb(peak),
+                    // The point found is no deeper at its time: the bound, not the depth, is too coarse.
                     _ => gap_fraction *= 4.0,
                 },
             }
@@ -334,6 +336,7 @@ impl MotionSearch<'_, '_> {
     /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.
     fn sweep(&mut self, limit: f64, tolerance: f64, budget: u32) -> Option<SweepEnd> {
         let MotionSearch { setting, query, motion, .. } = *self;
+        // Nothing outside the tool is at a depth of 0 or more.
         if self.query.limit < 0.0 && limit + tolerance >= 0.0 {
             return None;
         }
@@ -356,6 +359,7 @@ impl MotionSearch<'_, '_> {
     /// short to gain more than the tolerance.
     fn climb(&mut self, from: DepthPeak) -> DepthPeak {
         let QuerySetting { size, length, .. } = *self.setting;
+        // No depth changes faster than the farthest point of the tool moves.
         let pace = self.motion.displacement().norm() / length + self.motion.angle() * size;
         let mut best = from;
         let mut step = 0.5 / f64::from(INITIAL_TIMES);

@@ -32,8 +32,8 @@ impl NearestTriangle<'_> {
         // most 1.
         let farthest = p.iter().fold(1.0, |farthest: f64, part| farthest.max(part.abs()));
         let margin = 16.0 * f64::EPSILON * farthest;
-        let corners = |triangle: usize| self.bvh.corners[triangle].map(Point3::from);
-        let mut nearest = squared_distance(point, corners(self.last));
+        let bvh = self.bvh;
+        let mut nearest = squared_distance(point, bvh.corners[self.last].map(Point3::from));
         self.stack.clear();
         self.stack.push((0.0, 0, 0));
         while let Some((low, level, index)) = self.stack.pop() {
@@ -43,7 +43,7 @@ impl NearestTriangle<'_> {
             let Some(boxes) = self.bvh.levels.get(level) else {
                 let first = index * WIDTH;
                 for triangle in first..first + self.bvh.children(level, index) {
-                    let corners = corners(triangle);
+                    let corners = bvh.corners[triangle].map(Point3::from);
                     if squared_distance_of_box(point, &corners) < nearest {
                         let distance = squared_distance(point, corners);
                         if distance < nearest {

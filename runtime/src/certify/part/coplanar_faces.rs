@@ -37,6 +37,20 @@ pub(crate) struct Face {
     pub(crate) corners: [Point; 4],
 }
 
+/// The plane of a face: the points no farther than `flat` from the plane through a point.
+struct FacePlane {
+    point: Point,
+    normal: Point,
+    flat: f64,
+}
+
+impl FacePlane {
+    /// Returns whether all corners of a triangle are in the plane.
+    fn contains(&self, corners: &[Point; 3]) -> bool {
+        corners.iter().all(|p| dot(self.normal, minus(*p, self.point)).abs() <= self.flat)
+    }
+}
+
 /// Returns the unit vector in a direction, or `None` for a vector of length 0.
 fn unit(a: Point) -> Option<Point> {
     let size = norm(a);
@@ -61,10 +75,9 @@ impl CoplanarFaces {
             let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !used[seed]) else {
                 continue;
             };
-            let is_coplanar = |k: u32| {
-                corners[k as usize].iter().all(|p| dot(normal, minus(*p, a)).abs() <= flat)
-            };
-            if !is_coplanar(seed as u32) {
+            let plane = FacePlane { point: a, normal, flat };
+            // The computed normal of a needle may lean by more than that.
+            if !plane.contains(&corners[seed]) {
                 continue;
             }
             face.clear();
@@ -73,7 +86,10 @@ impl CoplanarFaces {
             let mut next = 0;
             while next < face.len() {
                 for other in neighbours[face[next] as usize] {
-                    if other != NONE && !used[other as usize] && is_coplanar(other) {
+                    if other != NONE
+                        && !used[other as usize]
+                        && plane.contains(&corners[other as usize])
+                    {
                         used[other as usize] = true;
                         face.push(other);
                     }
@@ -173,21 +189,20 @@ struct Rectangle {
 impl Rectangle {
     /// Returns the rectangle around points and the origin, all in the plane through the origin with a unit normal, that has
     /// a side along a vector; `None` if the vector has no length in the plane.
-    fn along(
+    fn along<I: Iterator<Item = Point> + Clone>(
         side: Point,
         normal: Point,
-        points: &(impl Iterator<Item = Point> + Clone),
+        points: &I,
     ) -> Option<Rectangle> {
         let out = dot(side, normal);
         let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
         let v = unit(cross(normal, u))?;
-        let extent = |direction: Point| {
+        let [[u0, u1], [v0, v1]] = [u, v].map(|direction| {
             let positions = points.clone().map(|p| dot(direction, p));
             positions.fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
-        };
-        let ([u0, u1], [v0, v1]) = (extent(u), extent(v));
-        let corner = |x: f64, y: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k]);
-        let corners = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
+        });
+        let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]]
+            .map(|[x, y]| [0, 1, 2].map(|k| x * u[k] + y * v[k]));
         Some(Rectangle { area: (u1 - u0) * (v1 - v0), corners })
     }
 }

@@ -86,7 +86,6 @@ impl TriangleBvh {
         let mut windings = (0..RAYS).filter_map(|ray| {
             let ray_direction = direction(ray);
             let others = self.winding(middle, ray_direction, Some(own)).ok()?;
-            let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
             let ([a, b, c], end) =
                 (corners.map(coord), coord(self.end(middle, ray_direction).into()));
             match orient3d(a, b, c, end) {
@@ -133,7 +132,8 @@ impl TriangleBvh {
                 let child = index * WIDTH + lane;
                 if let Some(level_boxes) = self.levels.get(level) {
                     let boxes = &level_boxes[index];
-                    let slab_range = |axis: usize| {
+                    // The ray meets the box if it is between all three pairs of sides at once.
+                    let [[a, b], [c, d], [e, f]] = [0, 1, 2].map(|axis| {
                         let from = f64::from(boxes.centre[axis][lane]) - p[axis];
                         let half = f64::from(boxes.half[axis][lane]) + margin;
                         let [a, b] = [
@@ -141,8 +141,7 @@ impl TriangleBvh {
                             (from + half) / ray_direction[axis],
                         ];
                         [a.min(b), a.max(b)]
-                    };
-                    let ([a, b], [c, d], [e, f]) = (slab_range(0), slab_range(1), slab_range(2));
+                    });
                     if a.max(c).max(e).max(0.0) <= b.min(d).min(f) {
                         stack.push((level + 1, child));
                     }
@@ -159,9 +158,12 @@ impl TriangleBvh {
     }
 }
 
+fn coord([x, y, z]: [f64; 3]) -> Coord3D<f64> {
+    Coord3D { x, y, z }
+}
+
 /// Returns the relation of a line segment to a triangle.
 fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
-    let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
     // The side of each edge on which the line passes: the same for all three if it crosses.
     let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
