@@ -2,7 +2,7 @@
 
 use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_position, unit_normal};
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
-use crate::point_bvh::PointBvh;
+use crate::point_bvh::{PointBvh, TreePoint};
 use crate::pose::Pose;
 use crate::probe::{BudgetError, Law, LodProbe, Probe};
 use crate::tool::{BatchEvaluator, Tool};
@@ -125,14 +125,19 @@ impl Part {
         &mut self,
         mut map: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
     ) -> Result<(), CloudError> {
+        // All points are checked before any is moved.
         let mut levels = Vec::new();
         for tree in &self.levels {
             let mut moved_points = Vec::new();
-            for (index, point, normal) in tree.all() {
-                let (new_point, new_normal) = map(point, normal);
-                if new_point != point || new_normal != normal {
-                    check_position(index, &new_point)?;
-                    moved_points.push((index, new_point, unit_normal(index, new_normal)?));
+            for TreePoint { slot, position, normal } in tree.all() {
+                let (new_position, new_normal) = map(position, normal);
+                if new_position != position || new_normal != normal {
+                    check_position(slot, &new_position)?;
+                    moved_points.push(TreePoint {
+                        slot,
+                        position: new_position,
+                        normal: unit_normal(slot, new_normal)?,
+                    });
                 }
             }
             levels.push(moved_points);
@@ -200,6 +205,6 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
         budget: usize,
         law: Law,
     ) -> Result<LodProbe<'a, T>, BudgetError> {
-        LodProbe::of(part.levels().iter().rev(), part.unit(), (tool, budget, law))
+        LodProbe::of(part.levels().iter().rev(), part.unit(), tool, budget, law)
     }
 }

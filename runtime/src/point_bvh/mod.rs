@@ -12,13 +12,11 @@
 //! move by 2^-24 of its size. The descent reads 12 bytes of a point and its share of the boxes, 1.6 bytes.
 
 mod build;
-mod candidates;
-mod edit;
 mod filter;
 mod traverse;
 
-pub(crate) use candidates::Candidates;
-pub(crate) use filter::filter;
+pub(crate) use build::TreePoint;
+pub(crate) use filter::{Candidates, filter};
 pub(crate) use traverse::{Traversal, TraversalInput};
 
 use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};

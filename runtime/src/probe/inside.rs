@@ -43,19 +43,22 @@ impl ToolEnvelope {
     pub fn widened(tree: &PointBvh, info: &ToolInfo, unit: Unit, distance: f64) -> ToolEnvelope {
         let length = info.unit.factor_to(unit);
         let distance = distance / length;
-        let wide = |Interval { low, high }| Interval::new(low - distance, high + distance);
-        let slab = |slab: &EnvelopeSlab| {
+        let slabs = info.envelope.iter().map(|slab| {
             EnvelopeSlab::new(slab.low - distance, slab.high + distance, slab.radius + distance)
-        };
+        });
+        // The setup reads nothing but the envelope, the symmetry and the unit.
         let envelope = ToolInfo {
             name: Cow::Borrowed(""),
             title: Cow::Borrowed(""),
             surfaces: Cow::Borrowed(&[]),
             regions: Cow::Borrowed(&[]),
-            envelope: info.envelope.iter().map(slab).collect(),
+            envelope: slabs.collect(),
             symmetry: match info.symmetry {
                 Symmetry::Revolved => Symmetry::Revolved,
-                Symmetry::Solid { extent } => Symmetry::Solid { extent: extent.map(wide) },
+                Symmetry::Solid { extent } => Symmetry::Solid {
+                    extent: extent
+                        .map(|side| Interval::new(side.low - distance, side.high + distance)),
+                },
             },
             outline: Cow::Borrowed(&[]),
             ..*info
