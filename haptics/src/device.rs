@@ -1,5 +1,6 @@
 //! Haptic devices: the trait, force and torque limits, and devices that play back poses.
 
+use super::setting::{SettingError, above_zero};
 use nalgebra::Vector3;
 use std::fmt;
 use touchoff::{Motion, MotionError, Pose, PoseError};
@@ -49,6 +50,15 @@ pub struct DeviceLimits {
     pub stiffness: f64,
     /// The largest rotational stiffness that the device can render, N·mm/rad.
     pub turning_stiffness: f64,
+}
+
+impl DeviceLimits {
+    pub(super) fn check(&self) -> Result<(), SettingError> {
+        above_zero("largest force of the device in N", self.force)?;
+        above_zero("largest torque of the device in N·mm", self.torque)?;
+        above_zero("stiffness of the device in N/mm", self.stiffness)?;
+        above_zero("rotational stiffness of the device in N·mm/rad", self.turning_stiffness)
+    }
 }
 
 /// Values of a desktop device of medium strength.
@@ -160,6 +170,7 @@ impl PlaybackDevice {
         cycles: u64,
         limits: DeviceLimits,
     ) -> Result<PlaybackDevice, MotionError> {
+        // Interpolation would choose the spins between poses that have none, and lose those that poses have.
         let all_have_spin = poses.iter().all(Pose::has_spin);
         let motions = match all_have_spin {
             true => Vec::new(),

@@ -154,7 +154,7 @@ fn all_at_once_leave_as_one_by_one() {
     for (mesh, count) in [(cuboid(), 100), (cuboid(), 399), (tube, 60)] {
         let cloud = random(&mesh, 400);
         let area = mesh.diagnostics().area;
-        let thinned = decimate::decimate(&cloud.points, &cloud.normals, area, count);
+        let thinned = blue_noise::decimate(&cloud.points, &cloud.normals, area, count);
         let expected = thinned_one_by_one(&cloud, area, count);
         assert_eq!(thinned.len(), count);
         // Single precision may decide differently between points whose crowding agrees to seven figures.
@@ -167,9 +167,9 @@ fn all_at_once_leave_as_one_by_one() {
 fn without_neighbours_as_many_are_left_as_are_asked_for() {
     let far = |i: u32| Point3::new(f64::from(i), 0.0, 0.0);
     let points: Vec<_> = (0..9).map(far).collect();
-    let left = decimate::decimate(&points, &[Vector3::z(); 9], 1e-6, 4);
+    let left = blue_noise::decimate(&points, &[Vector3::z(); 9], 1e-6, 4);
     assert_eq!(left, [0, 1, 2, 3]);
-    let same = decimate::decimate(&[Point3::origin(); 9], &[Vector3::z(); 9], 1.0, 4);
+    let same = blue_noise::decimate(&[Point3::origin(); 9], &[Vector3::z(); 9], 1.0, 4);
     assert_eq!(same.len(), 4);
 }
 

@@ -65,9 +65,8 @@ impl<'a> Tokens<'a> {
     }
 
     pub(super) fn skip_line(&mut self) {
-        let is_line_end = |&byte: &u8| byte == b'\n' || byte == b'\r';
-        let end = self.rest.iter().position(is_line_end).unwrap_or(self.rest.len());
-        self.rest = &self.rest[end..];
+        let end = self.rest.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+        self.rest = &self.rest[end.unwrap_or(self.rest.len())..];
     }
 }
 
@@ -79,11 +78,11 @@ fn is_space(byte: u8) -> bool {
 /// NaN: exporters write them where a normal cannot be computed.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     let text = str::from_utf8(word).ok()?;
-    let is_non_finite = || {
+    text.parse().ok().or_else(|| {
         let text = text.to_ascii_lowercase();
-        ["nan", "inf", "#ind"].iter().any(|spelling| text.contains(spelling))
-    };
-    text.parse().ok().or_else(|| is_non_finite().then_some(f64::NAN))
+        let is_non_finite = ["nan", "inf", "#ind"].iter().any(|spelling| text.contains(spelling));
+        is_non_finite.then_some(f64::NAN)
+    })
 }
 
 /// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long

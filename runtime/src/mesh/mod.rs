@@ -10,12 +10,10 @@ mod diagnostics;
 mod faces;
 mod location;
 mod obj;
-mod outlier;
 mod ply;
 mod read;
 pub mod shapes;
 mod stl;
-mod topology;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -27,13 +25,13 @@ use crate::input;
 use crate::unit::Unit;
 
 pub use diagnostics::MeshDiagnostics;
+pub(crate) use diagnostics::inverted;
+pub use faces::Outlier;
 pub use location::SourceLocation;
 pub use obj::ObjError;
-pub use outlier::Outlier;
 pub use ply::{OrientedPoints, PlyError};
 pub use read::{Geometry, GeometryError};
 pub use stl::StlError;
-pub(crate) use topology::inverted;
 
 /// Largest magnitude allowed for a coordinate of a mesh. Up to this value, areas and volumes, which are
 /// products of coordinates, stay far from overflow. Every number of a binary STL file (`f32`, up to

@@ -1,15 +1,13 @@
-//! Generated meshes, as parts for examples, tests and benchmarks, and STL output for any mesh.
+//! Generated meshes, as parts for examples, tests and benchmarks.
 //!
 //! Dimensions are in the given unit, and triangles are counter-clockwise seen from outside. Each
 //! function returns [`MeshError::Shape`] if its dimensions are invalid.
 
 use std::collections::HashMap;
-use std::io::{self, Write};
 
 use nalgebra::{Point3, Vector3};
 
-use super::stl::{HEADER, RECORD};
-use super::{Mesh, MeshError, area_and_normal};
+use super::{Mesh, MeshError};
 use crate::unit::Unit;
 
 /// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part
@@ -90,10 +88,12 @@ pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, Me
     }
     let vertices = (0..8usize)
         .map(|corner| {
-            let pick = |axis: usize| {
-                if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
-            };
-            Point3::new(pick(0), pick(1), pick(2))
+            // Each bit of the number decides along one axis.
+            Point3::from([0, 1, 2].map(
+                |axis| {
+                    if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
+                },
+            ))
         })
         .collect();
     let sides =
@@ -187,57 +187,6 @@ fn split_quad([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-impl Mesh {
-    /// Writes the mesh as binary STL, in its own unit, which is named in the header text. Coordinates
-    /// are rounded to `f32`, as the format requires.
-    ///
-    /// # Errors
-    /// Returns the errors of `out`, and `InvalidInput` for a coordinate beyond the range of `f32`.
-    pub fn write_stl(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut bytes = Vec::with_capacity(HEADER + RECORD * self.triangles.len());
-        bytes.extend(format!("binary STL in {} by touchoff", self.unit).bytes());
-        bytes.resize(80, b' ');
-        // `Mesh::new` guarantees that the ids fit 32 bits, and hence their count.
-        bytes.extend((self.triangles.len() as u32).to_le_bytes());
-        for corners in self.corners() {
-            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
-            for vector in [normal, corners[0].coords, corners[1].coords, corners[2].coords] {
-                for &number in vector.iter() {
-                    let rounded = number as f32;
-                    if !rounded.is_finite() {
-                        let text = format!("{number:e} is beyond binary STL: write ASCII instead");
-                        return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
-                    }
-                    bytes.extend(rounded.to_le_bytes());
-                }
-            }
-            bytes.extend([0, 0]);
-        }
-        out.write_all(&bytes)
-    }
-
-    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again yields bitwise
-    /// the same corners.
-    ///
-    /// # Errors
-    /// Returns the errors of `out`.
-    pub fn write_stl_ascii(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut out = io::BufWriter::new(out);
-        writeln!(out, "solid touchoff, in {}", self.unit)?;
-        for corners in self.corners() {
-            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
-            writeln!(out, "  facet normal {:e} {:e} {:e}", normal.x, normal.y, normal.z)?;
-            writeln!(out, "    outer loop")?;
-            for p in corners {
-                writeln!(out, "      vertex {:e} {:e} {:e}", p.x, p.y, p.z)?;
-            }
-            writeln!(out, "    endloop\n  endfacet")?;
-        }
-        writeln!(out, "endsolid touchoff")?;
-        out.flush()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,30 +268,5 @@ mod tests {
             assert!(matches!(error, MeshError::Shape { .. }), "{error}");
         }
         assert!(matches!(sphere(1e70, 0, UNIT), Err(MeshError::Coordinate { .. })));
-    }
-
-    #[test]
-    fn written_stl_is_read_back() {
-        let mesh = tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
-        let mut text = Vec::new();
-        mesh.write_stl_ascii(&mut text).expect("written");
-        let read_back = Mesh::from_stl(&text, "", UNIT).expect("read");
-        assert!(mesh.corners().eq(read_back.corners()));
-
-        let mut binary = Vec::new();
-        mesh.write_stl(&mut binary).expect("written");
-        assert!(binary.starts_with(b"binary STL in mm"));
-        let read_back = Mesh::from_stl(&binary, "", UNIT).expect("read");
-        assert!(
-            mesh.corners()
-                .flatten()
-                .zip(read_back.corners().flatten())
-                .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
-        );
-        assert!(read_back.diagnostics().is_solid() && read_back.diagnostics().opposed_normals == 0);
-
-        let huge = sphere(1e40, 0, UNIT).expect("a large sphere");
-        let error = huge.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
-        assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
     }
 }

@@ -4,7 +4,7 @@
 //! - `hull`: upper bounds of a tool's depth in boxes and triangles.
 //! - `shell`: lower bounds of a tool's distance from boxes and triangles, in `f32`.
 //! - `swept`: upper bounds of depth in moving boxes and triangles.
-//! - `batch`: eight triangles in `f64`, at rest or in motion.
+//! - `batch`: eight triangles in `f64`.
 //! - `descent`: depth-first traversal of the tree, children with the largest bounds first.
 //! - `nearest`: geometry of triangles relative to the tool's axis, shared by all bounds.
 //!

@@ -2,13 +2,16 @@
 //! convex hull of both positions, grown by the deviation of its paths from straight.
 
 use crate::bvh::{Boxes, LaneVector, PoseTransform};
+use crate::certify::bounds::batch::{Batch, Lanes, load};
 use crate::certify::bounds::descent::{BoundedTree, BoxBounds, Displacement, Node, above, rings};
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
     Clip, NearestPoint, Real, choose, direction_from_axis, max3, radial_extents, to_ring,
 };
-use crate::tool::on_vectors;
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
+use crate::certify::sweep::interval::MotionInterval;
+use crate::certify::triangle::TrianglePiece;
+use crate::tool::{LANES, on_vectors};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, f64x8};
 
 /// The corners of triangles at both ends of their motion.
 pub(crate) type Ends<V> = [LaneVector<V>; 6];
@@ -325,4 +328,63 @@ fn of_leaf_on<S: Simd>(
 fn squared_distance<S: Simd>(&[x, y, z]: &LaneVector<f32x16<S>>, [u, v, w]: [f32; 3]) -> f32x16<S> {
     let [a, b, c] = [y * w - z * v, z * u - x * w, x * v - y * u];
     c * c + b * b + a * a
+}
+
+/// Up to eight triangles at both ends of a motion interval and in its middle.
+#[derive(Default)]
+pub(crate) struct SweptBatch {
+    pub(crate) middle: Batch,
+    ends: [[Lanes; 3]; 6],
+    /// The deviation of their paths from straight plus the distance that they have to keep.
+    grow: Lanes,
+    pub(crate) bounds: Lanes,
+}
+
+impl SweptBatch {
+    /// Loads triangles that have to keep a distance.
+    pub(crate) fn begin(
+        &mut self,
+        interval: &MotionInterval,
+        required_clearance: f64,
+        parts: &[TrianglePiece],
+    ) {
+        self.middle.indices.clear();
+        self.middle.indices.extend(parts.iter().map(|part| part.index));
+        for (lane, part) in parts.iter().enumerate() {
+            for (k, corner) in part.piece.corners().iter().enumerate() {
+                let [first, middle, last] = interval.transformed(corner);
+                for axis in 0..3 {
+                    self.ends[k][axis][lane] = first[axis];
+                    self.middle.corners[k][axis][lane] = middle[axis];
+                    self.ends[3 + k][axis][lane] = last[axis];
+                }
+            }
+            self.grow[lane] = required_clearance
+                + interval.deviation_bound(interval.rotation_radius(&self.middle.corners(lane)));
+        }
+    }
+
+    /// Bounds the depth of each triangle during the interval. A bound of at most `threshold` need not be tight.
+    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, threshold: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, threshold));
+        // Without vector instructions nothing is known until the edges are searched.
+        self.bounds = [f64::INFINITY; LANES];
+    }
+
+    #[inline(always)]
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
+        let [a, b, c, d, e, f] = &self.ends;
+        let ends = [
+            load(simd, a),
+            load(simd, b),
+            load(simd, c),
+            load(simd, d),
+            load(simd, e),
+            load(simd, f),
+        ];
+        let middle = self.middle.load_corners(simd);
+        let grow = f64x8::from_slice(simd, &self.grow);
+        hull.swept(simd, &MovingTriangles { ends, middle }, grow, threshold)
+            .store_slice(&mut self.bounds);
+    }
 }

@@ -8,9 +8,8 @@
 pub(crate) mod interval;
 
 use crate::bvh::{PoseTransform, WIDTH};
-use crate::certify::bounds::batch::SweptBatch;
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
-use crate::certify::bounds::swept::{Moving, of_leaf};
+use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
 use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
 use crate::certify::space::Point;
 use crate::certify::sweep::interval::MotionInterval;
