@@ -22,7 +22,7 @@ pub(crate) const SLABS: usize = 32;
 #[derive(Clone, Debug)]
 pub(crate) struct QuerySetup {
     /// The tool's unit of length in the part's unit.
-    pub(crate) length: f64,
+    length: f64,
     /// The tree's unit in the part's unit (`scale`) and in the tool's unit (`unit`).
     scale: f64,
     pub(crate) unit: f64,

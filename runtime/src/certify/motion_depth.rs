@@ -31,7 +31,7 @@ fn motion_error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
 
 /// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the
 /// spin.
-pub(super) fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
+fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
     info.symmetry == Symmetry::Revolved || motion.has_spin()
 }
 
@@ -51,7 +51,7 @@ const CLIMB_DIVISOR: f64 = MIN_DEPTH_TOLERANCE;
 const MAX_ROUNDS: u32 = 16;
 
 /// A motion is probed at its beginning and at this number of later times before it is swept.
-pub(super) const INITIAL_TIMES: u32 = 8;
+const INITIAL_TIMES: u32 = 8;
 
 /// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
 const GAP_FRACTION: f64 = 0.125;

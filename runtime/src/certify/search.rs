@@ -24,7 +24,7 @@ pub(crate) struct DepthQuery {
     pub(crate) owners: Owners,
     pub(crate) hull: Hull<f32>,
     pub(crate) exact: Hull<f64>,
-    pub(crate) shell: Shell,
+    shell: Shell,
     /// The allowed depth of the owners. If negative, its magnitude is the distance that they have to keep.
     pub(crate) limit: f64,
 }
@@ -61,7 +61,7 @@ impl DepthQuery {
 
     /// A query for some surfaces of a tool that is known by its depth field. `errors` are the rounding errors of a
     /// point in `f32` and in `f64`.
-    pub(crate) fn of_field(
+    fn of_field(
         field: &Field<'_>,
         errors: [f64; 2],
         limit: f64,
@@ -158,7 +158,7 @@ impl QuerySetting<'_> {
 /// The state and the result of a search.
 #[derive(Default)]
 pub(crate) struct SearchState {
-    pub(crate) view: PoseTransform,
+    view: PoseTransform,
     pub(crate) search: DepthSearch,
     pub(crate) descent: Descent,
     batch: Batch,

@@ -16,7 +16,7 @@ use nalgebra::{Point3, Vector3};
 use std::ops::Range;
 
 /// Triangles are cut until about as many points have a cell in each piece.
-pub(super) const MAX_POINTS_PER_PIECE: f64 = 64.0;
+const MAX_POINTS_PER_PIECE: f64 = 64.0;
 /// Cells that triangles meet, per point and per triangle, before a coarser grain is used.
 const MAX_MEAN_PIECES: f64 = 64.0;
 /// Number of cells that is always allowed.

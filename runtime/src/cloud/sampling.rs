@@ -127,7 +127,7 @@ impl AreaSampler {
     }
 
     /// Returns the total area, which is positive for a mesh.
-    pub(super) fn area(&self) -> f64 {
+    fn area(&self) -> f64 {
         self.areas_up_to.last().copied().unwrap_or_default()
     }
 
@@ -206,7 +206,7 @@ pub(super) fn fraction(random: &mut Pcg64) -> f64 {
 pub(super) struct Copies(Option<Vec<u32>>);
 
 impl Copies {
-    pub(super) fn of(mesh: &Mesh) -> Copies {
+    fn of(mesh: &Mesh) -> Copies {
         let mut keyed: Vec<([u32; 3], u32)> = mesh
             .triangles()
             .iter()

@@ -58,7 +58,7 @@ fn rounding(cuts: u32) -> f64 {
 
 /// Points on a surface, with their spatial index.
 pub(super) struct VoronoiSites<'a> {
-    pub(super) points: &'a [Point3<f64>],
+    points: &'a [Point3<f64>],
     normals: &'a [Vector3<f64>],
     tree: NeighbourBvh,
     /// The points within `neighbour_radius` of each, the nearest first, at most [`MAX_NEIGHBOURS`].
@@ -77,7 +77,7 @@ struct TouchedLine {
 
 /// Reusable buffers for dividing a piece.
 #[derive(Default)]
-pub(super) struct ClipBuffers {
+struct ClipBuffers {
     found: Vec<Neighbour>,
     farther: Vec<u32>,
     cell: Vec<Corner>,
@@ -85,11 +85,11 @@ pub(super) struct ClipBuffers {
     /// The lines that have touched the cell.
     touched: Vec<TouchedLine>,
     /// Points whose cells are or will be computed; the first owns the piece's centre.
-    pub(super) visited: Vec<u32>,
+    visited: Vec<u32>,
     /// The same points as a set, if there are many.
     visited_set: HashSet<u32>,
     /// The number of points tested against cells, plus the other costs of the cells.
-    pub(super) tests: usize,
+    tests: usize,
 }
 
 impl<'a> VoronoiSites<'a> {
@@ -130,7 +130,7 @@ impl Surface {
     /// Calls `on_cell` for each point that has a cell in a piece, with the cell's corners relative to the
     /// point. `normal_weight` is σ². Returns whether the division is complete: it ends after about `max_tests` tests
     /// of points against cells.
-    pub(super) fn divide(
+    fn divide(
         &self,
         piece: &SurfacePiece,
         sites: &VoronoiSites<'_>,

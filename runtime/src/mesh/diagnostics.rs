@@ -234,19 +234,19 @@ fn format_number(value: f64) -> String {
 }
 
 /// Numbers of edges by their uses.
-pub(super) struct Edges {
+struct Edges {
     /// Edges with an odd number of uses.
-    pub(super) open: usize,
+    open: usize,
     /// Edges with an even number of uses that are not equally many in both directions.
-    pub(super) crossed: usize,
+    crossed: usize,
     /// Edges used by more than two triangles.
-    pub(super) shared: usize,
+    shared: usize,
 }
 
 impl Edges {
     /// Counts edges by sorting. All uses of an edge go into the bucket of its lower vertex; each bucket,
     /// with a handful of entries, is sorted by the higher vertex.
-    pub(super) fn of(mesh: &Mesh) -> Edges {
+    fn of(mesh: &Mesh) -> Edges {
         let mut starts = vec![0usize; mesh.vertices().len() + 1];
         for [from, to] in edge_uses(mesh) {
             starts[from.min(to) as usize + 1] += 1;
@@ -318,7 +318,7 @@ pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
 
 /// Returns the shell index of each vertex and the number of shells, by union-find. The entry of a vertex
 /// that no triangle uses is meaningless.
-pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
+fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
     const UNUSED: u32 = u32::MAX;
     let mut parent = vec![UNUSED; mesh.vertices().len()];
     for triangle in mesh.triangles() {

@@ -10,9 +10,9 @@ use super::location::{SourceLocation, Tokens, number, printable};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, area_and_normal, is_valid_coordinate};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
-pub(super) const HEADER: usize = 84;
+const HEADER: usize = 84;
 /// Bytes per triangle in a binary file: 12 numbers of 4 bytes, 2 bytes of attributes.
-pub(super) const RECORD: usize = 50;
+const RECORD: usize = 50;
 
 /// Reasons why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
 #[derive(Debug, thiserror::Error)]

@@ -36,7 +36,7 @@ pub(super) fn build(cloud: &Cloud) -> PointBvh {
 }
 
 /// Returns a leaf and the bounding box of its points as they are stored. Slots without a point stay NaN.
-pub(super) fn build_leaf(items: &[BuildItem]) -> (Leaf, Bounds) {
+fn build_leaf(items: &[BuildItem]) -> (Leaf, Bounds) {
     // The centre is rounded to `f32` first: offsets are relative to the centre as it is stored.
     let bounds = Bounds::of(items.iter().map(|item| item.at));
     let centre: [f64; 3] = std::array::from_fn(|axis| f64::from(bounds.middle(axis) as f32));
@@ -53,7 +53,7 @@ pub(super) fn build_leaf(items: &[BuildItem]) -> (Leaf, Bounds) {
 }
 
 /// Returns the half extents of a leaf's points about its centre; negative if it has no points.
-pub(super) fn leaf_bounds(leaf: &Leaf) -> [f64; 3] {
+fn leaf_bounds(leaf: &Leaf) -> [f64; 3] {
     // `f64::max` ignores NaN.
     leaf.offset
         .map(|list| list.into_iter().fold(-1.0, |half, offset| f64::max(half, offset.abs().into())))

@@ -67,7 +67,7 @@ fn filter_on<S: Simd>(
 
 /// A leaf with points that may be inside.
 #[derive(Clone, Copy, Default)]
-pub(super) struct HitLeaf {
+struct HitLeaf {
     index: u32,
     /// A mask of these points.
     hits: u32,
@@ -85,7 +85,7 @@ pub(crate) struct Candidates {
 }
 
 impl Candidates {
-    pub(crate) fn clear(&mut self) {
+    fn clear(&mut self) {
         self.points.clear();
     }
 
@@ -107,7 +107,7 @@ impl Candidates {
     }
 
     /// Makes room for the points of `leaves` leaves.
-    pub(super) fn make_room(&mut self, leaves: usize, attributes: bool) {
+    fn make_room(&mut self, leaves: usize, attributes: bool) {
         let additional = (leaves + 1) * WIDTH;
         self.points.make_room(additional);
         let required = self.points.len() + additional;
@@ -125,7 +125,7 @@ impl Candidates {
     /// The points are transformed to the tool's frame in `f64`: `Rᵀ (p − t)`, the difference first. `base` is the
     /// leaf's centre relative to the tip.
     #[inline(always)]
-    pub(super) fn take<S: Simd>(
+    fn take<S: Simd>(
         &mut self,
         simd: S,
         view: &PoseTransform,
@@ -159,12 +159,7 @@ impl Candidates {
 
     /// Appends the normals and weights of the same points.
     #[inline(always)]
-    pub(super) fn take_attributes<S: Simd>(
-        &mut self,
-        simd: S,
-        attributes: &LeafAttributes,
-        hits: u32,
-    ) {
+    fn take_attributes<S: Simd>(&mut self, simd: S, attributes: &LeafAttributes, hits: u32) {
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
         let output = self.points.len()..self.points.len() + WIDTH;
         for (list, of) in self.normals.iter_mut().zip(&attributes.normal) {
@@ -177,7 +172,7 @@ impl Candidates {
 
     /// Records that `count` points were appended.
     #[inline(always)]
-    pub(super) fn advance(&mut self, count: usize) {
+    fn advance(&mut self, count: usize) {
         self.points.advance(count);
     }
 }

@@ -36,7 +36,7 @@ pub(crate) struct Leaf {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct LeafAttributes {
-    pub(crate) normal: [[f32; WIDTH]; 3],
+    normal: [[f32; WIDTH]; 3],
     pub(crate) weight: [f32; WIDTH],
 }
 
@@ -130,7 +130,7 @@ impl PointBvh {
 
     /// Returns the centre of a point's leaf relative to the origin, and the point relative to that centre, in the
     /// tree's unit.
-    pub(crate) fn stored(&self, index: usize) -> [[f64; 3]; 2] {
+    fn stored(&self, index: usize) -> [[f64; 3]; 2] {
         let (leaf, lane) = (index / WIDTH, index % WIDTH);
         let offset = &self.leaves[leaf].offset;
         [self.centre(leaf), std::array::from_fn(|axis| f64::from(offset[axis][lane]))]
@@ -138,7 +138,7 @@ impl PointBvh {
 
     /// Returns the centre of a leaf's box relative to the origin, in the tree's unit.
     #[inline(always)]
-    pub(crate) fn centre(&self, leaf: usize) -> [f64; 3] {
+    fn centre(&self, leaf: usize) -> [f64; 3] {
         let (boxes, lane) = (&self.levels[self.levels.len() - 1][leaf / WIDTH], leaf % WIDTH);
         std::array::from_fn(|axis| f64::from(boxes.centre[axis][lane]))
     }

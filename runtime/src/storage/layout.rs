@@ -27,7 +27,7 @@ const CHECKSUM_RANGE: std::ops::Range<usize> = 16..20;
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Start {
-    pub(super) magic: [u8; 16],
+    magic: [u8; 16],
     /// The checksum of the whole header, computed with this field set to 0.
     pub(super) checksum: u32,
     pub(super) version: u32,
@@ -39,7 +39,7 @@ pub(super) struct Start {
     pub(super) trees: u32,
     /// 1 if there are mesh diagnostics, otherwise 0.
     pub(super) surveyed: u32,
-    pub(super) zero: [u32; 3],
+    zero: [u32; 3],
 }
 
 /// Mesh diagnostics; all zeros if there are none.
@@ -77,7 +77,7 @@ pub(super) struct SectionHeader {
     pub(super) at: u64,
     pub(super) bytes: u64,
     pub(super) checksum: u32,
-    pub(super) zero: u32,
+    zero: u32,
 }
 
 /// One of a tree's lists.

@@ -276,7 +276,7 @@ impl Records<'_> {
 /// Letters that occur at the beginning of every saved part.
 const NAME: &[u8] = b"TOUCHOFF";
 /// The number of bytes examined at the beginning of a file.
-pub(super) const PREFIX_LENGTH: usize = 512;
+const PREFIX_LENGTH: usize = 512;
 /// Bytes of a binary STL file before its triangles, and per triangle.
 const STL: [u64; 2] = [84, 50];
 
@@ -297,7 +297,7 @@ const SIGNATURES: [(&[u8], &str); 12] = [
 ];
 
 /// Returns a description of a file of `length` bytes that begins with `prefix`.
-pub(super) fn describe(prefix: &[u8], length: u64) -> &'static str {
+fn describe(prefix: &[u8], length: u64) -> &'static str {
     let prefix = &prefix[..prefix.len().min(PREFIX_LENGTH)];
     if prefix.is_empty() {
         return "an empty file";

@@ -259,7 +259,7 @@ pub struct EvaluationEnclosure {
     /// True if points of the box may be outside.
     pub outside: bool,
     /// The depth of the points inside.
-    pub(super) depth: Enclosure,
+    depth: Enclosure,
     /// The regions that points of the box may belong to, one bit each; the 64th bit stands for all larger indices too.
     pub regions: u64,
 }
@@ -370,19 +370,19 @@ impl EvaluationEnclosure {
 
 /// A first-order enclosure of a function over a box: its value at a reference point, and its slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LinearEnclosure {
-    pub(super) at: Interval,
-    pub(super) slope: [Interval; 3],
+struct LinearEnclosure {
+    at: Interval,
+    slope: [Interval; 3],
 }
 
 impl LinearEnclosure {
-    pub(super) fn negated(self) -> LinearEnclosure {
+    fn negated(self) -> LinearEnclosure {
         LinearEnclosure { at: self.at.negated(), slope: self.slope.map(Interval::negated) }
     }
 
     /// Returns the function's values at a point whose displacement from the reference point is known as an
     /// interval along each axis.
-    pub(super) fn values(&self, displacement: [Interval; 3]) -> Interval {
+    fn values(&self, displacement: [Interval; 3]) -> Interval {
         let terms = (0..3).map(|k| self.slope[k].times(displacement[k]));
         terms.fold(self.at, Interval::plus)
     }
@@ -390,14 +390,14 @@ impl LinearEnclosure {
 
 /// A value that a function may take where another function, the gap, is at most 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Choice {
-    pub(super) value: LinearEnclosure,
-    pub(super) gap: LinearEnclosure,
+struct Choice {
+    value: LinearEnclosure,
+    gap: LinearEnclosure,
 }
 
 /// The alternatives of a choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Choices {
+enum Choices {
     None,
     One(Choice),
     Two([Choice; 2]),
@@ -405,7 +405,7 @@ pub(super) enum Choices {
 }
 
 impl Choices {
-    pub(super) fn and(self, other: Choices) -> Choices {
+    fn and(self, other: Choices) -> Choices {
         match (self, other) {
             (Choices::None, choices) | (choices, Choices::None) => choices,
             (Choices::One(first), Choices::One(second)) => Choices::Two([first, second]),
@@ -422,12 +422,12 @@ pub struct Ternary {
     /// True if the comparison may fail.
     pub no: bool,
     /// Functions that are at most 0 where the comparison is true and where it is false, if known.
-    pub(super) gaps: [Option<LinearEnclosure>; 2],
+    gaps: [Option<LinearEnclosure>; 2],
 }
 
 impl Ternary {
     /// Returns the outcome of the comparison `a ≤ b`, given whether it may be true and whether it may be false.
-    pub(super) fn of([yes, no]: [bool; 2], a: &Enclosure, b: &Enclosure) -> Ternary {
+    fn of([yes, no]: [bool; 2], a: &Enclosure, b: &Enclosure) -> Ternary {
         // A decided comparison selects one value, which needs no gap.
         let gap = (yes && no).then(|| {
             let slope = [0, 1, 2].map(|k| a.linear.slope[k].plus(b.linear.slope[k].negated()));
@@ -466,29 +466,29 @@ impl Not for Ternary {
     }
 }
 
-pub(super) const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 /// No number at all.
-pub(super) const EMPTY: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
-pub(super) const ENTIRE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+const EMPTY: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
+const ENTIRE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
 impl Interval {
-    pub(super) fn point(value: f64) -> Interval {
+    fn point(value: f64) -> Interval {
         Interval { low: value, high: value }
     }
 
     /// Rounds outward. Returns all numbers if an end is NaN.
-    pub(super) fn outward(low: f64, high: f64) -> Interval {
+    fn outward(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
             return ENTIRE;
         }
         Interval { low: low.next_down(), high: high.next_up() }
     }
 
-    pub(super) fn hull(self, other: Interval) -> Interval {
+    fn hull(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    pub(super) fn plus(self, other: Interval) -> Interval {
+    fn plus(self, other: Interval) -> Interval {
         // A sum with 0 is exact.
         match (self, other) {
             (ZERO, sum) | (sum, ZERO) => sum,
@@ -496,11 +496,11 @@ impl Interval {
         }
     }
 
-    pub(super) fn negated(self) -> Interval {
+    fn negated(self) -> Interval {
         Interval { low: -self.high, high: -self.low }
     }
 
-    pub(super) fn times(self, other: Interval) -> Interval {
+    fn times(self, other: Interval) -> Interval {
         if self == ZERO || other == ZERO {
             return ZERO;
         }
@@ -518,7 +518,7 @@ impl Interval {
         Interval::outward(low, ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
-    pub(super) fn reciprocal(self) -> Interval {
+    fn reciprocal(self) -> Interval {
         if self.low <= 0.0 && self.high >= 0.0 {
             return ENTIRE;
         }
@@ -526,16 +526,16 @@ impl Interval {
     }
 
     /// Returns the square root. The argument is taken as non-negative, even if rounding made its lower end negative.
-    pub(super) fn sqrt(self) -> Interval {
+    fn sqrt(self) -> Interval {
         let root = Interval::outward(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
         Interval { low: root.low.max(0.0), ..root }
     }
 
-    pub(super) fn min(self, other: Interval) -> Interval {
+    fn min(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    pub(super) fn abs(self) -> Interval {
+    fn abs(self) -> Interval {
         match self {
             Interval { low, .. } if low >= 0.0 => self,
             Interval { high, .. } if high <= 0.0 => self.negated(),

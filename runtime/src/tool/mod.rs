@@ -126,7 +126,7 @@ pub struct Derivatives {
 
 impl Derivatives {
     /// Converts results computed at a [`Dual::point`] of the tool's own unit to derivatives in the part's unit.
-    pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
+    fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
         let rows =
             |vector: [Dual; 3]| vector.map(|component| component.slope.map(|slope| slope / length));
         Derivatives { direction: rows(direction), gradient: rows(gradient) }
@@ -299,19 +299,19 @@ pub struct Evaluations {
     pub region: Vec<f64>,
     /// Registers of the interpreter's tapes.
     #[cfg(feature = "interpreter")]
-    pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
+    registers: Vec<tool_dsl::interpret::Lanes>,
     /// Scratch memory of the interpreter for a point.
     #[cfg(feature = "interpreter")]
-    pub(crate) scratch: tool_dsl::interpret::Scratch,
+    scratch: tool_dsl::interpret::Scratch,
     /// Scratch memory of the interpreter for a point with derivatives.
     #[cfg(feature = "interpreter")]
-    pub(crate) duals: tool_dsl::interpret::Scratch<Dual>,
+    duals: tool_dsl::interpret::Scratch<Dual>,
     /// Scratch memory of the interpreter for a box.
     #[cfg(feature = "interpreter")]
-    pub(crate) enclosures: tool_dsl::interpret::Scratch<Enclosure>,
+    enclosures: tool_dsl::interpret::Scratch<Enclosure>,
     /// Scratch memory of the interpreter for a block of points.
     #[cfg(feature = "interpreter")]
-    pub(crate) lanes: tool_dsl::interpret::Registers,
+    lanes: tool_dsl::interpret::Registers,
 }
 
 impl Evaluations {
@@ -340,7 +340,7 @@ impl Evaluations {
     }
 
     /// Resizes the requested lists for the points, and marks no point as inside.
-    pub(crate) fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
+    fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
         self.inside.resize(blocks, 0);
@@ -375,7 +375,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
 }
 
 /// Returns the bits of a block that are points and not padding.
-pub(crate) fn present(count: usize, block: usize) -> u8 {
+fn present(count: usize, block: usize) -> u8 {
     match count - block * LANES {
         remaining if remaining >= LANES => u8::MAX,
         remaining => (1 << remaining) - 1,

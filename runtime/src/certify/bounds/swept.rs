@@ -14,10 +14,10 @@ use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, f64x8};
 
 /// The corners of triangles at both ends of their motion.
-pub(crate) type Ends<V> = [LaneVector<V>; 6];
+type Ends<V> = [LaneVector<V>; 6];
 
 /// Triangles in motion: at both ends, and in the middle.
-pub(crate) struct MovingTriangles<V> {
+struct MovingTriangles<V> {
     pub(crate) ends: Ends<V>,
     pub(crate) middle: [LaneVector<V>; 3],
 }
@@ -33,7 +33,7 @@ impl<R: Real> Hull<R> {
     /// Returns at least the depth of every point no farther than `grow` from the convex hulls of triangles at both
     /// ends of their motion. A bound of at most `threshold` need not be tight.
     #[inline(always)]
-    pub(crate) fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
+    fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         moving: &MovingTriangles<V>,

@@ -28,7 +28,7 @@ pub struct TriangleBvh {
     /// The levels of boxes, from the root's children down to the leaves.
     pub(crate) levels: Vec<Vec<Boxes>>,
     /// A plane per node of each level; the last list is for the leaves.
-    pub(crate) planes: Vec<Vec<Plane>>,
+    planes: Vec<Vec<Plane>>,
     pub(crate) coplanar_faces: CoplanarFaces,
     /// The corners of the 16 triangles of each leaf.
     pub(crate) leaves: Vec<Corners>,
@@ -38,7 +38,7 @@ pub struct TriangleBvh {
     pub(crate) ids: Vec<TriangleId>,
     unit: Unit,
     /// True if inside and outside are defined; see [`TriangleBvh::has_inside`].
-    pub(crate) solid: bool,
+    solid: bool,
 }
 
 /// A search of the triangles of a [`TriangleBvh`] by their boxes.
@@ -212,7 +212,7 @@ impl TriangleBvh {
 
 /// A direction, and the extent of the corners of a node's triangles along it, in the tree's frame and unit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plane {
+struct Plane {
     normal: Point,
     ends: [f64; 2],
 }
@@ -227,7 +227,7 @@ pub(crate) struct NodeRing {
 
 impl Plane {
     /// Computes the plane of triangles along the mean of their normals, from corners in the tree's frame.
-    pub(crate) fn of(triangles: &[[Point; 3]]) -> Plane {
+    fn of(triangles: &[[Point; 3]]) -> Plane {
         let mut sum = [0.0; 3];
         for [a, b, c] in triangles {
             let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));

@@ -37,23 +37,23 @@ pub(crate) struct SweepTask<'a> {
 
 impl SweepTask<'_> {
     /// Returns the depth up to which nothing needs to be examined.
-    pub(super) fn threshold(&self) -> f64 {
+    fn threshold(&self) -> f64 {
         self.limit + self.tolerance
     }
 
     /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error
     /// bound.
-    pub(super) fn above(&self) -> f64 {
+    fn above(&self) -> f64 {
         self.threshold() + self.required_clearance() - self.error
     }
 
     /// Returns the smallest distance that the owners have to keep.
-    pub(super) fn required_clearance(&self) -> f64 {
+    fn required_clearance(&self) -> f64 {
         (-self.threshold()).max(0.0)
     }
 
     /// Returns the depth of a point; negative values are distances.
-    pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> DeepPoint {
+    fn depth(&self, scratch: &mut Scratch, point: Point) -> DeepPoint {
         let (tool_model, owners) = (&self.setting.tool_model, &self.query.owners);
         let inside = if self.limit < 0.0 {
             Some(tool_model.distance(scratch, owners, point))
@@ -66,21 +66,21 @@ impl SweepTask<'_> {
     }
 
     /// Returns whether a point exceeds the limit even after all rounding errors.
-    pub(super) fn too_deep(&self, found: &DeepPoint) -> bool {
+    fn too_deep(&self, found: &DeepPoint) -> bool {
         found.depth > self.limit + 2.0 * self.error
     }
 }
 
 /// A point in the tool's frame and its depth.
 #[derive(Clone, Copy)]
-pub(super) struct DeepPoint {
-    pub(super) point: Point,
-    pub(super) depth: f64,
-    pub(super) feature: usize,
+struct DeepPoint {
+    point: Point,
+    depth: f64,
+    feature: usize,
 }
 
 impl DeepPoint {
-    pub(super) fn best(&self, index: u32) -> DeepestCandidate {
+    fn best(&self, index: u32) -> DeepestCandidate {
         DeepestCandidate { point: self.point, feature: self.feature, index }
     }
 }

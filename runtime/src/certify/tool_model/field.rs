@@ -19,7 +19,7 @@ use std::collections::BinaryHeap;
 
 /// A depth function with its bounds.
 pub(crate) struct Field<'a> {
-    pub(super) tool: &'a dyn Tool,
+    tool: &'a dyn Tool,
     /// The Lipschitz constant `L` of depth, at least 1.
     pub(crate) steep: f64,
     /// The error bound of a depth.
@@ -41,8 +41,8 @@ struct DepthCandidate {
 pub(crate) struct Scratch {
     /// The pieces that are still open, the deepest on top.
     pieces: BinaryHeap<DepthCandidate>,
-    pub(super) points: PointBatch,
-    pub(super) evaluations: Evaluations,
+    points: PointBatch,
+    evaluations: Evaluations,
 }
 
 impl Ord for DepthCandidate {
@@ -94,7 +94,7 @@ impl<'a> Field<'a> {
     }
 
     /// Returns the depths of the points; outside, minus a lower bound of the distance from the tool.
-    pub(super) fn depths(&self, scratch: &mut Scratch, count: usize) -> [Depth; LANES] {
+    fn depths(&self, scratch: &mut Scratch, count: usize) -> [Depth; LANES] {
         let Scratch { points, evaluations, .. } = scratch;
         let ask = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         self.tool.evaluate(self.level, ask, points, 1.0, evaluations);
@@ -233,7 +233,7 @@ impl Field<'_> {
     }
 
     /// Returns the depth of a point if owners have it, or have a point within the error bound of it.
-    pub(super) fn owned(
+    fn owned(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,
@@ -284,7 +284,7 @@ impl Field<'_> {
     }
 
     /// Returns at least the depth of every owned point of a piece. `from` is a point of the piece.
-    pub(super) fn at_most(
+    fn at_most(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,

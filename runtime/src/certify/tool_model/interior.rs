@@ -202,7 +202,7 @@ const MAX_STEPS: u32 = 256;
 
 /// The inward normals of a feature, or of the fan of a reflex corner.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Normals {
+enum Normals {
     /// The normals of a line: they start at `from + s along`, `s` up to `length`, in the direction `inward`.
     Line { from: MeridianPoint, along: MeridianPoint, length: f64, inward: MeridianPoint },
     /// The normals of an arc: at the angle `from + s`, `s` up to `turn`. At the distance `t` from the profile the
@@ -212,7 +212,7 @@ pub(super) enum Normals {
 
 /// A line or circle that contains points at a distance from a feature.
 #[derive(Clone, Copy)]
-pub(super) enum Level {
+enum Level {
     /// The line of points whose dot product with a unit vector is `at`.
     Line {
         normal: MeridianPoint,
@@ -225,7 +225,7 @@ pub(super) enum Level {
 }
 
 impl Normals {
-    pub(super) fn of(feature: &Feature) -> Normals {
+    fn of(feature: &Feature) -> Normals {
         let [from, to] = feature.ends;
         match feature.circle {
             None => Normals::Line {
@@ -251,7 +251,7 @@ impl Normals {
     }
 
     /// Returns the fan of normals between two features that meet in a reflex corner; `None` if they do not.
-    pub(super) fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
+    fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
         let [arrives, leaves] = [before.tangent_at(1), after.tangent_at(0)];
         let turn = cross(arrives, leaves);
         // For opposite headings rounding decides the sense of the turn. A cusp therefore gets a fan whether it points
@@ -271,7 +271,7 @@ impl Normals {
 
     /// Returns the fan of normals between a feature's normal at its end on the axis and the axis, if the feature
     /// meets its mirror image in a reflex corner there.
-    pub(super) fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
+    fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
         let [d, z] = feature.tangent_at(end);
         if feature.ends[end][0] != 0.0 || z >= 0.0 {
             return None;
@@ -289,7 +289,7 @@ impl Normals {
     }
 
     /// Returns the upper end of the parameter range.
-    pub(super) fn end(&self) -> f64 {
+    fn end(&self) -> f64 {
         match self {
             Normals::Line { length, .. } => *length,
             Normals::Arc { turn, .. } => *turn,
@@ -311,7 +311,7 @@ impl Normals {
     }
 
     /// Returns the distance at which the normals meet; infinity if they never do.
-    pub(super) fn longest(&self) -> f64 {
+    fn longest(&self) -> f64 {
         match self {
             Normals::Arc { radius, grows, .. } if *grows < 0.0 => *radius,
             _ => f64::INFINITY,
@@ -371,7 +371,7 @@ fn angle(vector: MeridianPoint) -> f64 {
 }
 
 /// Returns the lines and circles that contain all points at the distance `t` from a feature.
-pub(super) fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
+fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
     let sides = match feature.circle {
         None => {
             let normal = [-feature.along[1], feature.along[0]];
@@ -386,7 +386,7 @@ pub(super) fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
 }
 
 /// The axis of the tool.
-pub(super) const AXIS: Level = Level::Line { normal: [1.0, 0.0], at: 0.0 };
+const AXIS: Level = Level::Line { normal: [1.0, 0.0], at: 0.0 };
 
 #[cfg(test)]
 mod tests {

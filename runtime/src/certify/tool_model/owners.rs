@@ -195,7 +195,7 @@ impl Owners {
     ///
     /// The heights are found by halving rectangles, down to a fraction of the error bound of a point. Returns `None`
     /// if there are too many. With `others`, only those are returned near which other features own points too.
-    pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
+    fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
         let min_size = section.error / 32.0;
         // All points of an arc are equally far from its centre.
         let centres = section.features.iter().filter_map(|feature| feature.circle);

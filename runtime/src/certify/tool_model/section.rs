@@ -29,7 +29,7 @@ pub(crate) struct SectionSlab {
     pub(crate) radius: f64,
     /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
     /// at most the distance from that line.
-    pub(crate) feet: [f64; 2],
+    feet: [f64; 2],
 }
 
 /// The section of a tool with a profile.

@@ -5,14 +5,14 @@ use crate::mesh::ply::error::PlyError;
 use std::collections::HashSet;
 
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Encoding {
+enum Encoding {
     Ascii,
     LittleEndian,
     BigEndian,
 }
 
 #[derive(Clone, Copy)]
-pub(super) enum Type {
+enum Type {
     I8,
     U8,
     I16,
@@ -38,7 +38,7 @@ impl Type {
         })
     }
 
-    pub(super) fn bytes(self) -> usize {
+    fn bytes(self) -> usize {
         match self {
             Type::I8 | Type::U8 => 1,
             Type::I16 | Type::U16 => 2,
@@ -48,18 +48,18 @@ impl Type {
     }
 }
 
-pub(super) struct Property<'a> {
+struct Property<'a> {
     pub(super) name: &'a [u8],
     /// The type of the length of a list; `None` for a scalar.
-    pub(super) length: Option<Type>,
+    length: Option<Type>,
     /// The type of the value, or of each item of a list.
-    pub(super) value: Type,
+    value: Type,
 }
 
 pub(super) struct Element<'a> {
     pub(super) name: &'a [u8],
     pub(super) count: usize,
-    pub(super) properties: Vec<Property<'a>>,
+    properties: Vec<Property<'a>>,
 }
 
 impl Element<'_> {
@@ -75,7 +75,7 @@ impl Element<'_> {
 
     /// Returns the minimum number of bytes for all of these elements, to check `count` against the file
     /// length.
-    pub(super) fn min_bytes(&self, encoding: Encoding) -> u128 {
+    fn min_bytes(&self, encoding: Encoding) -> u128 {
         let count = self.count as u128;
         if encoding == Encoding::Ascii {
             // A digit and a separator per value, except that the last value of the file needs no
@@ -88,7 +88,7 @@ impl Element<'_> {
 }
 
 pub(super) struct Header<'a> {
-    pub(super) encoding: Encoding,
+    encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
 }
 
@@ -329,7 +329,7 @@ impl<'a, 'n> Body<'a, 'n> {
         }
     }
 
-    pub(super) fn file(&self) -> String {
+    fn file(&self) -> String {
         self.name.to_owned()
     }
 
