@@ -186,6 +186,7 @@ impl PlaybackDevice {
 
 impl Device for PlaybackDevice {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
+        // A product instead of a running sum, whose rounding would add up.
         let position = self.cycle as f64 * self.poses_per_cycle;
         let index = position as usize;
         self.cycle += 1;

@@ -305,6 +305,7 @@ impl Oscillator {
             0.0,
             0.0,
         );
+        // The last row keeps the force, so one exponential has the transition and the gain.
         let exponential = (rates * period).exp();
         if !exponential.iter().all(|part| part.is_finite()) {
             let range = "one that is not so small beside damping and stiffness";
@@ -346,6 +347,7 @@ const DAMPING_RATIO: f64 = 0.1;
 impl TremorFilter {
     fn new(tremor: &Tremor, period: f64) -> TremorFilter {
         let angle = std::f64::consts::TAU * tremor.frequency * period;
+        // The poles of the recursion are at this radius, and at plus and minus the angle.
         let radius = (-DAMPING_RATIO * angle).exp();
         let transition = [2.0 * radius * angle.cos(), -radius * radius];
         // The variance of such a process (Box, Jenkins and Reinsel, *Time Series Analysis*, eq. 3.2.30).

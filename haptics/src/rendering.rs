@@ -100,6 +100,7 @@ fn capped_spring(stiffness: f64, limit: f64, displacement: f64) -> (f64, f64) {
     if stiffness * displacement <= limit {
         (stiffness, 0.5 * stiffness * displacement * displacement)
     } else {
+        // Beyond the limit the force is constant, and the energy grows linearly: the integral of the force.
         (limit / displacement, limit * (displacement - 0.5 * limit / stiffness))
     }
 }
@@ -129,6 +130,7 @@ pub(super) fn limit_stiffness(matrix: &Matrix6<f64>, limits: &DeviceLimits) -> (
         0.5 * (matrix[(row, column)] + matrix[(column, row)]) * scale[row] * scale[column]
     });
     let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(scaled);
+    // Negative eigenvalues are cut off, the others stay.
     let projected = eigenvectors * Matrix6::from_diagonal(&eigenvalues.map(|value| value.max(0.0)));
     let projected = projected * eigenvectors.transpose();
     let matrix =
@@ -172,6 +174,7 @@ pub(super) struct Passivity {
 impl Passivity {
     /// Accounts for a displacement of the hand under the last wrench.
     pub(super) fn add_work(&mut self, wrench: &DeviceWrench, displacement: &Vector6<f64>) {
+        // The wrench acts on the hand: work on the hand is energy that it gets.
         self.energy.input -= to_vector(wrench).dot(displacement);
         self.energy.dissipated -= self.damping.dot(displacement);
     }
@@ -199,6 +202,7 @@ impl Passivity {
         let damper = max_stiffness.component_mul(displacement);
         let power = damper.dot(displacement);
         self.damping = if self.excess > 0.0 && power > 0.0 {
+            // The same displacement again, against this force, takes out `excess`.
             damper * -(self.excess / power).min(MAX_DAMPING_FRACTION)
         } else {
             Vector6::zeros()

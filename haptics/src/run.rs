@@ -190,6 +190,7 @@ impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
                 due = started;
             }
             let state = self.cycle(device);
+            // The cycle in which the device ends has no pose of its own, and does not count.
             if self.faults().ended {
                 break;
             }
@@ -201,6 +202,7 @@ impl<T: BatchEvaluator + ?Sized> Session<'_, T> {
             }
             report.start_delays.saturating_record(nanoseconds(late));
             let ended = clock.now();
+            // The time of the cycle alone, without the wait for it.
             report.durations.saturating_record(nanoseconds(ended.saturating_sub(started)));
             due += period;
             // The number of whole periods that have passed.

@@ -314,6 +314,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
             None => (device, Vector6::zeros()),
         };
         let damper = coupling.springs() * (coupling.damping / self.period);
+        // The contact at the tool's pose is known from the cycle before, so a cycle in balance evaluates nothing.
         let mut evaluations = self.last.take().unwrap_or_else(|| self.contact_force(&tool));
         let mut evaluations_done = 0;
         loop {

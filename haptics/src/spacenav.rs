@@ -94,6 +94,7 @@ impl Spacenav {
             .and_then(|period| gains.check().map(|()| period))
             .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
         let stream = connect(socket)?;
+        // The last state counts, not every event: the reader never waits for the loop, nor the loop for it.
         let (publisher, cap) = triple_buffer::triple_buffer(&Cap::Displaced([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
         let reader = {
@@ -125,6 +126,7 @@ fn listen(
     while !stop.load(Ordering::Relaxed) {
         match stream.read(&mut event[received..]) {
             Ok(more) if more > 0 => {
+                // A read may end within an event.
                 received += more;
                 if received == event.len() {
                     received = 0;

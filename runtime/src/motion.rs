@@ -71,6 +71,7 @@ impl Motion {
             displacement,
             start,
             frame: None,
+            // Accurate at all angles, unlike an arc cosine.
             angle: sine_norm.atan2(cosine),
         })
     }

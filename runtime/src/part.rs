@@ -157,6 +157,7 @@ impl Part {
     #[must_use]
     pub fn converted_to(mut self, unit: Unit) -> Part {
         if unit != self.unit {
+            // The tree stays as it is: only its frame is in the part's unit.
             let factor = self.unit.factor_to(unit);
             self.levels.iter_mut().for_each(|tree| tree.scale_by(factor));
             self.diagnostics = self.diagnostics.map(|diagnostics| diagnostics.to(unit));

@@ -62,6 +62,7 @@ impl Pose {
     pub fn from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Result<Pose, PoseError> {
         let axis = unit("axis", [axis.x, axis.y, axis.z, 0.0])?;
         let [x, y, z, _] = axis;
+        // Without a branch, and without the cancellation at z = -1 that a fixed sign has.
         let sign = 1f64.copysign(z);
         let a = -1.0 / (sign + z);
         let b = x * y * a;
@@ -190,10 +191,12 @@ impl Pose {
     /// # Panics
     /// Panics if the tip leaves [`MAX_TIP_COORDINATE`].
     pub fn relative_to(&self, frame: &Pose) -> Pose {
+        // Exactly, so that a part at the origin sees the bits of the given pose.
         if *frame == Pose::default() {
             return *self;
         }
         let inverse = frame.rotation.transpose();
+        // The difference first: both tips may be far from the origin.
         let tip = Point3::from(inverse * (self.tip - frame.tip));
         Pose {
             rotation: orthonormal(inverse * self.rotation),

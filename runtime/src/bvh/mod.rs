@@ -113,6 +113,7 @@ pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
     let mut levels = Vec::new();
     loop {
         let level: Vec<Boxes> = boxes.chunks(WIDTH).map(pack_boxes).collect();
+        // The next level is built around the boxes as they are stored, rounded, and so contains them.
         boxes = level.iter().map(around).collect();
         levels.push(level);
         if boxes.len() == 1 {
@@ -144,6 +145,7 @@ pub(crate) fn order(items: &mut [BuildItem]) {
         a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
     });
     let (low, high) = items.split_at_mut(left);
+    // For so few items a task costs more than it saves.
     if low.len() < MAX_SEQUENTIAL_ITEMS {
         order(low);
         order(high);
@@ -166,6 +168,7 @@ impl Boxes {
         for axis in 0..3 {
             let [low, high] = [bounds.low[axis], bounds.high[axis]];
             let centre = if low <= high { bounds.middle(axis) as f32 } else { f32::NAN };
+            // The centre was rounded, so the box is no longer symmetric about it.
             let reach = (high - f64::from(centre)).max(f64::from(centre) - low);
             self.centre[axis][lane] = centre;
             self.half[axis][lane] = if centre.is_nan() { 0.0 } else { outward(reach) };

@@ -83,6 +83,7 @@ impl QuerySetup {
         let (rotation, tip) = (pose.rotation(), pose.tip());
         let per_length = 1.0 / self.length;
         for axis in 0..3 {
+            // The difference first, and in `f64`: far from the world's origin nothing else is accurate.
             view.from_tip[axis] = frame.origin[axis] - tip[axis];
         }
         let from = view.from_tip;
@@ -118,6 +119,7 @@ impl ReachBounds {
             } else {
                 [slab[0].min(entry[0]), slab[1].max(entry[1]), slab[2].max(entry[2])]
             };
+            // One bit per slab in use: a node passes on to its children those that reach it.
             all |= 1 << index.min(SLABS - 1);
         }
         let across = match info.symmetry {

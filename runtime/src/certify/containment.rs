@@ -94,6 +94,7 @@ impl CorePoints {
                 let mut core_points = Vec::new();
                 for (index, region) in info.regions.iter().enumerate() {
                     let limit = self.limits[region.surface.0];
+                    // A connected tool needs one point.
                     if limit.is_infinite() || (one && index > 0) {
                         continue;
                     }

@@ -137,6 +137,7 @@ impl Certifier<'_> {
             Some(SweepEnd::Deeper { at, best }) => {
                 MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
+            // A proof is out of reach, but a contact later in the motion may still be found.
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
             None => match setting.containment(info, core_points, &motion.pose(0.0), tolerance) {
                 Containment::Inside(surface) => MotionVerdict::Inside(surface),
@@ -241,6 +242,7 @@ impl Certifier<'_> {
             tolerance,
             budget,
         };
+        // With a margin, first whether the surface is in the part at all: that is the graver finding.
         let found = search.deepest(depth);
         if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
             return Ok(found);
@@ -292,6 +294,8 @@ impl MotionSearch<'_, '_> {
                 Some(SweepEnd::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
                     let depth = Interval::new(allowed, allowed + self.tolerance);
+                    // A sweep proves no more than that the point exceeds the allowance; a probe at that time may tell
+                    // its depth.
                     let swept = DepthPeak { depth, at, witness };
                     self.peak_at(at).map_or(swept, |probed| deeper(swept, probed))
                 }
@@ -387,6 +391,7 @@ impl MotionSearch<'_, '_> {
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
         if query.limit >= 0.0 {
+            // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
             let found = penetration(setting, query, state, &pose, tolerance, budget);
             let Interval { low, high } = found.depth;

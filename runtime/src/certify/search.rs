@@ -204,6 +204,7 @@ impl Faces {
         placed: PlacedTool<'_>,
         faces: &[u32],
     ) -> f64 {
+        // A point of the face may be off the rectangle's plane by the tolerance, and deeper by as much.
         let more = of.tool_model.lipschitz() * flat(&of.bvh.frame) / of.length;
         let mut max_depth = f64::NEG_INFINITY;
         for indices in faces.chunks(LANES / 2) {
@@ -225,6 +226,7 @@ impl Faces {
             }
             self.batch.turn(placed.view);
             self.batch.bound(of.level, &query.exact, f64::NEG_INFINITY);
+            // Two triangles per rectangle.
             for half in (0..self.batch.len()).step_by(2) {
                 let depth = self.batch.bounds[half].max(self.batch.bounds[half + 1]) + more;
                 self.cached[self.batch.index(half) as usize] = (self.generation, depth);
@@ -324,6 +326,7 @@ impl SearchState {
             if bound <= self.search.threshold() || !self.search.spend(bound) {
                 continue;
             }
+            // Bounds in `f32` may be too low by the margin.
             let threshold = (self.search.threshold() - margin) as f32;
             if node.is_triangle(of.bvh) {
                 let indices = self.descent.triangles(of.bvh, node, threshold);
@@ -381,9 +384,11 @@ impl SearchState {
         if let ToolModel::Field(field) = &of.tool_model {
             let outside = matches!(side, Side::Outside);
             let scratch = &mut self.scratch;
+            // Only now, since all triangles share one queue: the deepest piece of any of them comes first.
             let found = field.search_triangles(&mut self.search, scratch, &query.owners, outside);
             self.best = found.or(self.best);
         }
+        // Without contact nothing is remembered: the next query begins at the root.
         self.last = self.best.map(|best| best.index);
     }
 

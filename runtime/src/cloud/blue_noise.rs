@@ -82,6 +82,7 @@ pub(super) fn sample_blue_noise(
             // long. Take more of the drawn points instead.
             let mut rest =
                 (0..candidates.len()).filter(|i| kept.binary_search(&(*i as u32)).is_err());
+            // Evenly from all over the list, which is in the order of the triangles.
             let step = (candidates.len() - kept.len()) / (count - cloud.len()).max(1);
             while let Some(index) = rest.next().filter(|_| cloud.len() < count) {
                 cloud.push_of(&candidates, index);
@@ -336,6 +337,7 @@ impl CrowdedPoints {
                     (vec![], Vec::with_capacity(range.len()));
                 for &[slot, blocker] in &waiting[range] {
                     let own = self.current(slot);
+                    // No neighbour is left, or the point itself is removed.
                     if own.0 <= 1 {
                         continue;
                     }

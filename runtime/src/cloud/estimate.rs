@@ -209,6 +209,7 @@ impl DistinctPoints {
 /// Returns the corners of a regular polygon around a circle of the given radius, perpendicular to a
 /// normal.
 fn polygon(normal: &Vector3<f64>, radius: f64) -> impl Iterator<Item = Corner> {
+    // The axis of the least component is the farthest from being parallel to the normal.
     let tangent = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
     let other = normal.cross(&tangent);
     let out = radius / (PI / POLYGON_CORNERS as f64).cos();

@@ -199,6 +199,7 @@ impl Cloud {
         loop {
             let required_count = area * (ratio / radius).powi(2);
             if required_count > max_count as f64 {
+                // The radius falls with the square root of the area per point.
                 let attainable = ratio * (area / max_count as f64).sqrt();
                 return Err(CloudError::TooFine {
                     radius,
@@ -239,6 +240,7 @@ impl Cloud {
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
         let mut cloud = Cloud::new(points, normals, triangles, weights, unit)?;
         let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
+        // Between points without a mesh the surface may do anything.
         cloud.covering_radius = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {
             cloud.weights = areas;

@@ -119,6 +119,7 @@ impl NeighbourBvh {
                     let weight = weight(item.index);
                     sum += weight;
                     nearest.push((squared_distance, weight));
+                    // Drop the farthest points that the weight does without.
                     while let Some(farthest) = nearest.peek().filter(|f| sum - f.1 >= min_weight) {
                         sum -= farthest.1;
                         nearest.pop();

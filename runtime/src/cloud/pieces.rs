@@ -68,6 +68,7 @@ impl Surface {
         let grain = grain(mesh, sampler, spacing, count);
         let mut surface = Surface { pieces: vec![], corners: vec![], spacing, grain, size };
         for (triangle, corners) in (0..).zip(mesh.corners()) {
+            // Coincident triangles are divided once, and their areas are added up.
             let copies = sampler.copies.count(triangle);
             if copies > 0 {
                 let (area, normal) = area_and_normal(&corners).unwrap_or_default();
@@ -165,6 +166,7 @@ fn grain(mesh: &Mesh, sampler: &AreaSampler, spacing: f64, count: usize) -> f64 
         .collect();
     let size = (count + boxes.len()) as f64;
     let mut grain = spacing;
+    // Results hold for pieces of any size: what is at stake is the number of pieces.
     if total_points(&boxes, grain) > MAX_MEAN_PIECES * size + FREE_PIECES {
         while total_points(&boxes, grain) > COARSE_MEAN_PIECES * size {
             grain *= 2.0;

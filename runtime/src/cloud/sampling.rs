@@ -107,6 +107,7 @@ impl AreaSampler {
             copies: Copies::of(mesh),
             distinct_area: 0.0,
         };
+        // Small areas must not be lost beside the sum of a million others.
         let (mut sum, mut distinct) = (CompensatedSum::default(), CompensatedSum::default());
         let mut max_so_far = 0f64;
         for (id, corners) in (0..).zip(mesh.corners()) {
@@ -212,6 +213,8 @@ impl Copies {
             .iter()
             .zip(0..)
             .map(|(&[a, b, c], id)| {
+                // The rotation that begins with the least vertex is the same for all copies; the mirrored order is
+                // another side.
                 let rotations = [[a, b, c], [b, c, a], [c, a, b]];
                 (rotations.into_iter().min().unwrap_or_default(), id)
             })

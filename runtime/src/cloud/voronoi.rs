@@ -223,6 +223,7 @@ impl Surface {
                     let squared = squared_distance(position, site_point.into());
                     Neighbour { squared, index }
                 });
+                // Eight times as many each time, so that all searches before the last one cost little beside it.
                 max_neighbours = (8 * max_neighbours).min(remaining);
                 sites.tree.nearest_within(site_point.into(), reach, max_neighbours, found);
                 *tests += NEIGHBOUR_COST * found.len();
@@ -420,6 +421,7 @@ impl Surface {
         indices: &[usize],
         max_tests: usize,
     ) -> Vec<DividedPieces> {
+        // σ² scales with the spacing: a point on another face has to be nearer by the same part of it at every density.
         let normal_weight = NORMAL_WEIGHT * self.spacing * self.spacing;
         parallel::ranges(indices.len(), PIECES_PER_TASK, |range| {
             let mut buffers = ClipBuffers::default();

@@ -255,6 +255,7 @@ impl Edges {
             starts[vertex] += starts[vertex - 1];
         }
         let mut uses = vec![0u64; starts[starts.len() - 1]];
+        // Counting sort: the starts themselves stay, as the bounds of the buckets.
         let mut next_slots = starts.clone();
         for [from, to] in edge_uses(mesh) {
             let slot = &mut next_slots[from.min(to) as usize];
@@ -303,6 +304,7 @@ pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
     for edge in uses.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, first), (_, second)] = edge {
             let [first, second] = [first, second].map(|id| root(&mut parent, *id));
+            // Toward the lower number, so that a root is the lowest of its piece.
             parent[first.max(second) as usize] = first.min(second);
         }
     }
@@ -354,6 +356,7 @@ fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
 fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
     while parent[vertex as usize] != vertex {
         let next = parent[vertex as usize];
+        // Halves the path on the way, which keeps all paths short.
         parent[vertex as usize] = parent[next as usize];
         vertex = next;
     }

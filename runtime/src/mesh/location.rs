@@ -29,6 +29,7 @@ pub(super) struct Tokens<'a> {
 
 impl<'a> Tokens<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Tokens<'a> {
+        // Editors put a byte order mark before UTF-8.
         let rest = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         Tokens { rest, line: 1 }
     }
@@ -44,6 +45,7 @@ impl<'a> Tokens<'a> {
 
     /// Returns the next word on the current line, if there is one.
     pub(super) fn next_on_line(&mut self) -> Option<&'a [u8]> {
+        // A look ahead: the word is consumed only if it is on this line.
         let mut ahead = self.clone();
         let word = ahead.next()?;
         if ahead.line != self.line {
@@ -58,6 +60,7 @@ impl<'a> Tokens<'a> {
         while let [space, rest @ ..] = self.rest
             && is_space(*space)
         {
+            // CR LF is one end of a line, and the LF counts.
             let ends_line = *space == b'\n' || (*space == b'\r' && rest.first() != Some(&b'\n'));
             self.line += usize::from(ends_line);
             self.rest = rest;

@@ -253,6 +253,7 @@ impl Mesh {
 /// coordinates.
 fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
     let [low, high] = bounds(corners.iter().flatten().copied());
+    // Relative to the part's size: it is what exporters leave of a coordinate that should be 0.
     let noise = (high - low).amax() * WELD_TOLERANCE_FRACTION;
     let mut indices = HashMap::new();
     let mut vertices = Vec::new();
@@ -299,6 +300,7 @@ pub(crate) fn area_and_normal([a, b, c]: &[Point3<f64>; 3]) -> Option<(f64, Vect
     let edges = [b - a, c - b, a - c];
     let squares = edges.map(|edge| edge.norm_squared());
     let longest = (0..3).fold(0, |k, i| if squares[i] > squares[k] { i } else { k });
+    // In cyclic order any two edges have the same cross product.
     let (first, second) = ((longest + 1) % 3, (longest + 2) % 3);
     let cross = edges[first].cross(&edges[second]);
     let square = cross.norm_squared();
@@ -321,6 +323,7 @@ pub(crate) struct CompensatedSum {
 impl CompensatedSum {
     pub(crate) fn add(&mut self, term: f64) {
         let sum = self.high + term;
+        // The smaller summand loses its low digits; subtracting the larger one again recovers them.
         self.low += if self.high.abs() >= term.abs() {
             (self.high - sum) + term
         } else {

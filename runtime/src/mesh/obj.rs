@@ -238,6 +238,7 @@ impl<'a> Lines<'a, '_> {
         let expected = "a corner such as 7, 7/1 or 7//2: a face has three or more";
         corners.clear();
         while let Some(word) = self.word() {
+            // Texture and normal follow the vertex after slashes.
             let vertex = word.split(|&byte| byte == b'/').next().unwrap_or_default();
             let index = str::from_utf8(vertex).ok().and_then(|text| text.parse::<i64>().ok());
             let index = index.ok_or_else(|| self.expected(expected, Some(word)))?;

@@ -72,6 +72,7 @@ impl Geometry {
     pub fn from_bytes(bytes: &[u8], name: &str, unit: Unit) -> Result<Geometry, GeometryError> {
         let extension = Path::new(name).extension().unwrap_or_default();
         let has_extension = |known: &str| extension.eq_ignore_ascii_case(known);
+        // PLY alone has a beginning that nothing else has. STL may be anything, and OBJ any text.
         Ok(if ply::begins(bytes) || has_extension("ply") {
             match ply::has_faces(bytes, name)? {
                 true => Geometry::Mesh(Mesh::from_ply(bytes, name, unit)?),

@@ -151,6 +151,7 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
         let mut finer = Vec::with_capacity(4 * triangles.len());
         for [a, b, c] in triangles {
             let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[from, to]: [u32; 2]| {
+                // Both triangles at an edge get the same vertex in its middle.
                 *middles.entry((from.min(to), from.max(to))).or_insert_with(|| {
                     let middle = directions[from as usize] + directions[to as usize];
                     directions.push(middle.normalize());

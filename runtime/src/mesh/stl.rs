@@ -177,6 +177,7 @@ impl Mesh {
                     bytes.extend(rounded.to_le_bytes());
                 }
             }
+            // No attributes.
             bytes.extend([0, 0]);
         }
         out.write_all(&bytes)
@@ -301,11 +302,13 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let mut facets = StlFacets::default();
     let (records, _) = body.as_chunks::<RECORD>();
     for (triangle, record) in records.iter().enumerate() {
+        // The attributes have no agreed meaning.
         let (fields, _attributes) = record.as_chunks::<4>();
         let mut numbers = [0f32; 12];
         for (number, field) in numbers.iter_mut().zip(fields) {
             *number = f32::from_le_bytes(*field);
         }
+        // A normal that is not finite does no harm: it counts only where it opposes the winding's.
         if let Some(k) = (3..12).find(|&k| !numbers[k].is_finite()) {
             return Err(StlError::TriangleCoordinate {
                 file: name.to_owned(),

@@ -97,6 +97,7 @@ impl PointBvh {
                 touched.push(leaf);
             }
         }
+        // Each leaf once, in ascending order, as the levels above are refitted.
         touched.sort_unstable();
         touched.dedup();
         let bottom = self.levels.len() - 1;
@@ -150,6 +151,7 @@ impl PointBvh {
             let (leaf_points, bounds) = build_leaf(&items);
             leaves[leaf] = leaf_points;
             all.set_lane(leaf % WIDTH, &bounds);
+            // The largest size so far stays a bound, though the leaf that had it may have shrunk.
             self.leaf_size = self.leaf_size.max(outward(bounds.size() / 2.0));
             touched.push(leaf);
             // The points that stay are rounded again, since the leaf's centre changed.

@@ -70,6 +70,7 @@ impl PointBvh {
     pub(crate) fn scale_by(&mut self, factor: f64) {
         self.frame.origin *= factor;
         self.frame.scale *= factor;
+        // Weights are areas.
         self.weight *= factor * factor;
         self.covering_radius = self.covering_radius.map(|covering_radius| CoveringRadius {
             radius: factor * covering_radius.radius,

@@ -92,6 +92,7 @@ pub struct Summary {
 /// ```
 pub fn summary(contacts: &[Contact], of: impl Fn(&Contact) -> f64) -> Option<Summary> {
     let first = of(contacts.first()?);
+    // Minimum and maximum begin at a value that occurs.
     let start = Summary { sum: 0.0, mean: 0.0, min: first, max: first };
     let totals = contacts.iter().map(of).fold(start, |totals, value| Summary {
         sum: totals.sum + value,
@@ -167,6 +168,7 @@ pub(super) fn posture(state: &QueryState<'_>, info: &ToolInfo, pose: &Pose) -> P
         }
         niceness = niceness.min(evaluations.niceness[candidate]);
         if !info.surface_of(evaluations.region[candidate] as usize).cutting {
+            // In the tool's unit, until the end.
             non_cutting_depth = Some(non_cutting_depth.map_or(depth, |deepest| deepest.max(depth)));
         }
     }

@@ -101,6 +101,7 @@ impl InsideQuery {
         if candidates.points.is_empty() {
             return;
         }
+        // Only what the result holds is computed.
         let outputs = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         tool.evaluate(level, outputs, &candidates.points, *length, evaluations);
         points.extend(evaluations.inside_indices().map(|candidate| InsidePoint {
@@ -123,6 +124,7 @@ impl InsideQuery {
         }
         let input = TraversalInput { tree, setup: &envelope.setup, view: &self.view };
         let visited = self.traversal.leaves(Level::new(), input, MAX_REACH_NODES);
+        // An aborted descent has found nothing yet, which proves nothing.
         visited.is_some() && self.traversal.found().len() == 0
     }
 }

@@ -192,6 +192,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// without contact, plus the [sampling error bound](Probe::sampling_error_bound). `None` if that bound is not
     /// known.
     pub fn depth_bound(&mut self, pose: &Pose) -> Option<f64> {
+        // Before the query: without a bound it would be in vain.
         let error_bound = self.sampling_error_bound()?;
         Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + error_bound)
     }
@@ -203,6 +204,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
             return false;
         }
         self.state.traverse_to_last_hit();
+        // The remaining nodes are visited one by one, so that a hit ends the query early.
         let is_inside = self.filter_and_evaluate::<Inside>() || {
             // Each node has sixteen leaves.
             let nodes = self.state.traverse_to_nodes();

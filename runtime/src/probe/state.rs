@@ -138,6 +138,7 @@ impl<'a> QueryState<'a> {
         &mut self,
         tool: &T,
     ) -> bool {
+        // The evaluations are those of the query before, and must not be read.
         if self.candidates.points.is_empty() {
             return false;
         }

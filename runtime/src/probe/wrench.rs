@@ -297,6 +297,7 @@ fn add<S: Simd>(
     let niceness = sums.niceness.min(load(simd, &evaluations.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
     let depth = load(simd, &evaluations.depth, block);
+    // Lanes outside hold meaningless depths.
     let deeper = in_solid & depth.simd_gt(sums.depth);
     let indices = f64x8::from_slice(simd, &LANE_INDICES) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
@@ -324,6 +325,7 @@ fn add<S: Simd>(
         *part = turned - *part;
     }
     let force = match state.law {
+        // A point whose normal faces the way out of the tool lies on the far side of a thin sheet.
         Law::Facing => facing.simd_le(zero).select(weighted_magnitude, zero),
         _ => weighted_magnitude,
     };
@@ -402,6 +404,7 @@ impl QueryState<'_> {
     /// arm changes by `-u`.
     fn matrix<T: Tool + ?Sized>(&mut self, tool: &T, pose: &Pose) -> Matrix6<f64> {
         let rotation = pose.rotation();
+        // The tool needs it while the evaluations of this state are read.
         let mut scratch = std::mem::take(&mut self.scratch);
         let mut sum = StiffnessSum::default();
         for candidate in self.evaluations.inside_indices() {
@@ -413,6 +416,7 @@ impl QueryState<'_> {
             let vector =
                 |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[candidate]));
             let position = vector(self.candidates.points.lists());
+            // The centre is in the part's unit, the candidates are in the tool's.
             let arm = position * self.length - self.centre.coords;
             let magnitude = self.evaluations.magnitude[candidate];
             let gradient = vector(&self.evaluations.gradient);
@@ -464,9 +468,11 @@ impl StiffnessSum {
         moment: Vector3<f64>,
     ) {
         let (arm, moment) = (arm.cross_matrix(), moment.cross_matrix());
+        // A rotation `θ` moves the point by `θ × arm`, and turns the share of the force that turns with the tool.
         let by_rotation = moment - block * arm;
         self.force[0] += block;
         self.force[1] += by_rotation;
+        // The torque `arm × force`: the arm shortens by what the tool moves.
         self.torque[0] += arm * block - force.cross_matrix();
         self.torque[1] += arm * by_rotation;
     }

@@ -108,6 +108,7 @@ pub(super) fn lists(points: u64) -> Vec<(List, u64)> {
     while let Some(&count) = boxes.last()
         && count > 1
     {
+        // As the tree is built: until one block holds a whole level.
         boxes.push(count.div_ceil(WIDTH as u64));
     }
     let boxes = boxes.into_iter().rev().enumerate();
@@ -224,6 +225,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
         .iter()
         .flat_map(|(tree, lists)| lists.iter().map(|(list, _)| list.of(tree)))
         .collect();
+    // All at once, on all cores: the header that holds them comes first in the file.
     let mut sums = checksums(&sections).into_iter();
 
     let records = size_of::<Start>()
@@ -244,6 +246,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
             at += bytes.next_multiple_of(ALIGN);
         }
     }
+    // So that the first list begins at a multiple of the alignment.
     header.resize(length, 0);
     let start = Start {
         magic: MAGIC,
@@ -282,6 +285,7 @@ pub(super) fn header_checksum(header: &[u8]) -> u32 {
 /// of the last CRC-32.
 pub(super) fn checksums(sections: &[&[u8]]) -> Vec<u32> {
     let chunks: Vec<&[u8]> = sections.iter().flat_map(|bytes| bytes.chunks(CHUNK)).collect();
+    // In chunks, so that one long list is not left to one core.
     let sums = parallel::ranges(chunks.len(), 1, |at| {
         let chunk = chunks[at.start];
         let mut sum = crc32fast::Hasher::new();

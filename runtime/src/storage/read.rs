@@ -99,6 +99,7 @@ impl FileContext<'_> {
     fn start(&self, mut source: impl Read) -> Result<(Start, Vec<u8>, impl Read), SavedError> {
         let (file, has) = (self.file.to_owned(), self.length);
         let mut bytes = Vec::new();
+        // A little first: a file of another kind is described, not read.
         let beginning = source.by_ref().take(PREFIX_LENGTH as u64).read_to_end(&mut bytes);
         beginning.map_err(|source| self.unreadable(source))?;
         let known = bytes.len().min(MAGIC.len());
@@ -201,6 +202,7 @@ impl FileContext<'_> {
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut list);
         let mut filling = [0; ALIGN];
         let filling = &mut filling[..place.bytes.next_multiple_of(ALIGN) - place.bytes];
+        // Straight into its final place, which is then checked there.
         let read = source.read_exact(bytes).and_then(|()| source.read_exact(filling));
         read.map_err(|source| self.unreadable(source))?;
         if filling.iter().any(|byte| *byte != 0) || checksums(&[bytes])[0] != place.checksum {

@@ -72,6 +72,7 @@ impl Div for Dual {
     #[inline(always)]
     fn div(self, other: Dual) -> Dual {
         let value = self.value / other.value;
+        // (a/b)' = a'/b - (a/b) b'/b: the quotient is at hand.
         self.combine(other, value, [1.0 / other.value, -value / other.value])
     }
 }
@@ -124,6 +125,7 @@ impl Lane for Dual {
     }
     #[inline(always)]
     fn abs(self) -> Dual {
+        // The sign of a zero is 1 or -1, neither of which is a derivative there.
         let sign = if self.value == 0.0 { 0.0 } else { self.value.signum() };
         self.chain(self.value.abs(), sign)
     }

@@ -50,6 +50,7 @@ impl Enclosure {
     /// Returns the coordinates of a box, given its extent along x, y and z and a reference point in the box.
     pub fn of_box(sides: [Interval; 3], reference: [f64; 3]) -> [Enclosure; 3] {
         [0, 1, 2].map(|axis| {
+            // The y of a tool with an axis: a constant keeps products with it exact.
             if sides[axis] == ZERO {
                 return Enclosure::constant(0.0);
             }
@@ -87,6 +88,7 @@ impl Enclosure {
     /// Returns the value as an alternative that holds where `gap` is at most 0.
     fn choices(self, gap: Option<LinearEnclosure>) -> Choices {
         match (self.choices, gap) {
+            // What is selected from nothing is the other value alone.
             _ if self == Enclosure::EMPTY => Choices::None,
             (Choices::None, Some(gap)) => Choices::One(Choice { value: self.linear, gap }),
             (Choices::None, None) => Choices::Many,
@@ -156,6 +158,7 @@ impl Div for Enclosure {
     type Output = Enclosure;
     fn div(self, other: Enclosure) -> Enclosure {
         let (a, b) = (self.linear, other.linear);
+        // (a/b)' = (a' - (a/b) b') / b, where all three are enclosed over the whole box.
         let reciprocal = other.value.reciprocal();
         let value = self.value.times(reciprocal);
         let slope =
@@ -199,6 +202,7 @@ impl Lane for Enclosure {
             return Enclosure::coordinate(axis, value, at);
         }
         let root = self.value.sqrt();
+        // The derivative of a root is 1 / (2 root).
         let doubled = root.plus(root);
         let derivative =
             Interval { low: (1.0 / doubled.high).next_down(), high: (1.0 / doubled.low).next_up() };
@@ -241,6 +245,7 @@ impl Lane for Enclosure {
         -Enclosure::smaller(-a, -b)
     }
     fn pick(mask: Ternary, region: Enclosure, before: Enclosure) -> Enclosure {
+        // An index is a constant of the generated code.
         let regions = bit(region.value.low as usize);
         Lane::select(mask, Enclosure { regions, ..region }, before)
     }
@@ -519,6 +524,7 @@ impl Interval {
     }
 
     fn reciprocal(self) -> Interval {
+        // The divisor may be 0.
         if self.low <= 0.0 && self.high >= 0.0 {
             return ENTIRE;
         }
@@ -528,6 +534,7 @@ impl Interval {
     /// Returns the square root. The argument is taken as non-negative, even if rounding made its lower end negative.
     fn sqrt(self) -> Interval {
         let root = Interval::outward(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
+        // Rounding outward must not make a root negative: its reciprocal would be all numbers.
         Interval { low: root.low.max(0.0), ..root }
     }
 

@@ -173,6 +173,7 @@ impl Tool for Interpreted {
             return 0.0;
         }
         let block = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
+        // A tape runs on blocks, so the point is put in every lane.
         let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK_POINTS]]);
         self.clearance_tape.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
         results[0][0]
@@ -199,6 +200,7 @@ impl Tool for Interpreted {
         reference: [f64; 3],
         scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {
+        // With a profile, distances are known exactly, and no enclosure is as tight.
         if !self.info.outline.is_empty() {
             return None;
         }
@@ -315,6 +317,7 @@ impl Interpreted {
         let coordinates = points.coordinates();
         for start in (0..points.len()).step_by(BLOCK_POINTS) {
             let count = BLOCK_POINTS.min(points.len() - start);
+            // Both ways give the same bits; which one is taken is a question of speed alone.
             if count <= MAX_SEPARATE_POINTS {
                 self.evaluate_points(start..start + count, coordinates, request, evaluations);
             } else {
@@ -411,6 +414,7 @@ impl Interpreted {
                     component[lane] = list[*index];
                 }
             }
+            // The first result is the owner, which a tape of one region does not compute.
             results[0] = [region; BLOCK_POINTS];
             if owned.len() < MIN_TAPE_POINTS {
                 let mut values = [0.0; OUTPUT_COUNT];

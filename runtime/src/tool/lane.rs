@@ -47,6 +47,8 @@ pub trait Lane:
     /// Returns the smaller number; `b` where they are equal.
     #[inline(always)]
     fn min(a: Self, b: Self) -> Self {
+        // A comparison and a selection instead of a minimum instruction, whose result for equal zeros of both signs,
+        // and for NaN, differs between machines.
         Self::select(Self::lt(a, b), a, b)
     }
 
@@ -66,6 +68,7 @@ pub trait Lane:
     #[inline(always)]
     fn quotient(a: Self, b: Self) -> Self {
         let zero = a.of(0.0);
+        // Both signs of zero are 0. All lanes divide, and the quotient of such a lane is discarded.
         Self::select(Self::le(b, zero) & Self::le(zero, b), zero, a / b)
     }
 }

@@ -237,7 +237,9 @@ impl PointBatch {
 
     /// Makes room for `additional` further points.
     pub(crate) fn make_room(&mut self, additional: usize) {
+        // Evaluators read whole blocks, so the last one needs its padding.
         let padded = (self.count + additional).next_multiple_of(LANES);
+        // The lists never shrink: numbers from before are as good as padding as zeros are.
         if self.lists[0].len() < padded {
             self.lists.iter_mut().for_each(|list| list.resize(padded, 0.0));
         }
@@ -323,6 +325,7 @@ impl Evaluations {
     /// Returns the indices of the points inside, in ascending order.
     pub fn inside_indices(&self) -> impl Iterator<Item = usize> {
         self.inside.iter().enumerate().flat_map(|(block, bits)| {
+            // Bit by bit from the lowest, each cleared once it was taken.
             let mut remaining = *bits;
             std::iter::from_fn(move || {
                 let lane = (remaining != 0).then(|| remaining.trailing_zeros() as usize)?;
@@ -343,6 +346,7 @@ impl Evaluations {
     fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
+        // Only the bits are reset. The entries of points outside are meaningless anyway.
         self.inside.resize(blocks, 0);
         self.for_each_requested(outputs, |list| {
             if list.len() < blocks * LANES {
@@ -371,6 +375,7 @@ impl Evaluations {
 /// Reserves memory for a list of `count` entries in all. Nothing is written, so unused memory costs only address space
 /// on systems that hand out pages at the first touch.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
+    // Exactly, since doubling would reserve twice the address space that is counted in the documentation.
     list.reserve_exact(count.saturating_sub(list.len()));
 }
 
@@ -378,6 +383,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
 fn present(count: usize, block: usize) -> u8 {
     match count - block * LANES {
         remaining if remaining >= LANES => u8::MAX,
+        // The last block: as many low bits as there are points left.
         remaining => (1 << remaining) - 1,
     }
 }

@@ -219,6 +219,7 @@ impl Descent {
         while self.indices.len() < LANES
             && let Some(next) = self.stack.pop_if(|node| node.is_triangle(bvh))
         {
+            // The threshold may have risen since it was pushed.
             if next.bound > threshold || next.bound.is_nan() {
                 self.indices.push(next.index);
             }
@@ -251,6 +252,7 @@ impl Descent {
 
     fn take(&mut self, bvh: &TriangleBvh, node: Node, hits: u32, bounds: &[f32; WIDTH]) {
         let children = bvh.children(node.level as usize, node.index as usize);
+        // A node at the end of its level has fewer children than 16.
         let mut hits = hits & (u32::MAX >> (32 - children));
         let first = self.stack.len();
         while hits != 0 {

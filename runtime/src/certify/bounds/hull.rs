@@ -321,6 +321,7 @@ impl Hull<f64> {
         let in_slab =
             self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
         let depths = in_slab.map(|slab| {
+            // Only the part of the ring between the slab's heights.
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
             let planes = slab.planes.iter().map(|[nd, nz, max3]| {
                 max3 - nd * ring.near - nz * if *nz > 0.0 { low } else { high }

@@ -48,6 +48,7 @@ impl<R: Real> Hull<R> {
         let half_displacement = half_displacement_of(simd, ends);
         let near =
             slide(simd, &NearestPoint::to_axis(simd, middle).point, &half_displacement, None);
+        // Any direction gives a bound; that of the point nearest to the axis on its way gives a tight one.
         let out = outward(ends, &direction_from_axis(simd, &[near[0], near[1], zero], zero));
         let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
@@ -206,6 +207,7 @@ fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
         square += half_displacement[2] * half_displacement[2];
     }
     let one = V::splat(simd, R::of(1.0));
+    // Without displacement it is 0 / tiny = 0.
     let at = -toward / square.max(V::splat(simd, R::MIN_POSITIVE_VALUE));
     let at = at.max(-one).min(one);
     [
@@ -261,6 +263,7 @@ fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
             let (low, high) = (heights[i] - at, heights[j] - at);
             let across =
                 (low.simd_lt(zero) & high.simd_gt(zero)) | (low.simd_gt(zero) & high.simd_lt(zero));
+            // All pairs of corners are taken, not only the edges of the hull: a chord inside it changes no minimum.
             let value = values[i] - low * ((values[j] - values[i]) / (high - low));
             min_extent = across.select(min_extent.min(value), min_extent);
         }

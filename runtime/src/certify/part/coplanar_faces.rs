@@ -84,6 +84,7 @@ impl CoplanarFaces {
             face.push(seed as u32);
             used[seed] = true;
             let mut next = 0;
+            // Breadth first, across edges of exactly two triangles.
             while next < face.len() {
                 for other in neighbours[face[next] as usize] {
                     if other != NONE
@@ -158,6 +159,7 @@ fn neighbours(mesh: &Mesh, ids: &[TriangleId]) -> Vec<[u32; 3]> {
     edges.sort_unstable();
     let mut neighbours = vec![[NONE; 3]; ids.len()];
     for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        // Where more than two triangles meet, a face may end or branch.
         if let [(_, first, side), (_, second, other)] = group {
             neighbours[*first as usize][*side] = *second;
             neighbours[*second as usize][*other] = *first;
@@ -194,6 +196,7 @@ impl Rectangle {
         normal: Point,
         points: &I,
     ) -> Option<Rectangle> {
+        // The side is an edge of a triangle, which may leave the plane by the tolerance.
         let out = dot(side, normal);
         let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
         let v = unit(cross(normal, u))?;

@@ -95,6 +95,7 @@ impl TriangleBvh {
                     let point = frame.inside(*corner);
                     for axis in 0..3 {
                         let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
+                        // Relative to the box as it is stored, so that only this difference is rounded.
                         list[axis][lane] = (point[axis] - middle) as f32;
                     }
                 }
@@ -104,6 +105,7 @@ impl TriangleBvh {
         let inside: Vec<_> =
             corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
         let depth = levels.len() as u32;
+        // A node of this level holds the triangles of all leaves below it, which are consecutive.
         let planes = (0..=depth).map(|level| {
             let below = WIDTH.pow(depth + 1 - level);
             inside.chunks(below).map(Plane::of).collect()
@@ -121,6 +123,7 @@ impl TriangleBvh {
             unit: mesh.unit(),
             solid: survey.is_solid(),
         };
+        // The rays that decide this need the finished tree.
         bvh.solid = bvh.solid && bvh.voids_are_voids(mesh);
         bvh
     }
@@ -260,6 +263,7 @@ impl NodeBounds {
     fn extent(&self, direction: Point, origin: f64) -> [f64; 2] {
         let NodeBounds { centre, half, plane: Plane { normal, ends } } = *self;
         let part = dot(direction, normal);
+        // What the plane does not bound is left to the box.
         let rest = [0, 1, 2].map(|k| direction[k] - part * normal[k]);
         let wide = dot(rest.map(f64::abs), half);
         let middle = origin + dot(rest, centre);
@@ -294,6 +298,8 @@ impl TriangleBvh {
         let node = NodeBounds { centre, half, plane: self.planes[level][index] };
         let (rows, origin) = view.exactly();
         let [low, high] = node.extent(rows[2], origin[2]);
+        // Neither coordinate alone is the distance from the axis; together, and along the plane's normal, both are
+        // lower bounds of it.
         let [x, y] = [0, 1].map(|axis| least_magnitude(node.extent(rows[axis], origin[axis])));
         // The distance toward the axis along the plane's normal.
         let [u, v] = [0, 1].map(|axis| dot(rows[axis], node.plane.normal));

@@ -58,6 +58,7 @@ impl TriangleBvh {
         }
         let p = self.frame.inside([point.x, point.y, point.z]);
         let size = f64::from(self.frame.size);
+        // Outside the part's bounding box no ray is needed.
         if p.iter().any(|part| part.abs() > size) {
             return Location::Outside;
         }
@@ -79,6 +80,8 @@ impl TriangleBvh {
     /// inner side. No offset from the triangle has to be chosen, and another surface may be arbitrarily near.
     pub(super) fn is_negative_beside(&self, own: usize) -> bool {
         let corners = self.corners[own];
+        // Rounded, the middle is not exactly in the plane. The side of the ray's end decides, not that of its
+        // beginning.
         let middle = Point3::from([0, 1, 2].map(|k| {
             let [a, b, c] = corners.map(|corner| corner[k]);
             (a + b + c) / 3.0

@@ -52,6 +52,7 @@ impl MotionInterval {
     ) -> MotionInterval {
         let per_length = 1.0 / setting.length;
         let parts = [from, from / 2.0 + to / 2.0, to];
+        // The middle halves the displacement: bounds hold from there to both ends.
         let poses = parts.map(|part| motion.pose(part));
         let views = [0, 1, 2].map(|k| MovedFrame {
             displacement: motion.displacement() * parts[k],
@@ -113,6 +114,8 @@ impl MotionInterval {
     /// is at most `radius` in the middle of the interval. [`Displacement::deviation_bound`] is the same in `f32`.
     pub(crate) fn deviation_bound(&self, radius: f64) -> f64 {
         let MotionBounds { length, turn, .. } = self.bounds;
+        // Theorem 4 of `docs/certified.md`: ½ h² (2 ω v + ω² ρ), with `turn` for h ω and `length` for h v. During the
+        // interval ρ grows by at most the length.
         turn * (length + 0.5 * turn * self.bounds.reach.min(radius + length))
     }
 

@@ -135,6 +135,7 @@ impl Sweeper {
         self.pending.clear();
         self.pending.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
+        // The root alone is the first candidate.
         self.check_interval(task, [0.0, 1.0], 0)
     }
 
@@ -346,9 +347,11 @@ impl Sweeper {
         displacement: f64,
     ) -> TriangleVerdict {
         let displacement = displacement + triangle.skew + task.error;
+        // A point less deep than that does not become too deep in what is left of the interval.
         let min_depth = task.threshold() - displacement;
         self.search.begin(Goal {
             min_depth,
+            // A finer search would tell nothing that the displacement does not blur.
             tolerance: 0.25 * displacement,
             stop_depth: f64::INFINITY,
             budget: self.budget,

@@ -124,6 +124,7 @@ impl Feature {
                 centre[0] + side * ((radius - up) * (radius + up)).max(0.0).sqrt()
             }
         };
+        // A monotone piece stays between its ends, whatever the rounding.
         radius.clamp(d0.min(d1), d0.max(d1))
     }
 

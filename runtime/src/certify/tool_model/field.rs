@@ -186,6 +186,7 @@ impl<'a> Field<'a> {
                 let candidate = candidates[lane];
                 let bound = depths[lane].value + self.steep * reach[lane] + self.error;
                 let mut bound = candidate.bound.min(bound);
+                // Enclosures cost more than the evaluation did, and bound no distance.
                 if bound > search.threshold() && !outside {
                     let closer = self.at_most(scratch, owners, &candidate.piece, centres[lane]);
                     bound = bound.min(closer);
@@ -309,6 +310,7 @@ impl Field<'_> {
             return f64::INFINITY;
         };
         if !found.inside {
+            // Nothing is inside, up to the error of a depth.
             return self.error;
         }
         if !owners.own_some(found.regions) {

@@ -123,6 +123,7 @@ impl Owners {
         let mut stack = vec![Rectangle::of(slab)];
         while let Some(rectangle) = stack.pop() {
             let Rectangle { low, high } = rectangle;
+            // Only the range of heights is asked for: what is inside it already cannot widen it.
             if zone.is_some_and(|[from, to]| from <= low[1] && high[1] <= to) {
                 continue;
             }
@@ -213,6 +214,7 @@ impl Owners {
                 continue;
             }
             if reach <= min_size {
+                // Neighbouring rectangles at one point count once.
                 if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     peaks.push(middle[1]);
                 }

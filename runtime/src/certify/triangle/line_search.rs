@@ -283,6 +283,7 @@ impl DepthSearch {
         for half in line.halves() {
             let [low, high] = half.map(|t| line.height(t));
             for slab in section.from(low.min(high)) {
+                // Wider by the error, so that no point falls between two slabs.
                 let heights = [slab.low - section.error, slab.high + section.error];
                 if heights[0] > low.max(high) {
                     break;

@@ -55,8 +55,11 @@ impl LocalTriangle {
             return edges;
         }
         let normal = across.map(|part| part / area);
+        // The foot of the origin on the triangle's plane. The axis passes through the origin, so the foot is in the
+        // meridian's plane.
         let base = normal.map(|part| part * dot(normal, a));
         let level = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
+        // A level triangle meets every plane through the axis; any of them will do.
         let [x, y] = if level > 0.0 { [normal[0] / level, normal[1] / level] } else { [1.0, 0.0] };
         let direction = [normal[2] * x, normal[2] * y, -level];
         LocalTriangle { corners, normal, base, direction, skew }
@@ -91,6 +94,7 @@ impl LocalTriangle {
             if (a[2] <= z) != (b[2] <= z) {
                 let part = (z - a[2]) / (b[2] - a[2]);
                 let at = [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]));
+                // Two edges cross the height, or none: each corner is on one side of it.
                 ends[usize::from(ends[0].is_some())] = Some([at[0], at[1], z]);
             }
         }

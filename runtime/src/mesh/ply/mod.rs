@@ -76,6 +76,7 @@ impl OrientedPoints {
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
                 let normal = Vector3::new(nx, ny, nz);
                 let norm = normal.norm();
+                // Where the square underflows, the norm is too inaccurate to divide by. NaN is not normal.
                 if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
                     let (file, location, point) = (name.to_owned(), record.location, record.index);
                     return Err(PlyError::Normal { file, location, point, norm });
@@ -132,6 +133,7 @@ impl Mesh {
         };
         let strips =
             header.elements.iter().find(|element| UNSUPPORTED_ELEMENTS.contains(&element.name));
+        // The file does not say which of two lists is the surface.
         let second =
             CORNER_LISTS.into_iter().find(|other| *other != list && face.list(other).is_some());
         let unread = strips.map(|strips| printable(strips.name)).or(second.map(str::to_owned));

@@ -289,9 +289,11 @@ impl<'a, 'n> Body<'a, 'n> {
             let (file, element, count) = (self.file(), printable(element.name), element.count);
             return Err(PlyError::Promised { file, element, count, min_bytes, found });
         }
+        // Any count of nothing takes no bytes, and would take as long as it says.
         if element.properties.is_empty() {
             return Ok(());
         }
+        // For each property of the file, where its number is to go.
         let slots: Vec<Option<usize>> = (0..element.properties.len())
             .map(|property| requested.iter().position(|&requested| requested == Some(property)))
             .collect();
