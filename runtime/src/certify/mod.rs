@@ -10,8 +10,7 @@
 //! themselves. It traverses a bounding volume hierarchy, [`TriangleBvh`], by branch and bound, and prunes what
 //! cannot be deeper than the deepest point found so far. Depth is the distance to the surface that the tool's
 //! profile describes. Bounds come from the segments of the profile (`bounds/hull`). Where they leave a triangle
-//! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle`,
-//! `triangle/line_search`).
+//! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle`).
 //!
 //! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and
 //! every answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding`
@@ -386,27 +385,21 @@ impl Certifier<'_> {
             let distance = Interval::new(f64::INFINITY, f64::INFINITY);
             return Ok(Clearance { distance, witness: None });
         }
-        let ToolModel::Profile(section) = &self.setting.tool_model else {
+        if let ToolModel::Field(_) = &self.setting.tool_model {
             let Interval { low, .. } = self.clearance(pose, tolerance).distance;
             return Ok(Clearance { distance: Interval::new(low, f64::INFINITY), witness: None });
-        };
-        if self
-            .clearance_query
-            .as_ref()
-            .is_none_or(|clearance_query| clearance_query.surfaces != surfaces)
-        {
-            let margin = self.setting.setup.margin;
-            // Any limit below 0 makes a query for the distance from the surfaces themselves.
-            let [inside, outside] = [0.0, -1.0].map(|limit| {
-                DepthQuery::new(section, margin, limit, |k| surfaces.contains(&SurfaceId(k)))
-            });
-            self.clearance_query =
-                Some(ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside });
         }
-        let Certifier { setting, clearance_query, state, budget, .. } = self;
+        let known = self.clearance_query.take().filter(|known| known.surfaces == surfaces);
         let ClearanceQuery { inside, outside, .. } =
-            clearance_query.as_ref().expect("it was just made");
-        Ok(distance(setting, [inside, outside], state, pose, tolerance, *budget))
+            self.clearance_query.insert(known.unwrap_or_else(|| {
+                // Any limit below 0 makes a query for the distance from the surfaces themselves.
+                let [inside, outside] = [0.0, -1.0].map(|limit| {
+                    self.setting.depth_query(limit, |k| surfaces.contains(&SurfaceId(k)))
+                });
+                ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside }
+            }));
+        let queries = [&*inside, &*outside];
+        Ok(distance(&self.setting, queries, &mut self.state, pose, tolerance, self.budget))
     }
 }
 

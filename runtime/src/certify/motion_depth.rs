@@ -106,17 +106,9 @@ impl Certifier<'_> {
         if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
-        let Certifier {
-            setting,
-            info,
-            whole_query,
-            allowance_queries,
-            core_points,
-            budget,
-            sweeper,
-            ..
-        } = self;
-        let queries = allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
+        let setting = &self.setting;
+        let queries =
+            self.allowance_queries.as_deref().unwrap_or(slice::from_ref(&self.whole_query));
         let error = motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = (MIN_SWEEP_TOLERANCE * error).max(tolerance / setting.length);
@@ -127,7 +119,7 @@ impl Certifier<'_> {
         {
             let limit = query.limit;
             let task = SweepTask { setting, query, motion, limit, error, tolerance };
-            if let Some(end) = sweeper.run(&task, *budget)
+            if let Some(end) = self.sweeper.run(&task, self.budget)
                 && first.as_ref().is_none_or(|first| end.before(first))
             {
                 first = Some(end);
@@ -139,12 +131,15 @@ impl Certifier<'_> {
             }
             // A proof is out of reach, but a contact later in the motion may still be found.
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
-            None => match setting.containment(info, core_points, &motion.pose(0.0), tolerance) {
-                Containment::Inside(surface) => MotionVerdict::Inside(surface),
-                Containment::Outside => MotionVerdict::Clear,
-                Containment::Unknown => MotionVerdict::SurfaceOnly,
-                Containment::Undecided => MotionVerdict::Undecided(0.0),
-            },
+            None => {
+                let start = motion.pose(0.0);
+                match setting.containment(self.info, &mut self.core_points, &start, tolerance) {
+                    Containment::Inside(surface) => MotionVerdict::Inside(surface),
+                    Containment::Outside => MotionVerdict::Clear,
+                    Containment::Unknown => MotionVerdict::SurfaceOnly,
+                    Containment::Undecided => MotionVerdict::Undecided(0.0),
+                }
+            }
         }
     }
 
@@ -202,45 +197,35 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Result<MotionDepth, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let Certifier {
-            setting,
-            info,
-            surface_queries,
-            surface_core_points,
-            state,
-            budget,
-            sweeper,
-            ..
-        } = self;
-        if !determines_pose(info, motion) {
+        if !determines_pose(self.info, motion) {
             return Ok(MotionDepth::Undecided(0.0));
         }
+        let setting = &self.setting;
         let min_tolerance = MIN_DEPTH_TOLERANCE * motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
-        let inside_query = surface_queries[surface]
+        let inside_query = self.surface_queries[surface]
             .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         let depth = allowed.max(0.0);
-        let core_points = match &mut surface_core_points[surface] {
+        let core_points = match &mut self.surface_core_points[surface] {
             Some((known, core_points)) if *known == depth => core_points,
             other => {
-                let surfaces = 0..info.surfaces.len();
+                let surfaces = 0..self.info.surfaces.len();
                 let limits = surfaces.map(|k| if k == surface { depth } else { f64::INFINITY });
                 &mut other.insert((depth, CorePoints::new(limits))).1
             }
         };
-        let budget = *budget;
         let mut search = MotionSearch {
             setting,
-            info,
+            info: self.info,
             core_points,
-            state,
-            sweeper,
+            state: &mut self.state,
+            sweeper: &mut self.sweeper,
             motion,
             query: inside_query,
             tolerance,
-            budget,
+            budget: self.budget,
         };
         // With a margin, first whether the surface is in the part at all: that is the graver finding.
         let found = search.deepest(depth);

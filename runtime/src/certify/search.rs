@@ -31,7 +31,7 @@ pub(crate) struct DepthQuery {
 
 impl DepthQuery {
     /// A query for the features of some surfaces. `margin` is the rounding error of a point in `f32`.
-    pub(crate) fn new(
+    fn new(
         section: &Section,
         margin: f64,
         limit: f64,

@@ -6,7 +6,7 @@ use crate::id::TriangleId;
 use crate::keywords::keyword_enum;
 use crate::mesh::{CompensatedSum, Mesh, area_and_normal};
 use crate::parallel;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -139,14 +139,7 @@ impl AreaSampler {
         let area = self.area();
         for _ in 0..count {
             let target = fraction(&mut random) * area;
-            let sample_index = self.index_at(target);
-            let point = self.point(mesh, sample_index, &mut random);
-            cloud.push(
-                point,
-                self.normals[sample_index],
-                TriangleId(self.ids[sample_index]),
-                area / count as f64,
-            );
+            self.push_sample(mesh, target, area / count as f64, &mut random, &mut cloud);
         }
         cloud
     }
@@ -160,14 +153,8 @@ impl AreaSampler {
             let mut random = Pcg64::new(seed.into(), range.start as u128);
             let mut samples = Cloud::with_capacity(range.len(), mesh.unit());
             for index in range {
-                let sample_index = self.index_at((index as f64 + fraction(&mut random)) * share);
-                let point = self.point(mesh, sample_index, &mut random);
-                samples.push(
-                    point,
-                    self.normals[sample_index],
-                    TriangleId(self.ids[sample_index]),
-                    0.0,
-                );
+                let target = (index as f64 + fraction(&mut random)) * share;
+                self.push_sample(mesh, target, 0.0, &mut random, &mut samples);
             }
             samples
         });
@@ -181,18 +168,23 @@ impl AreaSampler {
         cloud
     }
 
-    /// Returns the index of the triangle at which the cumulative area exceeds `target`.
-    fn index_at(&self, target: f64) -> usize {
-        self.areas_up_to.partition_point(|&up_to| up_to <= target).min(self.ids.len() - 1)
-    }
-
-    /// Draws a point of a triangle, uniformly by area.
-    fn point(&self, mesh: &Mesh, sample_index: usize, random: &mut Pcg64) -> Point3<f64> {
-        let [a, b, c] = mesh.triangle(TriangleId(self.ids[sample_index]));
+    /// Appends a point drawn uniformly from the triangle at which the cumulative area exceeds `target`.
+    fn push_sample(
+        &self,
+        mesh: &Mesh,
+        target: f64,
+        weight: f64,
+        random: &mut Pcg64,
+        cloud: &mut Cloud,
+    ) {
+        let index = self.areas_up_to.partition_point(|&up_to| up_to <= target);
+        let index = index.min(self.ids.len() - 1);
+        let triangle = TriangleId(self.ids[index]);
+        let [a, b, c] = mesh.triangle(triangle);
         let (u, v) = (fraction(random), fraction(random));
         // The other half of the parallelogram, turned over, covers the triangle evenly, too.
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-        a + u * (b - a) + v * (c - a)
+        cloud.push(a + u * (b - a) + v * (c - a), self.normals[index], triangle, weight);
     }
 }
 

@@ -59,19 +59,11 @@ pub fn tube(
             let bore = [inside(l, s), inside(l + 1, s), inside(l + 1, s + 1), inside(l, s + 1)];
             triangles.extend(split_quad(bore));
         }
-        let top = layers;
-        triangles.extend(split_quad([
-            inside(0, s),
-            inside(0, s + 1),
-            outside(0, s + 1),
-            outside(0, s),
-        ]));
-        triangles.extend(split_quad([
-            inside(top, s),
-            outside(top, s),
-            outside(top, s + 1),
-            inside(top, s + 1),
-        ]));
+        let bottom = [inside(0, s), inside(0, s + 1), outside(0, s + 1), outside(0, s)];
+        triangles.extend(split_quad(bottom));
+        let [l, next] = [layers, s + 1];
+        let top = [inside(l, s), outside(l, s), outside(l, next), inside(l, next)];
+        triangles.extend(split_quad(top));
     }
     Mesh::new(vertices, triangles, unit)
 }

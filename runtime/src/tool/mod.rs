@@ -5,7 +5,6 @@
 //! frame) and in the unit of the tool's file, unless stated otherwise.
 
 mod compiled;
-mod dual;
 mod enclosure;
 mod info;
 #[cfg(feature = "interpreter")]
@@ -13,7 +12,6 @@ mod interpreted;
 mod lane;
 
 pub use compiled::{Evaluators, LaneEvaluation, PointEvaluation};
-pub use dual::Dual;
 pub(crate) use enclosure::bit;
 pub use enclosure::{Enclosure, EvaluationEnclosure, Ternary};
 pub use info::{
@@ -21,7 +19,7 @@ pub use info::{
 };
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
-pub use lane::Lane;
+pub use lane::{Dual, Lane};
 
 use crate::interval::Interval;
 use fearless_simd::Level;

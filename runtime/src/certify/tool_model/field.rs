@@ -7,8 +7,8 @@
 
 use crate::certify::space::Point;
 use crate::certify::tool_model::section::{Depth, Owners};
-use crate::certify::triangle::SubTriangle;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch};
+use crate::certify::triangle::{SubTriangle, TrianglePiece};
 use crate::interval::Interval;
 use crate::tool::{
     EvaluationEnclosure, Evaluations, LANES, Outputs, PointBatch, Symmetry, Tool, ToolInfo,
@@ -27,49 +27,47 @@ pub(crate) struct Field<'a> {
     pub(crate) level: Level,
 }
 
-/// A piece of a triangle and an upper bound of its depth.
+/// An item of a search and an upper bound of the depth in it, by which items are ordered.
 #[derive(Clone, Copy, Default)]
-struct DepthCandidate {
-    piece: SubTriangle,
-    /// The index of the triangle.
-    index: u32,
+struct Bounded<T> {
     bound: f64,
+    item: T,
 }
+
+impl<T> Ord for Bounded<T> {
+    fn cmp(&self, other: &Bounded<T>) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl<T> PartialOrd for Bounded<T> {
+    fn partial_cmp(&self, other: &Bounded<T>) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<T> PartialEq for Bounded<T> {
+    fn eq(&self, other: &Bounded<T>) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl<T> Eq for Bounded<T> {}
 
 /// Memory that a search keeps between triangles.
 #[derive(Default)]
 pub(crate) struct Scratch {
     /// The pieces that are still open, the deepest on top.
-    pieces: BinaryHeap<DepthCandidate>,
+    pieces: BinaryHeap<Bounded<TrianglePiece>>,
     points: PointBatch,
     evaluations: Evaluations,
 }
 
-impl Ord for DepthCandidate {
-    fn cmp(&self, other: &DepthCandidate) -> Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
-}
-
-impl PartialOrd for DepthCandidate {
-    fn partial_cmp(&self, other: &DepthCandidate) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for DepthCandidate {
-    fn eq(&self, other: &DepthCandidate) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for DepthCandidate {}
-
 impl Scratch {
     /// Adds a triangle to the open pieces.
     pub(crate) fn hold(&mut self, corners: [Point; 3], index: u32) {
-        let bound = f64::INFINITY;
-        self.pieces.push(DepthCandidate { piece: SubTriangle::new(corners), index, bound });
+        let item = TrianglePiece { index, piece: SubTriangle::new(corners) };
+        self.pieces.push(Bounded { bound: f64::INFINITY, item });
     }
 
     /// Drops all open pieces.
@@ -85,7 +83,7 @@ impl<'a> Field<'a> {
         let steep = info.depth.lipschitz?.max(1.0);
         // Let u be the unit roundoff. Halving rounds a midpoint by u of its distance from the tip. A relevant piece of
         // length `l` is no farther from the tip than √2 size + l. Two or three halvings of a triangle halve `l`, which
-        // adds up to at most 10 u of the part's extent, and each later halving adds 1.5 u size. `rounding::place` has
+        // adds up to at most 10 u of the part's extent, and each later halving adds 1.5 u size. `rounding::point_error_bound` has
         // room for the first term, since no meridian is used here. 256 u size are 160 halvings: 120 of them end at
         // 2^-40 of the tool's size, the finest depth that is reported, and 10 u size are left for the middle and the
         // radius of the last piece.
@@ -147,7 +145,7 @@ impl<'a> Field<'a> {
     ) -> Option<DeepestCandidate> {
         let mut best = None;
         loop {
-            let mut candidates = [DepthCandidate::default(); LANES];
+            let mut candidates = [Bounded::<TrianglePiece>::default(); LANES];
             let (mut reach, mut count) = ([0.0; LANES], 0);
             let mut centres = [[0.0; 3]; LANES];
             scratch.points.clear();
@@ -162,7 +160,7 @@ impl<'a> Field<'a> {
                     scratch.pieces.clear();
                     break;
                 }
-                let (centre, far) = candidate.piece.ball();
+                let (centre, far) = candidate.item.piece.ball();
                 scratch.points.push(centre);
                 (candidates[count], centres[count], reach[count]) = (candidate, centre, far);
                 count += 1;
@@ -178,30 +176,31 @@ impl<'a> Field<'a> {
                     && let Some(depth) = self.owned(scratch, owners, point, *depth)
                     && search.take(&depth)
                 {
-                    let (feature, index) = (depth.feature, candidates[lane].index);
+                    let (feature, index) = (depth.feature, candidates[lane].item.index);
                     best = Some(DeepestCandidate { point, feature, index });
                 }
             }
             for lane in 0..count {
-                let candidate = candidates[lane];
+                let Bounded { bound: before, item: TrianglePiece { index, piece } } =
+                    candidates[lane];
                 let bound = depths[lane].value + self.steep * reach[lane] + self.error;
-                let mut bound = candidate.bound.min(bound);
+                let mut bound = before.min(bound);
                 // Enclosures cost more than the evaluation did, and bound no distance.
                 if bound > search.threshold() && !outside {
-                    let closer = self.at_most(scratch, owners, &candidate.piece, centres[lane]);
+                    let closer = self.at_most(scratch, owners, &piece, centres[lane]);
                     bound = bound.min(closer);
                 }
                 if bound <= search.threshold() {
                     continue;
                 }
-                let before = scratch.pieces.len();
-                scratch.pieces.extend(candidate.piece.halves().map(|piece| DepthCandidate {
-                    piece,
-                    bound,
-                    ..candidate
-                }));
+                let count_before = scratch.pieces.len();
+                scratch.pieces.extend(
+                    piece
+                        .halves()
+                        .map(|piece| Bounded { bound, item: TrianglePiece { index, piece } }),
+                );
                 // A piece too short to be halved in `f64` stays open with its bound.
-                if scratch.pieces.len() == before {
+                if scratch.pieces.len() == count_before {
                     search.leave(bound);
                 }
             }
@@ -344,41 +343,20 @@ pub(crate) enum DeepestPoint {
     BudgetSpent,
 }
 
-/// A box in the tool's frame and an upper bound of the depth in it.
+/// A box in the tool's frame.
 #[derive(Clone, Copy)]
 struct Cell {
     low: Point,
     high: Point,
-    bound: f64,
 }
-
-impl Ord for Cell {
-    fn cmp(&self, other: &Cell) -> Ordering {
-        self.bound.total_cmp(&other.bound)
-    }
-}
-
-impl PartialOrd for Cell {
-    fn partial_cmp(&self, other: &Cell) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Cell {
-    fn eq(&self, other: &Cell) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Cell {}
 
 impl Cell {
-    /// Returns both halves of its longest side, with a bound for both.
-    fn halves(self, bound: f64) -> [Cell; 2] {
+    /// Returns both halves of its longest side.
+    fn halves(self) -> [Cell; 2] {
         let size = [0, 1, 2].map(|k| self.high[k] - self.low[k]);
         let longest = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
         let middle = f64::midpoint(self.low[longest], self.high[longest]);
-        let (mut lower, mut upper) = (Cell { bound, ..self }, Cell { bound, ..self });
+        let (mut lower, mut upper) = (self, self);
         lower.high[longest] = middle;
         upper.low[longest] = middle;
         [lower, upper]
@@ -401,12 +379,13 @@ impl Field<'_> {
         };
         let (low, high) = ([x.low, y.low, bottom], [x.high, y.high, top]);
         let mut scratch = Scratch::default();
-        let mut cells = BinaryHeap::from([Cell { low, high, bound: f64::INFINITY }]);
+        let mut cells =
+            BinaryHeap::from([Bounded { bound: f64::INFINITY, item: Cell { low, high } }]);
         let mut best: Option<(Point, Depth)> = None;
         for _ in 0..BUDGET {
             let deepest = best.map_or(0.0, |(_, depth)| depth.value);
-            let Some(cell) = cells.pop() else { break };
-            let Cell { low, high, bound } = cell;
+            let Some(Bounded { bound, item: cell }) = cells.pop() else { break };
+            let Cell { low, high } = cell;
             if bound <= min_depth || (deepest > min_depth && bound <= factor * deepest) {
                 return match best.filter(|_| deepest > min_depth) {
                     Some((point, depth)) => {
@@ -429,7 +408,8 @@ impl Field<'_> {
             }
             // The depth of a point outside is minus a lower bound of its distance, and depth grows from the surface
             // inward.
-            cells.extend(cell.halves(bound.min(depth.value + self.steep * reach)));
+            let bound = bound.min(depth.value + self.steep * reach);
+            cells.extend(cell.halves().map(|item| Bounded { bound, item }));
         }
         // No owner's point outside the cells that are left is deeper than the best one, or than `min_depth`.
         let max_remaining = cells.peek().map_or(0.0, |cell| cell.bound);

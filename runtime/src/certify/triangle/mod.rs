@@ -170,8 +170,8 @@ fn square(a: Point) -> f64 {
     dot(a, a)
 }
 
-/// A triangle of a part or a piece of one, relative to the part's origin and in the part's unit.
-#[derive(Clone, Copy)]
+/// A piece of one of a part's triangles.
+#[derive(Clone, Copy, Default)]
 pub(crate) struct TrianglePiece {
     pub(crate) index: u32,
     pub(crate) piece: SubTriangle,
