@@ -149,8 +149,8 @@ impl NeighbourBvh {
         let below = &self.levels[level - 1];
         let mut children = [(0.0, 0); WIDTH];
         let mut count = 0;
-        for child in first..end.min(below.len()) {
-            let squared_distance = below[child].squared_distance(point);
+        for (child, bounds) in (first..).zip(&below[first..end.min(below.len())]) {
+            let squared_distance = bounds.squared_distance(point);
             if squared_distance <= max_squared {
                 children[count] = (squared_distance, child);
                 count += 1;
