@@ -89,9 +89,8 @@ pub enum DeviceError {
     Ended,
 }
 
-/// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The
-/// loop calls both functions once per cycle, so neither may block: a device without new data returns the
-/// previous pose.
+/// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The loop calls both
+/// functions once per cycle, so neither may block: a device without new data returns the previous pose.
 pub trait Device {
     /// Returns the commanded tool pose, in the world frame and the part's unit.
     ///

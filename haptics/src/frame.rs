@@ -19,9 +19,8 @@ impl Frame {
         pose.tip().coords + pose.rotation() * self.centre.coords
     }
 
-    /// Returns the displacement of the centre (mm) and the rotation vector (rad) from one pose to
-    /// another, in the world frame. With five axes, the rotation is the shortest that takes one tool
-    /// axis to the other.
+    /// Returns the displacement of the centre (mm) and the rotation vector (rad) from one pose to another, in the world
+    /// frame. With five axes, the rotation is the shortest that takes one tool axis to the other.
     pub(super) fn between(&self, from: &Pose, to: &Pose) -> Vector6<f64> {
         let translation = (self.centre_of(to) - self.centre_of(from)) * self.unit;
         let rotation = match self.axes {

@@ -1,5 +1,4 @@
-//! A simulated hand that holds a device. It closes the loop, so that stability can be computed and not
-//! only felt.
+//! A simulated hand that holds a device. It closes the loop, so that stability can be computed and not only felt.
 
 use super::frame::{Frame, halves, join};
 use super::setting::{self, SettingError, above_zero, check, not_negative};
@@ -152,8 +151,7 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
         Ok(self)
     }
 
-    /// Sets the point of the tool at which it is held, in the tool frame and in `unit`; the default is
-    /// the tip.
+    /// Sets the point of the tool at which it is held, in the tool frame and in `unit`; the default is the tip.
     ///
     /// # Errors
     /// Fails if a coordinate is not finite.
@@ -288,8 +286,7 @@ impl Oscillator {
     /// Computes the model.
     ///
     /// # Errors
-    /// Fails if the mass is so small compared with damping and stiffness that its motion in a period
-    /// overflows.
+    /// Fails if the mass is so small compared with damping and stiffness that its motion in a period overflows.
     fn new(model: &MassOnSpring, period: f64) -> Result<Oscillator, SettingError> {
         let MassOnSpring { name: what, mass, damping, stiffness } = *model;
         let gain = NEWTON / mass;
@@ -340,8 +337,7 @@ struct TremorFilter {
     noise: f64,
 }
 
-/// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per
-/// cycle.
+/// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per cycle.
 const DAMPING_RATIO: f64 = 0.1;
 
 impl TremorFilter {

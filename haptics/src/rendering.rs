@@ -1,21 +1,19 @@
 //! Rendering: the wrench on the hand, from contact, coupling and passivity control.
 //!
-//! **Virtual coupling** is a spring and damper between the device and the tool.
-//! The tool is massless: it always stands where spring and contact balance (Wan and McNeely,
-//! *Quasi-static approximation for 6 degrees-of-freedom haptic rendering*, 2003; Barbič and James,
-//! *Six-DoF haptic rendering of contact between geometrically complex reduced deformable models*, 2008).
-//! Away from the part it follows the hand and no force is applied. In contact the hand is coupled to two
-//! springs in series: it never meets a stiffness above the coupling's, however stiff the contact. If the
+//! **Virtual coupling** is a spring and damper between the device and the tool. The tool is massless: it always stands
+//! where spring and contact balance (Wan and McNeely, *Quasi-static approximation for 6 degrees-of-freedom haptic
+//! rendering*, 2003; Barbič and James, *Six-DoF haptic rendering of contact between geometrically complex reduced
+//! deformable models*, 2008). Away from the part it follows the hand and no force is applied. In contact the hand is
+//! coupled to two springs in series: it never meets a stiffness above the coupling's, however stiff the contact. If the
 //! contact force is a gradient, so is the hand's: that of the minimum of the contact and spring energy.
 //!
-//! **Passivity**: the hand must not get back more energy than it put in.
-//! The device applies a constant wrench from one cycle to the next, so its work on the hand between two
-//! poses is known exactly: wrench times displacement (Stramigioli et al., *Sampled data systems
-//! passivity and discrete port-Hamiltonian systems*, 2005). Contact and coupling store part of the
-//! energy that the hand put in. If they store more than was put in, the excess was generated, and the
-//! hand could receive it. The controller dissipates the excess with a damper of the required strength
-//! (Hannaford and Ryu, *Time-domain passivity control of haptic interfaces*, 2002; with energy tracking,
-//! Ryu, Preusche, Hannaford and Hirzinger, 2005).
+//! **Passivity**: the hand must not get back more energy than it put in. The device applies a constant wrench from one
+//! cycle to the next, so its work on the hand between two poses is known exactly: wrench times displacement
+//! (Stramigioli et al., *Sampled data systems passivity and discrete port-Hamiltonian systems*, 2005). Contact and
+//! coupling store part of the energy that the hand put in. If they store more than was put in, the excess was
+//! generated, and the hand could receive it. The controller dissipates the excess with a damper of the required
+//! strength (Hannaford and Ryu, *Time-domain passivity control of haptic interfaces*, 2002; with energy tracking, Ryu,
+//! Preusche, Hannaford and Hirzinger, 2005).
 
 use crate::frame::{halves, join};
 use crate::setting::{SettingError, above_zero, not_negative};
@@ -94,8 +92,7 @@ pub(super) fn spring(
     (diagonal(force, torque), linear_energy + angular_energy)
 }
 
-/// Returns the secant stiffness and the energy of a one-dimensional spring whose force is limited to
-/// `limit`.
+/// Returns the secant stiffness and the energy of a one-dimensional spring whose force is limited to `limit`.
 fn capped_spring(stiffness: f64, limit: f64, displacement: f64) -> (f64, f64) {
     if stiffness * displacement <= limit {
         (stiffness, 0.5 * stiffness * displacement * displacement)
@@ -119,9 +116,8 @@ fn capped(vector: Vector3<f64>, limit: f64) -> Vector3<f64> {
     vector * if size > limit { limit / size } else { 1.0 }
 }
 
-/// Returns the positive semidefinite part of a contact's symmetrised stiffness, and its largest
-/// eigenvalue relative to the stiffness that the device can render. At 1, the stiffest direction or
-/// rotation is at the device's limit.
+/// Returns the positive semidefinite part of a contact's symmetrised stiffness, and its largest eigenvalue relative to
+/// the stiffness that the device can render. At 1, the stiffest direction or rotation is at the device's limit.
 pub(super) fn limit_stiffness(matrix: &Matrix6<f64>, limits: &DeviceLimits) -> (Matrix6<f64>, f64) {
     // In units of the device's limits, a stiffness in N/mm and one in N·mm/rad have eigenvalues in common.
     let scale =

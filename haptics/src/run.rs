@@ -225,8 +225,7 @@ fn nanoseconds(time: Duration) -> u64 {
 /// Real-time properties requested for a thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Realtime {
-    /// First-in-first-out real-time priority, from 1 to 99, ahead of all threads without one; `None` for
-    /// no change.
+    /// First-in-first-out real-time priority, from 1 to 99, ahead of all threads without one; `None` for no change.
     pub priority: Option<u8>,
     /// The only core to run on, counted from 0; `None` for any.
     pub core: Option<usize>,
@@ -255,8 +254,7 @@ pub enum RealtimeError {
 }
 
 impl Realtime {
-    /// Applies the requests to the calling thread. Returns those that were refused; the others take
-    /// effect.
+    /// Applies the requests to the calling thread. Returns those that were refused; the others take effect.
     pub fn apply(&self) -> Vec<RealtimeError> {
         let mut errors = Vec::new();
         if let Some(core) = self.core

@@ -19,8 +19,7 @@ use touchoff::{Law, Pose, Probe, Stiffness, Tool, Unit, Wrench};
 pub struct SessionSettings {
     /// Cycles per second, 0.001 to 1,000,000.
     pub rate: f64,
-    /// Force in N per unit of a [`Wrench`]'s force: N/mm³ if the part is in mm and the magnitude is the
-    /// depth.
+    /// Force in N per unit of a [`Wrench`]'s force: N/mm³ if the part is in mm and the magnitude is the depth.
     pub stiffness: f64,
     /// The rendering method; `None` for a coupling as stiff as the device can render.
     pub rendering: Option<Rendering>,
@@ -76,8 +75,7 @@ pub struct SessionState {
     pub wrench_on_hand: DeviceWrench,
     /// The contact wrench on the tool, as returned by the probe.
     pub wrench: Wrench,
-    /// The largest eigenvalue of the contact's stiffness, relative to the stiffness that the device can
-    /// render.
+    /// The largest eigenvalue of the contact's stiffness, relative to the stiffness that the device can render.
     pub stiffest: f64,
     /// The energy balance.
     pub energy: EnergyBalance,

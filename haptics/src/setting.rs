@@ -19,8 +19,7 @@ pub struct SettingError {
     pub range: &'static str,
 }
 
-/// Rates of a loop, Hz. The fastest has a period of a microsecond, which clocks and deadlines still
-/// resolve.
+/// Rates of a loop, Hz. The fastest has a period of a microsecond, which clocks and deadlines still resolve.
 const RATES: RangeInclusive<f64> = 1e-3..=1e6;
 
 const ABOVE_ZERO: &str = "a finite number above 0";

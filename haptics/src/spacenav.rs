@@ -1,9 +1,8 @@
 //! A SpaceMouse, by the protocol of `spacenavd`.
 //!
-//! The daemon's Unix socket sends eight 32-bit integers in the machine's byte order per event. The first
-//! is the kind of event: 0 motion, 1 button pressed, 2 button released. Then follow the displacements of
-//! the cap along x (right), y (up) and z (away from the user), the rotations about these axes, and the
-//! time since the last event in ms.
+//! The daemon's Unix socket sends eight 32-bit integers in the machine's byte order per event. The first is the kind of
+//! event: 0 motion, 1 button pressed, 2 button released. Then follow the displacements of the cap along x (right), y
+//! (up) and z (away from the user), the rotations about these axes, and the time since the last event in ms.
 //!
 //! The device applies no force. It controls speed: the cap's displacement sets the tool's velocity.
 

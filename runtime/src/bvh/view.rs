@@ -162,8 +162,7 @@ pub(crate) struct PoseTransform {
 }
 
 impl PoseTransform {
-    /// Returns the centre of a leaf relative to the tip, in the part's frame and unit. The input is in the tree's
-    /// unit.
+    /// Returns the centre of a leaf relative to the tip, in the part's frame and unit. The input is in the tree's unit.
     #[inline(always)]
     pub(crate) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.from_tip[axis] + self.scale * centre[axis])

@@ -12,9 +12,8 @@
 //! profile describes. Bounds come from the segments of the profile (`bounds/hull`). Where they leave a triangle
 //! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle`).
 //!
-//! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and
-//! every answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding`
-//! derives both.
+//! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and every
+//! answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding` derives both.
 
 mod bounds;
 mod containment;
@@ -205,9 +204,8 @@ impl<'a> Certifier<'a> {
     }
 
     /// Computes the deepest penetration of the part's triangles into the tool. The interval is at most as wide as the
-    /// tolerance, in the part's unit, plus the rounding error bound. A tolerance below that bound, 0 or NaN is
-    /// replaced by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is
-    /// spent.
+    /// tolerance, in the part's unit, plus the rounding error bound. A tolerance below that bound, 0 or NaN is replaced
+    /// by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole_query, state, budget, .. } = self;
         penetration(setting, whole_query, state, pose, tolerance, *budget)

@@ -1,11 +1,9 @@
-//! Queries about motions: clearance along the whole motion, and the greatest depth of a surface, with proved
-//! bounds.
+//! Queries about motions: clearance along the whole motion, and the greatest depth of a surface, with proved bounds.
 //!
-//! A sweep either finds a point that is too deep or proves that there is none. The greatest depth is therefore
-//! bounded by repeated sweeps for something deeper than the deepest point known. That point is found by hill
-//! climbing in time, from a few times of the motion and from the points that sweeps return. A sweep proceeds in
-//! order of time and is slow near points whose depth is close to its limit. It is therefore used last, and with
-//! no finer limit than pays off.
+//! A sweep either finds a point that is too deep or proves that there is none. The greatest depth is therefore bounded
+//! by repeated sweeps for something deeper than the deepest point known. That point is found by hill climbing in time,
+//! from a few times of the motion and from the points that sweeps return. A sweep proceeds in order of time and is slow
+//! near points whose depth is close to its limit. It is therefore used last, and with no finer limit than pays off.
 
 use super::containment::{Containment, CorePoints};
 use super::search::{MARGIN, QuerySetting, SearchState};
@@ -29,8 +27,7 @@ fn motion_error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
         + rounding::distance_error_bound(motion.displacement().norm() / setting.length)
 }
 
-/// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the
-/// spin.
+/// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the spin.
 fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
     info.symmetry == Symmetry::Revolved || motion.has_spin()
 }
@@ -56,8 +53,7 @@ const INITIAL_TIMES: u32 = 8;
 /// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
 const GAP_FRACTION: f64 = 0.125;
 
-/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion
-/// clear.
+/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion clear.
 const BUDGET_DIVISOR: u32 = 16;
 
 /// Time steps shorter than this fraction of a motion are not resolved.

@@ -5,15 +5,13 @@ use crate::bvh::WIDTH;
 use crate::mesh::area_and_normal;
 use nalgebra::{Point3, Vector3};
 
-/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a
-/// bound.
+/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a bound.
 #[derive(Debug)]
 pub struct NearestTriangle<'a> {
     bvh: &'a TriangleBvh,
     /// The triangle found last, as an index in the tree's order.
     last: usize,
-    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared
-    /// distance.
+    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared distance.
     stack: Vec<(f64, usize, usize)>,
 }
 

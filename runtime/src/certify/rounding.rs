@@ -37,19 +37,18 @@
 //! adds 9u and its product, sums of three products, another 9u: 43 uM, less than `61 uS + 75 uP`. A whole
 //! [`point_error_bound`] is allowed for that.
 //!
-//! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. For the two shorter edges
-//! that is at most the shortest edge, `s`, times the longest. The normal is therefore off by an angle
-//! `η ≤ 6u s / h`, where `h` is the height over the longest edge. Let `x` be a point of the true meridian at the
-//! distance `d` from the axis, and let the triangle be inclined by `θ`. The azimuth of the normal is off by
-//! `η / sin θ`. If `sin θ ≥ 1/2`, the plane through the axis at the wrong azimuth passes `x` at a distance of
-//! `2 η d`. If not, rotate `x` about the axis to that azimuth. It stays at the distance `d`, and its height in
-//! the triangle's plane changes by at most `2 tan θ · d`, and by `tan θ · d · α² / 2` after a small turn `α`: by
-//! at most `2 η d` in total. If it leaves the triangle on the way, it does so through an edge, which is searched
-//! too. The computed plane passes that point at another `2 η r`, where `r` is the largest distance of a corner
-//! from the tip. Some point of the computed meridian or of an edge is therefore within `4 η r`, the [`skew`], of
-//! a point that is as deep as `x`. Points within the skew of an owned point count as owned. No point of a
-//! triangle is farther than its [`height`] from its longest edge, which is searched too. Where the height is less
-//! than the skew, no meridian is used.
+//! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. For the two shorter edges that is
+//! at most the shortest edge, `s`, times the longest. The normal is therefore off by an angle `η ≤ 6u s / h`, where `h`
+//! is the height over the longest edge. Let `x` be a point of the true meridian at the distance `d` from the axis, and
+//! let the triangle be inclined by `θ`. The azimuth of the normal is off by `η / sin θ`. If `sin θ ≥ 1/2`, the plane
+//! through the axis at the wrong azimuth passes `x` at a distance of `2 η d`. If not, rotate `x` about the axis to that
+//! azimuth. It stays at the distance `d`, and its height in the triangle's plane changes by at most `2 tan θ · d`, and
+//! by `tan θ · d · α² / 2` after a small turn `α`: by at most `2 η d` in total. If it leaves the triangle on the way,
+//! it does so through an edge, which is searched too. The computed plane passes that point at another `2 η r`, where
+//! `r` is the largest distance of a corner from the tip. Some point of the computed meridian or of an edge is therefore
+//! within `4 η r`, the [`skew`], of a point that is as deep as `x`. Points within the skew of an owned point count as
+//! owned. No point of a triangle is farther than its [`height`] from its longest edge, which is searched too. Where the
+//! height is less than the skew, no meridian is used.
 
 use crate::tool::ToolInfo;
 

@@ -77,9 +77,8 @@ impl DepthQuery {
         }
     }
 
-    /// Returns the queries that check the allowances of all surfaces, given in the order of the tool's list: one
-    /// query per allowance, for all surfaces that have it. The largest allowance comes first; infinite ones need no
-    /// query.
+    /// Returns the queries that check the allowances of all surfaces, given in the order of the tool's list: one query
+    /// per allowance, for all surfaces that have it. The largest allowance comes first; infinite ones need no query.
     pub(crate) fn all(setting: &QuerySetting<'_>, allowed: &[f64]) -> Vec<DepthQuery> {
         let depths =
             allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());

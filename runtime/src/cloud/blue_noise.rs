@@ -1,14 +1,12 @@
-//! Blue-noise sampling: random points are thinned, then more are inserted where the surface is farthest
-//! from all.
+//! Blue-noise sampling: random points are thinned, then more are inserted where the surface is farthest from all.
 //!
-//! Points are thinned by sample elimination: the most crowded point is removed repeatedly until the requested
-//! number is left (Yuksel 2015, *Sample elimination for generating Poisson disk sample sets*).
-//! The crowding of a point is a sum over its neighbours, kept in integers, so that it does not depend on
-//! the order of removal. Removing a point only makes others less crowded. Therefore a point more crowded
-//! than all its neighbours is removed before any of them, whatever happens elsewhere, and all such
-//! points can be removed at once. Points are also removed in order of falling crowding. The algorithm
-//! works in rounds, on all cores, and removes more points than requested. It then sorts the removed
-//! points by their crowding at removal and restores the last of them. The result is the same as with one
+//! Points are thinned by sample elimination: the most crowded point is removed repeatedly until the requested number is
+//! left (Yuksel 2015, *Sample elimination for generating Poisson disk sample sets*). The crowding of a point is a sum
+//! over its neighbours, kept in integers, so that it does not depend on the order of removal. Removing a point only
+//! makes others less crowded. Therefore a point more crowded than all its neighbours is removed before any of them,
+//! whatever happens elsewhere, and all such points can be removed at once. Points are also removed in order of falling
+//! crowding. The algorithm works in rounds, on all cores, and removes more points than requested. It then sorts the
+//! removed points by their crowding at removal and restores the last of them. The result is the same as with one
 //! removal at a time.
 
 use crate::cloud::neighbours::Lists;
@@ -93,8 +91,7 @@ pub(super) fn sample_blue_noise(
     cloud
 }
 
-/// Points inserted into holes, in a hash grid whose cell width is the smallest hole's distance from
-/// other points.
+/// Points inserted into holes, in a hash grid whose cell width is the smallest hole's distance from other points.
 struct InsertedPoints {
     width: f64,
     cells: HashMap<[i64; 3], Vec<Point3<f64>>>,
@@ -183,8 +180,7 @@ pub(super) fn decimate(
     (0..).zip(is_kept).filter(|(_, kept)| *kept).map(|(index, _)| index).collect()
 }
 
-/// Returns the ascending indices of `count` points to keep where many coincide, preferring one point per
-/// position.
+/// Returns the ascending indices of `count` points to keep where many coincide, preferring one point per position.
 fn distinct(points: &[Point3<f64>], count: usize) -> Vec<u32> {
     let mut keyed: Vec<([u64; 3], u32)> = points
         .iter()

@@ -11,8 +11,7 @@ use std::ops::Range;
 
 /// Number of neighbours that define the local spacing.
 const NEIGHBOURS: usize = 8;
-/// Radii of the initial cell, in spacings: the normal one, and the one used where the cell shows that
-/// the surface ends.
+/// Radii of the initial cell, in spacings: the normal one, and the one used where the cell shows that the surface ends.
 const CELL_RADII: [f64; 2] = [2.0, 0.7];
 /// Cosine of the angle between normals (45°) below which a neighbour lies beyond an edge.
 const EDGE_COSINE: f64 = 0.7;
@@ -21,8 +20,7 @@ const POLYGON_CORNERS: usize = 16;
 /// Positions per parallel task.
 const POINTS_PER_TASK: usize = 1 << 10;
 
-/// Maximum number of distinct normals examined at a position; if there are more, a subsample represents
-/// all.
+/// Maximum number of distinct normals examined at a position; if there are more, a subsample represents all.
 const MAX_SIDES: usize = 1 << 10;
 /// Maximum weight of a position with many points in the estimate of the spacing.
 const MAX_SHARED: usize = 16;
@@ -206,8 +204,7 @@ impl DistinctPoints {
     }
 }
 
-/// Returns the corners of a regular polygon around a circle of the given radius, perpendicular to a
-/// normal.
+/// Returns the corners of a regular polygon around a circle of the given radius, perpendicular to a normal.
 fn polygon(normal: &Vector3<f64>, radius: f64) -> impl Iterator<Item = Corner> {
     // The axis of the least component is the farthest from being parallel to the normal.
     let tangent = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();

@@ -1,5 +1,4 @@
-//! Weighted point clouds on a part's surface: positions, outward normals, and the area that each point
-//! represents.
+//! Weighted point clouds on a part's surface: positions, outward normals, and the area that each point represents.
 
 mod blue_noise;
 mod estimate;
@@ -18,21 +17,18 @@ use pieces::Surface;
 use sampling::AreaSampler;
 use voronoi::{Cells, VoronoiSites};
 
-/// Cosine of the angle between normals (107°) below which two points lie on opposite sides of something
-/// thin.
+/// Cosine of the angle between normals (107°) below which two points lie on opposite sides of something thin.
 const SAME_SIDE: f64 = -0.3;
 
-/// Largest deviation of a given normal's norm from 1: files round normals to a few decimals. A normal
-/// within this tolerance is normalised, any other is refused. The value is a choice of what counts as a
-/// mistake.
+/// Largest deviation of a given normal's norm from 1: files round normals to a few decimals. A normal within this
+/// tolerance is normalised, any other is refused. The value is a choice of what counts as a mistake.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
 
 /// A weighted point cloud on a part's surface.
 ///
-/// All four lists have the same, non-zero length. Points are in the world frame and in [`Cloud::unit`].
-/// Normals are unit vectors out of the material. Triangles are the ids of the mesh's triangles that the
-/// points lie on. Weights are areas, in the square of the unit, so that `Σ weight · f(point)`
-/// approximates the integral of f over the surface.
+/// All four lists have the same, non-zero length. Points are in the world frame and in [`Cloud::unit`]. Normals are
+/// unit vectors out of the material. Triangles are the ids of the mesh's triangles that the points lie on. Weights are
+/// areas, in the square of the unit, so that `Σ weight · f(point)` approximates the integral of f over the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloud {
     points: Vec<Point3<f64>>,
@@ -43,12 +39,10 @@ pub struct Cloud {
     covering_radius: Option<CoveringRadius>,
 }
 
-/// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during
-/// sampling.
+/// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during sampling.
 pub const MAX_BLUE_NOISE_POINTS: usize = 20_000_000;
 
-/// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the
-/// cloud.
+/// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CoveringRadius {
@@ -225,10 +219,9 @@ impl Cloud {
         }
     }
 
-    /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material.
-    /// Without given areas, these are estimated from the distances between neighbours. The [covering
-    /// radius](Cloud::covering_radius) is always estimated that way. Without given triangles, each point has
-    /// its own.
+    /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material. Without given
+    /// areas, these are estimated from the distances between neighbours. The [covering radius](Cloud::covering_radius)
+    /// is always estimated that way. Without given triangles, each point has its own.
     ///
     /// # Errors
     /// See [`Cloud::new`].

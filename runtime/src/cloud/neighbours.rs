@@ -52,8 +52,7 @@ impl NeighbourBvh {
         self.nearest_within(point, distance, usize::MAX, found);
     }
 
-    /// Like [`NeighbourBvh::within`], but returns only the `max_count` nearest points. `max_count` must be at least
-    /// 1.
+    /// Like [`NeighbourBvh::within`], but returns only the `max_count` nearest points. `max_count` must be at least 1.
     pub(super) fn nearest_within(
         &self,
         point: [f64; 3],

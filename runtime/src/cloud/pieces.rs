@@ -88,8 +88,7 @@ impl Surface {
         surface
     }
 
-    /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in
-    /// each piece.
+    /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in each piece.
     fn add(&mut self, triangle_pieces: &TrianglePieces, part: Vec<Corner>, area: f64) {
         let TrianglePieces { triangle, copies, origin, normal, axes } = *triangle_pieces;
         let ends = ends(&part, &axes);
@@ -128,8 +127,7 @@ impl Surface {
     }
 }
 
-/// Returns the direction of a triangle's longest side and the direction across it in the triangle's
-/// plane.
+/// Returns the direction of a triangle's longest side and the direction across it in the triangle's plane.
 fn axes([a, b, c]: &[Point3<f64>; 3], normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let edges = [b - a, c - b, a - c].into_iter();
     let longest =

@@ -194,8 +194,7 @@ pub(super) fn fraction(random: &mut Pcg64) -> f64 {
     (random.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 
-/// The number of coincident triangles that each triangle of a mesh represents; `None` if all triangles
-/// are distinct.
+/// The number of coincident triangles that each triangle of a mesh represents; `None` if all triangles are distinct.
 pub(super) struct Copies(Option<Vec<u32>>);
 
 impl Copies {
@@ -222,8 +221,7 @@ impl Copies {
         Copies(Some(counts))
     }
 
-    /// Returns the number of copies of a triangle, including itself, or 0 if one with a lower id
-    /// represents it.
+    /// Returns the number of copies of a triangle, including itself, or 0 if one with a lower id represents it.
     pub(super) fn count(&self, triangle: u32) -> u32 {
         self.0.as_ref().map_or(1, |counts| counts[triangle as usize])
     }

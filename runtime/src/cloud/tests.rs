@@ -186,8 +186,7 @@ fn nearest(cloud: &Cloud, place: &Point3<f64>) -> f64 {
     cloud.points().iter().map(|p| (p - place).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns two sheets back to back, so close that a point is nearer to the other sheet than to its
-/// neighbours.
+/// Returns two sheets back to back, so close that a point is nearer to the other sheet than to its neighbours.
 fn sheets() -> Mesh {
     let high = Point3::new(4.0, 4.0, 0.01);
     shapes::cuboid(Point3::origin(), high, UNIT).expect("a sheet")

@@ -1,14 +1,13 @@
 //! Restricted Voronoi diagram: the division of the surface among points, piece by piece, the area of each point's cell,
 //! and the covering radius.
 //!
-//! A triangle is divided by `|x − p|² + σ² |n − m|²`, with p a point, m its normal, x a point of the
-//! triangle and n the triangle's normal. The nearest point owns x; a point with another normal owns it
-//! only if it is much nearer. Cells therefore end at edges, and the two sides of a thin sheet stay
-//! separate, but a face without points of its own goes to nearby points. In the triangle's plane this is
-//! a power diagram: cells are convex. Each cell is the piece cut by straight lines, one per neighbour,
-//! until no farther point can reach it. The diagram is traversed from one cell to all cells whose lines
-//! touch it. With σ = 0 the corners of cells are the local maxima of the distance from all points (Lévy
-//! and Bonneel 2013 describe both uses of such diagrams).
+//! A triangle is divided by `|x − p|² + σ² |n − m|²`, with p a point, m its normal, x a point of the triangle and n the
+//! triangle's normal. The nearest point owns x; a point with another normal owns it only if it is much nearer. Cells
+//! therefore end at edges, and the two sides of a thin sheet stay separate, but a face without points of its own goes
+//! to nearby points. In the triangle's plane this is a power diagram: cells are convex. Each cell is the piece cut by
+//! straight lines, one per neighbour, until no farther point can reach it. The diagram is traversed from one cell to
+//! all cells whose lines touch it. With σ = 0 the corners of cells are the local maxima of the distance from all points
+//! (Lévy and Bonneel 2013 describe both uses of such diagrams).
 //!
 //! **Rounding** does not decide ownership: a line cuts only what lies beyond it by more than the error
 //! bound. A computed cell therefore contains the exact one, and the neighbours of the exact cell touch it.
@@ -38,8 +37,7 @@ use std::collections::HashSet;
 
 /// Radius, in spacings, that contains most of the points that cut a cell.
 const NEIGHBOUR_RADIUS: f64 = 2.5;
-/// Maximum number of these points that are kept. Where a part's extent agrees with its area, there are
-/// some twenty.
+/// Maximum number of these points that are kept. Where a part's extent agrees with its area, there are some twenty.
 const MAX_NEIGHBOURS: usize = 128;
 /// Fixed cost of a cell, in units of one point tested against a cell.
 const CELL_COST: usize = 16;
@@ -49,9 +47,8 @@ const NEIGHBOUR_COST: usize = 4;
 const MAX_LINEAR_SEARCH: usize = 64;
 /// Points per parallel task.
 const POINTS_PER_TASK: usize = 1 << 10;
-/// Returns the error bound of a corner's signed distance from a line, relative to the sum of the
-/// magnitudes of its terms, after `cuts` cuts of the cell (see above). It is constant up to twelve cuts,
-/// which most cells do not exceed.
+/// Returns the error bound of a corner's signed distance from a line, relative to the sum of the magnitudes of its
+/// terms, after `cuts` cuts of the cell (see above). It is constant up to twelve cuts, which most cells do not exceed.
 fn rounding(cuts: u32) -> f64 {
     f64::EPSILON * f64::from(8 + 2 * cuts.max(12))
 }
@@ -269,9 +266,8 @@ fn add_visited(visited: &mut Vec<u32>, visited_set: &mut HashSet<u32>, other: u3
     }
 }
 
-/// Returns an upper bound on the distance from a cell's point to other points that cut the cell. Each
-/// length errs by 3u below its root and two more, and a corner by 2.5u per line that cut the cell; 1e-12
-/// is 9000u.
+/// Returns an upper bound on the distance from a cell's point to other points that cut the cell. Each length errs by 3u
+/// below its root and two more, and a corner by 2.5u per line that cut the cell; 1e-12 is 9000u.
 fn reach_of(cell: &[Corner], own_weight: f64) -> f64 {
     let max_squared = cell.iter().map(|corner| corner.at.norm_squared()).fold(0.0, f64::max);
     (max_squared.sqrt() + (max_squared + own_weight).sqrt()) * (1.0 + 1e-12)
@@ -298,11 +294,10 @@ const MAX_TESTS_TOTAL: usize = 1 << 26;
 /// Bound on the distance between a corner and its computed position, relative to the part's size and to
 /// the radius: 9000u, with unit roundoff u.
 ///
-/// A corner of a piece errs by u of the part's size where it is computed, and by 5u of the cut edge for
-/// each cut that made the piece. Each cut halves the longer of two extents, so these edges add up to
-/// less than six times the triangle's longest edge: 120u of the part's size in all. A cell's corner errs
-/// by 5u of its distance for each line that cut it (see `voronoi`), which allows up to 1700 lines. The
-/// distance itself errs by 4u.
+/// A corner of a piece errs by u of the part's size where it is computed, and by 5u of the cut edge for each cut that
+/// made the piece. Each cut halves the longer of two extents, so these edges add up to less than six times the
+/// triangle's longest edge: 120u of the part's size in all. A cell's corner errs by 5u of its distance for each line
+/// that cut it (see `voronoi`), which allows up to 1700 lines. The distance itself errs by 4u.
 const POSITION_ERROR: f64 = 1e-12;
 /// Fractions of a piece's area that its cells must fill, for the covering radius of the piece in the
 /// first pass and in the refined pass. Cells fill a piece except for rounding (see `voronoi`). If they

@@ -6,11 +6,10 @@ use std::fmt;
 
 /// The result of [`Mesh::diagnostics`].
 ///
-/// A surface has an inside if the winding number (the number of times it goes around a point) is an
-/// integer at every point off it. This holds exactly if the mesh is
-/// [`closed`](MeshDiagnostics::is_closed) and [`oriented`](MeshDiagnostics::is_oriented): each edge is
-/// used equally often in both directions. Only then can it be decided whether a tool is wholly inside
-/// the material.
+/// A surface has an inside if the winding number (the number of times it goes around a point) is an integer at every
+/// point off it. This holds exactly if the mesh is [`closed`](MeshDiagnostics::is_closed) and
+/// [`oriented`](MeshDiagnostics::is_oriented): each edge is used equally often in both directions. Only then can it be
+/// decided whether a tool is wholly inside the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshDiagnostics {
@@ -28,9 +27,8 @@ pub struct MeshDiagnostics {
     pub volume: f64,
     /// Edges where a surface ends: used by one triangle, or by another odd number of them.
     pub open_edges: usize,
-    /// Edges where the surface does not end, but whose triangles disagree on the outward side. Two
-    /// triangles use such an edge in the same direction, where consistently oriented neighbours use it
-    /// in opposite ones.
+    /// Edges where the surface does not end, but whose triangles disagree on the outward side. Two triangles use such
+    /// an edge in the same direction, where consistently oriented neighbours use it in opposite ones.
     pub crossed_edges: usize,
     /// Edges used by more than two triangles. This is valid where two solids touch along an edge. Such
     /// edges also count as open or crossed if they are.
@@ -287,9 +285,8 @@ fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
         .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
-/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece
-/// continues only across edges of exactly two triangles, so pieces that touch in a vertex or along an
-/// edge are separate.
+/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece continues only
+/// across edges of exactly two triangles, so pieces that touch in a vertex or along an edge are separate.
 pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
     let [low, high] = mesh.bounds();
     let origin = nalgebra::center(&low, &high);

@@ -88,8 +88,7 @@ pub(super) fn number(word: &[u8]) -> Option<f64> {
     })
 }
 
-/// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long
-/// and unprintable.
+/// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long and unprintable.
 pub(super) fn printable(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(256)]);
     let start: String = text.chars().take(32).collect();

@@ -217,8 +217,7 @@ impl<'a> Lines<'a, '_> {
         ObjError::Expected { file: self.name.to_owned(), line: self.tokens.line, expected, found }
     }
 
-    /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the
-    /// position.
+    /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the position.
     fn vertex(&mut self) -> Result<Point3<f64>, ObjError> {
         let expected = "a coordinate, such as 1.5 or 2e-3";
         let mut vertex = Point3::origin();

@@ -49,9 +49,8 @@ pub enum GeometryError {
 }
 
 impl Geometry {
-    /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise
-    /// the file extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces
-    /// is points.
+    /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise the file
+    /// extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces is points.
     ///
     /// # Errors
     /// Every defect of the file is reported with the file name and the location.

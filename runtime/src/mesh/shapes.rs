@@ -10,16 +10,14 @@ use nalgebra::{Point3, Vector3};
 use super::{Mesh, MeshError};
 use crate::unit::Unit;
 
-/// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part
-/// needs.
+/// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part needs.
 pub const MAX_TRIANGLES: u64 = 1 << 25;
 
 /// Generates a tube about the z axis from z = 0 to `height`, closed and oriented outward; its inside is
 /// a bore. It has `segments` flat sides, whose edges lie on the radii, and `layers` along the height,
 /// hence `4 segments (layers + 1)` triangles.
 ///
-/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the thesis's
-/// tube.
+/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the thesis's tube.
 ///
 /// # Errors
 /// Fails unless `0 < inner < outer`, `height > 0`, `segments >= 3`, `layers >= 1` and there are at most
@@ -118,9 +116,8 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     Mesh::new(vertices, triangles, unit)
 }
 
-/// Generates a sphere about the origin, closed and oriented outward. The triangles of an icosahedron are
-/// divided into four `subdivisions` times, hence `20 · 4^subdivisions` triangles; all vertices lie on
-/// the sphere.
+/// Generates a sphere about the origin, closed and oriented outward. The triangles of an icosahedron are divided into
+/// four `subdivisions` times, hence `20 · 4^subdivisions` triangles; all vertices lie on the sphere.
 ///
 /// # Errors
 /// Fails unless `radius > 0` and `subdivisions <= 10`.

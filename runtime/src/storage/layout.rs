@@ -279,10 +279,9 @@ pub(super) fn header_checksum(header: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// Returns the checksum of each section, padded with zeros to a multiple of [`ALIGN`]: the CRC-32 of the
-/// CRC-32s of its chunks. A CRC-32 detects every change within 32 consecutive bits. A flipped bit is
-/// therefore always detected: it changes its chunk's CRC-32, which is 32 consecutive bits of the input
-/// of the last CRC-32.
+/// Returns the checksum of each section, padded with zeros to a multiple of [`ALIGN`]: the CRC-32 of the CRC-32s of its
+/// chunks. A CRC-32 detects every change within 32 consecutive bits. A flipped bit is therefore always detected: it
+/// changes its chunk's CRC-32, which is 32 consecutive bits of the input of the last CRC-32.
 pub(super) fn checksums(sections: &[&[u8]]) -> Vec<u32> {
     let chunks: Vec<&[u8]> = sections.iter().flat_map(|bytes| bytes.chunks(CHUNK)).collect();
     // In chunks, so that one long list is not left to one core.

@@ -1,17 +1,15 @@
 //! Saving parts to files and opening them in milliseconds.
 //!
-//! **The file** is the part's memory image, little-endian. Its header contains the [magic
-//! bytes](layout::MAGIC), the header's checksum and length, the version, the file's length, the unit,
-//! and the mesh diagnostics. For each tree it contains the frame, the number of points, and the offset,
-//! length and checksum of each list ([`layout`] defines the records). Then come the lists, each at a
-//! multiple of 64 bytes, with the finest tree first. The lists of a tree are the boxes level by level
-//! from the root's children, the points, their normals and weights, and their triangles' ids.
+//! **The file** is the part's memory image, little-endian. Its header contains the [magic bytes](layout::MAGIC), the
+//! header's checksum and length, the version, the file's length, the unit, and the mesh diagnostics. For each tree it
+//! contains the frame, the number of points, and the offset, length and checksum of each list ([`layout`] defines the
+//! records). Then come the lists, each at a multiple of 64 bytes, with the finest tree first. The lists of a tree are
+//! the boxes level by level from the root's children, the points, their normals and weights, and their triangles' ids.
 //!
-//! **Opening** reads each list directly into its final memory and then validates it. The checks cover
-//! the magic bytes, the file length, every checksum, the lengths of the lists for the number of points,
-//! and the ends of the lists. After that, no query can index outside a list. The lists are not
-//! memory-mapped: another process may shorten a mapped file, which terminates the program, and no safe
-//! function can rule that out.
+//! **Opening** reads each list directly into its final memory and then validates it. The checks cover the magic bytes,
+//! the file length, every checksum, the lengths of the lists for the number of points, and the ends of the lists. After
+//! that, no query can index outside a list. The lists are not memory-mapped: another process may shorten a mapped file,
+//! which terminates the program, and no safe function can rule that out.
 
 mod layout;
 mod read;
@@ -23,8 +21,7 @@ use layout::ALIGN;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Reasons why a saved part could not be opened, or why a part could not be saved. Byte offsets count
-/// from 0.
+/// Reasons why a saved part could not be opened, or why a part could not be saved. Byte offsets count from 0.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SavedError {
@@ -149,8 +146,7 @@ impl Part {
             .map_err(|source| SavedError::Unwritable { file: path.display().to_string(), source })
     }
 
-    /// Opens a part written by [`Part::save`]. Every query gives bitwise the same answers as with the
-    /// saved part.
+    /// Opens a part written by [`Part::save`]. Every query gives bitwise the same answers as with the saved part.
     ///
     /// The file is read into memory, 34 bytes per point and level, and then validated. The part does not
     /// depend on the file afterwards: the file may be changed, shortened or removed while the part is in

@@ -94,8 +94,7 @@ impl FileContext<'_> {
         SavedError::Damaged { file: self.file.to_owned(), section, from, to }
     }
 
-    /// Reads the file's beginning and header. Returns them with the rest of the source, after checking
-    /// the file length.
+    /// Reads the file's beginning and header. Returns them with the rest of the source, after checking the file length.
     fn start(&self, mut source: impl Read) -> Result<(Start, Vec<u8>, impl Read), SavedError> {
         let (file, has) = (self.file.to_owned(), self.length);
         let mut bytes = Vec::new();
@@ -240,8 +239,7 @@ impl Records<'_> {
         Ok(bytemuck::pod_read_unaligned(record))
     }
 
-    /// Reads the description of a tree whose lists begin at offset `end`, and moves `end` to the end of
-    /// the lists.
+    /// Reads the description of a tree whose lists begin at offset `end`, and moves `end` to the end of the lists.
     fn outline(&mut self, end: &mut u64) -> Result<Outline, SavedError> {
         let stem: FileHeader = self.next()?;
         let about = self.about;

@@ -108,8 +108,7 @@ pub(crate) trait Bounds: BoxBounds {
     ) -> f32x16<S>;
 }
 
-/// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of
-/// heights.
+/// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of heights.
 pub(crate) struct BoxRings<V> {
     pub(crate) near: V,
     pub(crate) far: V,

@@ -53,8 +53,8 @@ impl<R: Real> Hull<R> {
                         line.map(|line| plane([line.along[1], -line.along[0]], line.ends[0])),
                     );
                 } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
-                    // Radially under the side, which is straight or bends away from the tool. Steeper planes have larger
-                    // errors than `margin` in `search` allows for.
+                    // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
+                    // Steeper planes have larger errors than `margin` in `search` allows for.
                     planes.push(plane([1.0, -slope], side.ends[0]));
                 }
                 // The tool's lower and upper end bound depth too, where they are as near as the side can be.

@@ -411,8 +411,7 @@ pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     ]
 }
 
-/// Returns the maximum of the lesser of two functions that are linear on each triangle, and the point where it
-/// occurs.
+/// Returns the maximum of the lesser of two functions that are linear on each triangle, and the point where it occurs.
 #[inline(always)]
 pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     zero: V,

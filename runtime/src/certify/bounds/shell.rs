@@ -7,8 +7,7 @@ use crate::certify::tool_model::section::{Owners, Section};
 use crate::tool::ToolInfo;
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
-/// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the
-/// axis.
+/// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the axis.
 pub(crate) struct Shell {
     slabs: Vec<ShellSlab>,
 }

@@ -1,8 +1,7 @@
 //! Flat faces of many triangles, so that a depth common to all of them is bounded once.
 //!
-//! A tool in a bore, or flat on a plate, is equally deep in many triangles, and no bounding box of them is tight
-//! enough to show it. The rectangle around a flat face is: a bound for the rectangle holds for all triangles of
-//! the face.
+//! A tool in a bore, or flat on a plate, is equally deep in many triangles, and no bounding box of them is tight enough
+//! to show it. The rectangle around a flat face is: a bound for the rectangle holds for all triangles of the face.
 
 use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
@@ -130,8 +129,7 @@ impl CoplanarFaces {
     }
 }
 
-/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too
-/// many.
+/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too many.
 fn node_faces(some: impl Iterator<Item = u32>) -> [u32; MAX_NODE_FACES] {
     let (mut faces, mut count) = ([NONE; MAX_NODE_FACES], 0);
     for face in some {

@@ -20,8 +20,7 @@ pub use winding::Location;
 /// A bounding volume hierarchy of a part's triangles, for queries of the depth of a tool: a 16-wide tree of boxes
 /// like that of a point cloud, whose leaves hold 16 triangles.
 ///
-/// Corners are kept as given, in the part's frame and unit. Triangles without area are kept too: they act as
-/// edges.
+/// Corners are kept as given, in the part's frame and unit. Triangles without area are kept too: they act as edges.
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     pub(crate) frame: Frame,

@@ -1,5 +1,4 @@
-//! Location of points: the winding number of a part's surface about a point, from the triangles that a ray
-//! crosses.
+//! Location of points: the winding number of a part's surface about a point, from the triangles that a ray crosses.
 
 use super::TriangleBvh;
 use crate::bvh::WIDTH;

@@ -41,8 +41,7 @@ impl SweepTask<'_> {
         self.limit + self.tolerance
     }
 
-    /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error
-    /// bound.
+    /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error bound.
     fn above(&self) -> f64 {
         self.threshold() + self.required_clearance() - self.error
     }

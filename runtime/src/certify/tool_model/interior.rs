@@ -1,9 +1,8 @@
 //! Witnesses of the region of a tool that may not be inside the material: one point per connected piece.
 //!
-//! Each surface has a *limit*, the depth that the part may have in it. The restricted interior `S` consists of
-//! the points of the tool that are deeper than the limit of their nearest surface. If no triangle of the part
-//! meets `S`, each connected piece of `S` lies wholly inside the part or wholly outside, and one point of it
-//! decides which.
+//! Each surface has a *limit*, the depth that the part may have in it. The restricted interior `S` consists of the
+//! points of the tool that are deeper than the limit of their nearest surface. If no triangle of the part meets `S`,
+//! each connected piece of `S` lies wholly inside the part or wholly outside, and one point of it decides which.
 //!
 //! **Every piece is found.** Let `p` be a point of `S` at depth `t`, and `q` its nearest point on the profile.
 //! `q` is on a feature, or a reflex corner; where the profile begins or ends on the axis, a corner with its

@@ -354,8 +354,7 @@ impl Section {
     }
 
     /// Returns whether neighbouring features are nearer than `feature` to all points of a polygon. That is so if the
-    /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from
-    /// there.
+    /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from there.
     pub(crate) fn hidden_by_neighbours(&self, feature: usize, corners: &[MeridianPoint]) -> bool {
         let Some(ends) = self.features[feature].at_ends(corners) else { return false };
         [0, 1].into_iter().all(|end| !ends[end] || self.neighbour_is_nearer(feature, end, corners))

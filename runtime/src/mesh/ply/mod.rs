@@ -43,12 +43,10 @@ pub struct OrientedPoints {
 }
 
 impl OrientedPoints {
-    /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this
-    /// function panic.
+    /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this function panic.
     ///
-    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round
-    /// it. It may have a `face`, the id of the face it lies on, and an `area`. Everything else,
-    /// including faces, is skipped.
+    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round it. It may have a
+    /// `face`, the id of the face it lies on, and an `area`. Everything else, including faces, is skipped.
     ///
     /// # Errors
     /// See [`PlyError`].
@@ -111,11 +109,10 @@ impl Mesh {
     /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); errors name
     /// the file as `name`. No input makes this function panic.
     ///
-    /// A face with more than three corners is divided into a fan of triangles from its first corner, and
-    /// refused if the fan does not fill it; ids count the resulting triangles. Corners with equal
-    /// coordinates become one vertex, as in [`Mesh::read_stl`], because exporters double the vertices of
-    /// sharp edges. Other elements and properties are skipped, except triangle strips and a second list
-    /// of corners, which are refused.
+    /// A face with more than three corners is divided into a fan of triangles from its first corner, and refused if the
+    /// fan does not fill it; ids count the resulting triangles. Corners with equal coordinates become one vertex, as in
+    /// [`Mesh::read_stl`], because exporters double the vertices of sharp edges. Other elements and properties are
+    /// skipped, except triangle strips and a second list of corners, which are refused.
     ///
     /// # Errors
     /// See [`PlyError`].

@@ -73,8 +73,7 @@ impl Element<'_> {
         self.properties.iter().position(|p| p.name == name.as_bytes() && p.length.is_some())
     }
 
-    /// Returns the minimum number of bytes for all of these elements, to check `count` against the file
-    /// length.
+    /// Returns the minimum number of bytes for all of these elements, to check `count` against the file length.
     fn min_bytes(&self, encoding: Encoding) -> u128 {
         let count = self.count as u128;
         if encoding == Encoding::Ascii {
@@ -273,9 +272,8 @@ impl<'a, 'n> Body<'a, 'n> {
         Ok((header, Body { name, encoding, tokens, length: bytes.len(), index: 0 }))
     }
 
-    /// Reads all elements of one kind, which must be next in the file. `visit` receives the numbers of
-    /// the properties at the indices `requested` and the items of the list property at index `list`;
-    /// `None` requests nothing.
+    /// Reads all elements of one kind, which must be next in the file. `visit` receives the numbers of the properties
+    /// at the indices `requested` and the items of the list property at index `list`; `None` requests nothing.
     pub(super) fn read<const N: usize>(
         &mut self,
         element: &Element,
