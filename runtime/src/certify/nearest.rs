@@ -26,8 +26,7 @@ impl NearestTriangle<'_> {
     pub fn distance(&mut self, point: Point3<f64>) -> f64 {
         let frame = &self.bvh.frame;
         let p = frame.inside(point.into());
-        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at
-        // most 1.
+        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at most 1.
         let farthest = p.iter().fold(1.0, |farthest: f64, part| farthest.max(part.abs()));
         let margin = 16.0 * f64::EPSILON * farthest;
         let bvh = self.bvh;

@@ -388,8 +388,7 @@ fn rows(keys: &[u64], starts: &[u32], cells: Range<usize>) -> Vec<[[u32; 2]; 9]>
     let mut rows = vec![[[0; 2]; 9]; cells.len()];
     for row in 0..9usize {
         let (dx, dy) = ((row / 3) as u64, (row % 3) as u64);
-        // Cell coordinates are at least 1 along every axis, so the subtraction does not borrow between
-        // fields.
+        // Cell coordinates are at least 1 along every axis, so the subtraction does not borrow between fields.
         let offset = (dx << 42) + (dy << 21);
         let corner = 1 << 42 | 1 << 21 | 1;
         let mut at = keys.partition_point(|key| *key < keys[cells.start] + offset - corner);

@@ -349,8 +349,7 @@ fn points_that_are_as_near_lose_nothing() {
         let cloud = cloud.with_voronoi_weights(&mesh);
         let far = places(&mesh, 40).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
         let radius = cloud.covering_radius().expect("a cover").radius;
-        // The covering radius is attained at a corner of the triangle or between points, so the grid's
-        // value is close.
+        // The covering radius is attained at a corner of the triangle or between points, so the grid's value is close.
         assert!(far <= radius && radius <= 1.1 * far + 0.3, "{far} {radius} {:?}", cloud.points());
         let sum: f64 = cloud.weights().iter().sum();
         assert!((sum / 400.0 - 1.0).abs() < 1e-12, "{sum}");

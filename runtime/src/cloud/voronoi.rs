@@ -380,8 +380,7 @@ impl Surface {
         };
         let all_pieces: Vec<usize> = (0..self.pieces.len()).collect();
         sums.add(&all_pieces, self.shares(sites, &all_pieces, self.initial_max_tests()));
-        // Divide the incomplete pieces once more with all the work allowed; there are usually few of
-        // them.
+        // Divide the incomplete pieces once more with all the work allowed; there are usually few of them.
         let max_tests = self.max_extra_tests(sites) / sums.incomplete.len().max(1);
         if max_tests > self.initial_max_tests() {
             let indices: Vec<usize> = sums.incomplete.drain(..).map(|(piece, _)| piece).collect();

@@ -249,8 +249,7 @@ impl Records<'_> {
         let mut places = Vec::new();
         for (list, count) in lists(stem.points) {
             let section: SectionHeader = self.next()?;
-            // Items have at most 384 bytes, and there are fewer than 2^32 of them, so the product does
-            // not overflow.
+            // Items have at most 384 bytes, and there are fewer than 2^32 of them, so the product does not overflow.
             let bytes = count * list.item();
             if (section.at, section.bytes) != (*end, bytes)
                 || !section.at.is_multiple_of(ALIGN as u64)

@@ -77,8 +77,7 @@ impl Element<'_> {
     fn min_bytes(&self, encoding: Encoding) -> u128 {
         let count = self.count as u128;
         if encoding == Encoding::Ascii {
-            // A digit and a separator per value, except that the last value of the file needs no
-            // separator.
+            // A digit and a separator per value, except that the last value of the file needs no separator.
             return (2 * count * self.properties.len() as u128).saturating_sub(1);
         }
         let sizes = self.properties.iter().map(|p| p.length.unwrap_or(p.value).bytes() as u128);
