@@ -1,5 +1,6 @@
 //! Haptic devices: the trait, force and torque limits, and devices that play back poses.
 
+use super::setting::{SettingError, above_zero};
 use nalgebra::Vector3;
 use std::fmt;
 use touchoff::{Motion, MotionError, Pose, PoseError};
@@ -51,6 +52,15 @@ pub struct DeviceLimits {
     pub turning_stiffness: f64,
 }
 
+impl DeviceLimits {
+    pub(super) fn check(&self) -> Result<(), SettingError> {
+        above_zero("largest force of the device in N", self.force)?;
+        above_zero("largest torque of the device in N·mm", self.torque)?;
+        above_zero("stiffness of the device in N/mm", self.stiffness)?;
+        above_zero("rotational stiffness of the device in N·mm/rad", self.turning_stiffness)
+    }
+}
+
 /// Values of a desktop device of medium strength.
 impl Default for DeviceLimits {
     fn default() -> DeviceLimits {
@@ -79,9 +89,8 @@ pub enum DeviceError {
     Ended,
 }
 
-/// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The
-/// loop calls both functions once per cycle, so neither may block: a device without new data returns the
-/// previous pose.
+/// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The loop calls both
+/// functions once per cycle, so neither may block: a device without new data returns the previous pose.
 pub trait Device {
     /// Returns the commanded tool pose, in the world frame and the part's unit.
     ///
@@ -160,6 +169,7 @@ impl PlaybackDevice {
         cycles: u64,
         limits: DeviceLimits,
     ) -> Result<PlaybackDevice, MotionError> {
+        // Interpolation would choose the spins between poses that have none, and lose those that poses have.
         let all_have_spin = poses.iter().all(Pose::has_spin);
         let motions = match all_have_spin {
             true => Vec::new(),
@@ -175,6 +185,7 @@ impl PlaybackDevice {
 
 impl Device for PlaybackDevice {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
+        // A product instead of a running sum, whose rounding would add up.
         let position = self.cycle as f64 * self.poses_per_cycle;
         let index = position as usize;
         self.cycle += 1;

@@ -19,14 +19,15 @@ impl Frame {
         pose.tip().coords + pose.rotation() * self.centre.coords
     }
 
-    /// Returns the displacement of the centre (mm) and the rotation vector (rad) from one pose to
-    /// another, in the world frame. With five axes, the rotation is the shortest that takes one tool
-    /// axis to the other.
+    /// Returns the displacement of the centre (mm) and the rotation vector (rad) from one pose to another, in the world
+    /// frame. With five axes, the rotation is the shortest that takes one tool axis to the other.
     pub(super) fn between(&self, from: &Pose, to: &Pose) -> Vector6<f64> {
         let translation = (self.centre_of(to) - self.centre_of(from)) * self.unit;
         let rotation = match self.axes {
             DeviceAxes::Five => {
                 let (sine, cosine) = (from.axis().cross(&to.axis()), from.axis().dot(&to.axis()));
+                // The arc tangent is accurate at all angles. Of opposite axes no rotation is the shortest; none is
+                // taken then.
                 let size = sine.norm();
                 if size > 0.0 { sine * (size.atan2(cosine) / size) } else { Vector3::zeros() }
             }
@@ -46,6 +47,7 @@ impl Frame {
         let [translation, rotation] = halves(step);
         let turned = Rotation3::from_scaled_axis(rotation);
         let centre = self.centre_of(pose) + translation / self.unit;
+        // The centre moves by the step; the tip turns about it.
         let tip = Point3::from(centre - turned * (self.centre_of(pose) - pose.tip().coords));
         pose.rotated_to(turned.into_inner(), tip)
     }

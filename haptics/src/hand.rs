@@ -1,8 +1,7 @@
-//! A simulated hand that holds a device. It closes the loop, so that stability can be computed and not
-//! only felt.
+//! A simulated hand that holds a device. It closes the loop, so that stability can be computed and not only felt.
 
 use super::frame::{Frame, halves, join};
-use super::setting::{self, SettingError};
+use super::setting::{self, SettingError, above_zero, check, not_negative};
 use super::{Device, DeviceError, DeviceLimits, DeviceWrench};
 use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
 use rand_core::{Rng, SeedableRng};
@@ -26,6 +25,17 @@ pub struct HandImpedance {
     pub turning_damping: f64,
     /// Rotational stiffness, N·mm/rad.
     pub turning_stiffness: f64,
+}
+
+impl HandImpedance {
+    fn check(&self) -> Result<(), SettingError> {
+        above_zero("mass of the grip in kg", self.mass)?;
+        above_zero("inertia of the grip in kg·mm²", self.inertia)?;
+        not_negative("damping of the grip in N·s/mm", self.damping)?;
+        not_negative("rotational damping of the grip in N·mm·s/rad", self.turning_damping)?;
+        not_negative("stiffness of the grip in N/mm", self.stiffness)?;
+        not_negative("rotational stiffness of the grip in N·mm/rad", self.turning_stiffness)
+    }
 }
 
 /// The light grip of three fingers on a stylus, in round figures: 0.1 kg, 5 N·s/m, 0.2 N/mm.
@@ -52,6 +62,16 @@ pub struct Tremor {
     pub frequency: f64,
     /// Seed of the random generator; equal seeds give equal tremor.
     pub seed: u64,
+}
+
+impl Tremor {
+    fn check(&self, period: f64) -> Result<(), SettingError> {
+        not_negative("size of the tremor in mm", self.size)?;
+        // The filter resonates at the frequency, and samples at the loop's rate show no more than half of that.
+        let is_valid = self.frequency > 0.0 && self.frequency * period <= 0.5;
+        let what = "frequency of the tremor in Hz";
+        check(is_valid, what, self.frequency, "a number above 0, up to half the rate")
+    }
 }
 
 /// A simulated hand that holds a device.
@@ -131,8 +151,7 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
         Ok(self)
     }
 
-    /// Sets the point of the tool at which it is held, in the tool frame and in `unit`; the default is
-    /// the tip.
+    /// Sets the point of the tool at which it is held, in the tool frame and in `unit`; the default is the tip.
     ///
     /// # Errors
     /// Fails if a coordinate is not finite.
@@ -166,8 +185,8 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
         linear: f64,
         angular: f64,
     ) -> Result<SimulatedHand<F>, SettingError> {
-        setting::not_negative("step of the encoders in mm", linear)?;
-        setting::not_negative("step of the encoders in rad", angular)?;
+        not_negative("step of the encoders in mm", linear)?;
+        not_negative("step of the encoders in rad", angular)?;
         self.encoder_steps = [linear, angular];
         Ok(self)
     }
@@ -183,8 +202,7 @@ impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
             return Ok(state.pose);
         }
         let offset = self.frame.between(&state.start, &state.pose);
-        let step = |row: usize| self.encoder_steps[row / 3];
-        let quantized = Vector6::from_fn(|row, _| match step(row) {
+        let quantized = Vector6::from_fn(|row, _| match self.encoder_steps[row / 3] {
             0.0 => offset[row],
             step => (offset[row] / step).round() * step,
         });
@@ -224,6 +242,16 @@ impl<F: FnMut(f64) -> Pose> Device for SimulatedHand<F> {
     }
 }
 
+/// A mass on a spring and a damper, in translation or in rotation.
+struct MassOnSpring {
+    /// The name of the mass in errors.
+    name: &'static str,
+    /// kg or kg·mm².
+    mass: f64,
+    damping: f64,
+    stiffness: f64,
+}
+
 /// Discrete-time model of a mass on a spring and a damper under a force that is constant over a cycle:
 /// exact, by the matrix exponential.
 #[derive(Clone, Copy, Debug)]
@@ -240,25 +268,29 @@ impl Oscillator {
         impedance: &HandImpedance,
         period: f64,
     ) -> Result<[Oscillator; 2], SettingError> {
-        let linear =
-            ("mass of the grip in kg", [impedance.mass, impedance.damping, impedance.stiffness]);
-        let angular = (
-            "inertia of the grip in kg·mm²",
-            [impedance.inertia, impedance.turning_damping, impedance.turning_stiffness],
-        );
-        Ok([Oscillator::new(linear, period)?, Oscillator::new(angular, period)?])
+        let linear = MassOnSpring {
+            name: "mass of the grip in kg",
+            mass: impedance.mass,
+            damping: impedance.damping,
+            stiffness: impedance.stiffness,
+        };
+        let angular = MassOnSpring {
+            name: "inertia of the grip in kg·mm²",
+            mass: impedance.inertia,
+            damping: impedance.turning_damping,
+            stiffness: impedance.turning_stiffness,
+        };
+        Ok([Oscillator::new(&linear, period)?, Oscillator::new(&angular, period)?])
     }
 
-    /// Computes the model for a mass (kg or kg·mm²), a damping and a stiffness; `what` names the mass in errors.
+    /// Computes the model.
     ///
     /// # Errors
-    /// Fails if the mass is so small compared with damping and stiffness that its motion in a period
-    /// overflows.
-    fn new(
-        (what, [mass, damping, stiffness]): (&'static str, [f64; 3]),
-        period: f64,
-    ) -> Result<Oscillator, SettingError> {
+    /// Fails if the mass is so small compared with damping and stiffness that its motion in a period overflows.
+    fn new(model: &MassOnSpring, period: f64) -> Result<Oscillator, SettingError> {
+        let MassOnSpring { name: what, mass, damping, stiffness } = *model;
         let gain = NEWTON / mass;
+        // The rates of offset, speed and force, of which the force is constant over a cycle.
         let rates = Matrix3::new(
             0.0,
             1.0,
@@ -270,6 +302,7 @@ impl Oscillator {
             0.0,
             0.0,
         );
+        // The last row keeps the force, so one exponential has the transition and the gain.
         let exponential = (rates * period).exp();
         if !exponential.iter().all(|part| part.is_finite()) {
             let range = "one that is not so small beside damping and stiffness";
@@ -304,13 +337,13 @@ struct TremorFilter {
     noise: f64,
 }
 
-/// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per
-/// cycle.
+/// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per cycle.
 const DAMPING_RATIO: f64 = 0.1;
 
 impl TremorFilter {
     fn new(tremor: &Tremor, period: f64) -> TremorFilter {
         let angle = std::f64::consts::TAU * tremor.frequency * period;
+        // The poles of the recursion are at this radius, and at plus and minus the angle.
         let radius = (-DAMPING_RATIO * angle).exp();
         let transition = [2.0 * radius * angle.cos(), -radius * radius];
         // The variance of such a process (Box, Jenkins and Reinsel, *Time Series Analysis*, eq. 3.2.30).
@@ -323,8 +356,9 @@ impl TremorFilter {
     }
 
     fn next(&mut self) -> Vector3<f64> {
-        let mut uniform = || (self.random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
-        let noise = Vector3::new(uniform(), uniform(), uniform()) * self.noise;
+        // 53 random bits, from -1 to 1.
+        let uniform = [(); 3].map(|()| (self.random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0);
+        let noise = Vector3::from(uniform) * self.noise;
         let [last, before] = self.last;
         let next = self.transition[0] * last + self.transition[1] * before + noise;
         self.last = [next, last];

@@ -86,6 +86,7 @@ impl InputFilter {
                 return FilteredInput::Held;
             }
         };
+        // Nothing is known of the first pose that it could be compared with.
         let Some(last) = self.last else {
             self.last = Some(pose);
             return FilteredInput::Restarted(pose);
@@ -97,6 +98,7 @@ impl InputFilter {
         }
         self.faults.jumps += 1;
         let cycles = match &self.jumped_to {
+            // A device that was moved while it did not answer stays near its new pose; a fault jumps again.
             Some((jumped, cycles)) if self.is_reachable(jumped, &pose, frame) => cycles + 1,
             _ => 0,
         };

@@ -41,14 +41,11 @@
 #[doc = include_str!("../../docs/haptics.md")]
 struct HapticsPage;
 
-mod coupling;
 mod device;
 mod frame;
 mod hand;
 mod input_filter;
-mod passivity;
-#[cfg(feature = "realtime")]
-mod realtime;
+mod rendering;
 #[cfg(feature = "realtime")]
 mod run;
 mod session;
@@ -56,19 +53,16 @@ mod setting;
 #[cfg(all(unix, feature = "realtime"))]
 pub mod spacenav;
 
-pub use coupling::Coupling;
 pub use device::{
     Device, DeviceAxes, DeviceError, DeviceLimits, DeviceWrench, PlaybackDevice, ScriptedDevice,
 };
 pub use hand::{HandImpedance, SimulatedHand, Tremor};
 pub use input_filter::{DeviceFaults, SpeedLimit};
-pub use passivity::EnergyBalance;
-#[cfg(feature = "realtime")]
-pub use realtime::{Realtime, RealtimeError, check_core};
+pub use rendering::{Coupling, EnergyBalance, Rendering};
 #[cfg(feature = "realtime")]
 pub use run::{
-    Clock, LatencyHistogram, LatestState, LoopReport, MonotonicClock, SimulatedClock,
-    StatePublisher, StateStream, state_channel,
+    Clock, LatencyHistogram, LatestState, LoopReport, MonotonicClock, Realtime, RealtimeError,
+    SimulatedClock, StatePublisher, StateStream, check_core, state_channel,
 };
-pub use session::{Rendering, Session, SessionSettings, SessionState};
+pub use session::{Session, SessionSettings, SessionState};
 pub use setting::SettingError;

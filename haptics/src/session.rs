@@ -1,10 +1,12 @@
 //! A haptic session: the computation of one cycle.
 
-use super::coupling::{Coupling, limit_stiffness, saturate, spring, springs, to_vector, to_wrench};
 use super::frame::{Frame, halves};
 use super::input_filter::{DeviceFaults, FilteredInput, InputFilter, SpeedLimit};
-use super::passivity::{EnergyBalance, Passivity};
-use super::setting::{self, SettingError};
+use super::rendering::{
+    Coupling, EnergyBalance, Passivity, Rendering, limit_stiffness, saturate, spring, springs,
+    to_vector, to_wrench,
+};
+use super::setting::{self, SettingError, above_zero, check, not_negative};
 use super::{Device, DeviceAxes, DeviceLimits, DeviceWrench};
 use nalgebra::{Matrix6, Vector6};
 use std::fmt;
@@ -12,29 +14,12 @@ use std::time::Duration;
 use touchoff::tool::BatchEvaluator;
 use touchoff::{Law, Pose, Probe, Stiffness, Tool, Unit, Wrench};
 
-/// Methods of computing the device's wrench from contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rendering {
-    /// The contact wrench at the device's pose.
-    Direct {
-        /// `true` to scale the wrench down wherever contact is stiffer than the device can render, by
-        /// the largest eigenvalue of the contact's stiffness.
-        scaled: bool,
-        /// Time constant of a damper in contact, s: the damping coefficient is this time times the
-        /// stiffness that the device can render.
-        damping: f64,
-    },
-    /// Virtual coupling: the tool yields at the other end of a spring.
-    Coupled(Coupling),
-}
-
 /// The settings of a session. [`Session::new`] checks all numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionSettings {
     /// Cycles per second, 0.001 to 1,000,000.
     pub rate: f64,
-    /// Force in N per unit of a [`Wrench`]'s force: N/mm³ if the part is in mm and the magnitude is the
-    /// depth.
+    /// Force in N per unit of a [`Wrench`]'s force: N/mm³ if the part is in mm and the magnitude is the depth.
     pub stiffness: f64,
     /// The rendering method; `None` for a coupling as stiff as the device can render.
     pub rendering: Option<Rendering>,
@@ -45,6 +30,25 @@ pub struct SessionSettings {
 }
 
 impl SessionSettings {
+    fn check(&self) -> Result<(), SettingError> {
+        let SessionSettings { rate, stiffness, rendering, passive: _, fastest } = *self;
+        setting::period(rate)?;
+        above_zero("stiffness of contact", stiffness)?;
+        match rendering {
+            Some(Rendering::Direct { scaled: _, damping }) => {
+                not_negative("damping of direct rendering in s", damping)?;
+            }
+            Some(Rendering::Coupled(coupling)) => coupling.check()?,
+            None => {}
+        }
+        let SpeedLimit { linear, angular } = fastest;
+        let speeds =
+            [("largest speed in mm/s", linear), ("largest turning speed in rad/s", angular)];
+        speeds.into_iter().try_for_each(|(what, speed)| {
+            check(speed > 0.0, what, speed, "a number above 0, or infinity to accept any speed")
+        })
+    }
+
     /// Returns settings with `rate` cycles per second, 1 N/mm³, and passivity control.
     pub fn new(rate: f64) -> SessionSettings {
         SessionSettings {
@@ -71,8 +75,7 @@ pub struct SessionState {
     pub wrench_on_hand: DeviceWrench,
     /// The contact wrench on the tool, as returned by the probe.
     pub wrench: Wrench,
-    /// The largest eigenvalue of the contact's stiffness, relative to the stiffness that the device can
-    /// render.
+    /// The largest eigenvalue of the contact's stiffness, relative to the stiffness that the device can render.
     pub stiffest: f64,
     /// The energy balance.
     pub energy: EnergyBalance,
@@ -155,10 +158,11 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         let (centre, unit) = (probe.centre(), probe.unit().factor_to(Unit::Millimetre));
         setting::centre(&centre)?;
         probe.reserve();
-        let coupled = || Rendering::Coupled(Coupling::of(&limits));
         Ok(Session {
             newtons: settings.stiffness,
-            rendering: settings.rendering.unwrap_or_else(coupled),
+            rendering: settings
+                .rendering
+                .unwrap_or_else(|| Rendering::Coupled(Coupling::of(&limits))),
             passive: settings.passive,
             period,
             limits,
@@ -205,7 +209,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         self.passivity.add_work(&self.device_wrench, &displacement);
         let (evaluations, device_wrench, energy) = match self.rendering {
             Rendering::Direct { scaled, damping } => {
-                self.direct(device_pose, &displacement, (scaled, damping))
+                self.direct(device_pose, &displacement, scaled, damping)
             }
             Rendering::Coupled(coupling) => self.coupled(device_pose, &coupling),
         };
@@ -217,8 +221,10 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         let mut device_wrench = saturate(&device_wrench.scaled(self.ramp), &self.limits);
         if self.passive {
             let damping = self.passivity.damping_wrench(&displacement, &springs(&self.limits));
+            // The sum may exceed what each of both keeps to.
             device_wrench = saturate(&device_wrench.and(&damping), &self.limits);
         }
+        // The loop goes on without the force: a device that stops answering must not stop the cycles.
         if device.apply(&device_wrench).is_err() {
             self.input_filter.faults.failed_writes += 1;
         }
@@ -237,7 +243,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         Some(state)
     }
 
-    /// Moves the tool to the hand's pose, without a device_wrench.
+    /// Moves the tool to the hand's pose, without a wrench on the hand.
     fn restart(&mut self, pose: Pose) {
         self.poses =
             Some(CoupledPoses { device: pose, tool: pose, displacement: Vector6::zeros() });
@@ -252,22 +258,24 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         let Stiffness { wrench, matrix } = self.probe.stiffness(pose);
         let (newtons, unit) = (self.newtons, self.frame.unit);
         // A torque has one more length dimension than a force; a derivative by length has one less.
-        let length_factor = |row: usize| if row < 3 { 1.0 } else { unit };
+        let length_factor = [1.0, 1.0, 1.0, unit, unit, unit];
+        // A device of five axes cannot render a torque about the tool's axis.
         let mut torque = wrench.torque;
         if self.frame.axes == DeviceAxes::Five {
             torque -= pose.axis() * pose.axis().dot(&torque);
         }
         let force = to_vector(&DeviceWrench { force: wrench.force, torque });
         let matrix = Matrix6::from_fn(|row, column| {
-            newtons * length_factor(row) * length_factor(column) / unit * matrix[(row, column)]
+            newtons * length_factor[row] * length_factor[column] / unit * matrix[(row, column)]
         });
         let (matrix, stiffest) = match wrench.colliding {
             0 => (Matrix6::zeros(), 0.0),
+            // A negative stiffness would let Newton's method run to a maximum of the energy.
             _ => limit_stiffness(&matrix, &self.limits),
         };
         ContactForce {
             wrench,
-            force: Vector6::from_fn(|row, _| newtons * length_factor(row) * force[row]),
+            force: Vector6::from_fn(|row, _| newtons * length_factor[row] * force[row]),
             // Other laws have no energy.
             energy: if wrench.law == Law::Gradient { newtons * unit * wrench.energy } else { 0.0 },
             matrix,
@@ -280,11 +288,13 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
         &mut self,
         device: Pose,
         displacement: &Vector6<f64>,
-        (scaled, damping): (bool, f64),
+        scaled: bool,
+        damping: f64,
     ) -> (ContactForce, DeviceWrench, f64) {
         let evaluations = self.contact_force(&device);
         let gain = if scaled { 1.0 / evaluations.stiffest.max(1.0) } else { 1.0 };
         let mut force = evaluations.force * gain;
+        // Free motion is not damped.
         if evaluations.wrench.colliding > 0 {
             force -= springs(&self.limits).component_mul(displacement) * (damping / self.period);
         }
@@ -302,6 +312,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Session<'a, T> {
             None => (device, Vector6::zeros()),
         };
         let damper = coupling.springs() * (coupling.damping / self.period);
+        // The contact at the tool's pose is known from the cycle before, so a cycle in balance evaluates nothing.
         let mut evaluations = self.last.take().unwrap_or_else(|| self.contact_force(&tool));
         let mut evaluations_done = 0;
         loop {

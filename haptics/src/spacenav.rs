@@ -1,14 +1,13 @@
 //! A SpaceMouse, by the protocol of `spacenavd`.
 //!
-//! The daemon's Unix socket sends eight 32-bit integers in the machine's byte order per event. The first
-//! is the kind of event: 0 motion, 1 button pressed, 2 button released. Then follow the displacements of
-//! the cap along x (right), y (up) and z (away from the user), the rotations about these axes, and the
-//! time since the last event in ms.
+//! The daemon's Unix socket sends eight 32-bit integers in the machine's byte order per event. The first is the kind of
+//! event: 0 motion, 1 button pressed, 2 button released. Then follow the displacements of the cap along x (right), y
+//! (up) and z (away from the user), the rotations about these axes, and the time since the last event in ms.
 //!
 //! The device applies no force. It controls speed: the cap's displacement sets the tool's velocity.
 
 use super::frame::{Frame, join};
-use super::setting;
+use super::setting::{self, SettingError, above_zero};
 use super::{Device, DeviceAxes, DeviceError, DeviceLimits, DeviceWrench};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
@@ -31,6 +30,13 @@ pub struct SpeedGains {
     pub linear: f64,
     /// Angular speed, rad/s.
     pub angular: f64,
+}
+
+impl SpeedGains {
+    fn check(&self) -> Result<(), SettingError> {
+        above_zero("linear speed at full displacement, in mm/s", self.linear)?;
+        above_zero("angular speed at full displacement, in rad/s", self.angular)
+    }
 }
 
 /// Approximate reading at full displacement of the cap.
@@ -83,13 +89,11 @@ impl Spacenav {
         rate: f64,
         gains: SpeedGains,
     ) -> io::Result<Spacenav> {
-        let invalid_input = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
-        let period = setting::period(rate).map_err(invalid_input)?;
-        setting::above_zero("linear speed at full displacement, in mm/s", gains.linear)
-            .map_err(invalid_input)?;
-        setting::above_zero("angular speed at full displacement, in rad/s", gains.angular)
-            .map_err(invalid_input)?;
+        let period = setting::period(rate)
+            .and_then(|period| gains.check().map(|()| period))
+            .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
         let stream = connect(socket)?;
+        // The last state counts, not every event: the reader never waits for the loop, nor the loop for it.
         let (publisher, cap) = triple_buffer::triple_buffer(&Cap::Displaced([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
         let reader = {
@@ -121,6 +125,7 @@ fn listen(
     while !stop.load(Ordering::Relaxed) {
         match stream.read(&mut event[received..]) {
             Ok(more) if more > 0 => {
+                // A read may end within an event.
                 received += more;
                 if received == event.len() {
                     received = 0;
@@ -151,11 +156,9 @@ fn listen(
 
 /// Returns the displacements and rotations of the cap if the event is a motion.
 fn motion(event: &[u8; 32]) -> Option<[i32; 6]> {
-    let word = |at: usize| {
-        let bytes = [0, 1, 2, 3].map(|k| event[4 * at + k]);
-        i32::from_ne_bytes(bytes)
-    };
-    (word(0) == 0).then(|| [1, 2, 3, 4, 5, 6].map(word))
+    let (words, _) = event.as_chunks::<4>();
+    let is_motion = i32::from_ne_bytes(words[0]) == 0;
+    is_motion.then(|| [1, 2, 3, 4, 5, 6].map(|at| i32::from_ne_bytes(words[at])))
 }
 
 impl Device for Spacenav {

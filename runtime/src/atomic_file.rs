@@ -233,8 +233,7 @@ fn create_temporary(folder: &Path) -> io::Result<Temporary> {
     Err(io::Error::other("temporary files there are removed as soon as they are made"))
 }
 
-/// Removes the temporary files of a folder whose writers have ended. Files that cannot be removed
-/// remain.
+/// Removes the temporary files of a folder whose writers have ended. Files that cannot be removed remain.
 fn remove_abandoned(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {

@@ -45,9 +45,8 @@ impl Display for EscapedLines<'_> {
     }
 }
 
-/// Returns whether a terminal interprets a character instead of showing it. These are control
-/// characters, and the marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm
-/// (UAX 9, section 2).
+/// Returns whether a terminal interprets a character instead of showing it. These are control characters, and the
+/// marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm (UAX 9, section 2).
 fn is_terminal_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

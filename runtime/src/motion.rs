@@ -71,14 +71,14 @@ impl Motion {
             displacement,
             start,
             frame: None,
+            // Accurate at all angles, unlike an arc cosine.
             angle: sine_norm.atan2(cosine),
         })
     }
 
-    /// Creates the motion that rotates the tool frame about one axis by less than half a turn, as the
-    /// spherical interpolation of quaternions does. A solid without an axis needs it. The axis of a tool
-    /// of revolution then moves along a circle that depends on the spins of both poses, which
-    /// [`Motion::new`] ignores.
+    /// Creates the motion that rotates the tool frame about one axis by less than half a turn, as the spherical
+    /// interpolation of quaternions does. A solid without an axis needs it. The axis of a tool of revolution then moves
+    /// along a circle that depends on the spins of both poses, which [`Motion::new`] ignores.
     ///
     /// # Errors
     /// [`MotionError::NoSpin`] if a pose has no [spin](Pose::has_spin), [`MotionError::HalfTurn`] if the
@@ -126,8 +126,7 @@ impl Motion {
         })
     }
 
-    /// Returns the pose at a fraction of the motion, from 0 to 1. Fractions outside are clamped to the
-    /// nearer end.
+    /// Returns the pose at a fraction of the motion, from 0 to 1. Fractions outside are clamped to the nearer end.
     ///
     /// # Panics
     /// Panics if the fraction is NaN.
@@ -144,8 +143,7 @@ impl Motion {
         }
     }
 
-    /// Returns whether the spin about the tool axis is known, so that the motion applies to a solid
-    /// without an axis.
+    /// Returns whether the spin about the tool axis is known, so that the motion applies to a solid without an axis.
     pub fn has_spin(&self) -> bool {
         self.frame.is_some()
     }
@@ -208,8 +206,7 @@ mod tests {
         assert!(max_error <= 4.5 * f64::EPSILON, "{max_error:e}");
     }
 
-    /// Compares with nalgebra's interpolation of quaternions, for short rotations, long ones, and nearly
-    /// half a turn.
+    /// Compares with nalgebra's interpolation of quaternions, for short rotations, long ones, and nearly half a turn.
     #[test]
     fn motion_with_spin_matches_quaternion_interpolation() {
         let mut random = Pcg64Mcg::seed_from_u64(2);

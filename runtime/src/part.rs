@@ -2,7 +2,7 @@
 
 use crate::cloud::{Cloud, CloudError, CoveringRadius, Sampling, check_position, unit_normal};
 use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
-use crate::point_bvh::PointBvh;
+use crate::point_bvh::{PointBvh, TreePoint};
 use crate::pose::Pose;
 use crate::probe::{BudgetError, Law, LodProbe, Probe};
 use crate::tool::{BatchEvaluator, Tool};
@@ -16,8 +16,7 @@ const MIN_LEVEL_POINTS: usize = 100;
 /// A part: its points in a bounding volume hierarchy, and the diagnostics of its mesh.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// The levels of detail, the finest first; each level has a subset of the points of the level
-    /// before.
+    /// The levels of detail, the finest first; each level has a subset of the points of the level before.
     pub(crate) levels: Vec<PointBvh>,
     pub(crate) unit: Unit,
     pub(crate) diagnostics: Option<MeshDiagnostics>,
@@ -61,10 +60,9 @@ impl Part {
         Part { diagnostics: Some(diagnostics), ..Part::from_cloud(cloud) }
     }
 
-    /// Builds a part as [`Part::from_mesh`] does, with coarser levels of detail. Each has a quarter of
-    /// the points of the level before, spread as evenly, with its own weights and covering radius, down
-    /// to some hundred points. [`LodProbe`](crate::LodProbe) chooses among them; all other queries use
-    /// the finest.
+    /// Builds a part as [`Part::from_mesh`] does, with coarser levels of detail. Each has a quarter of the points of
+    /// the level before, spread as evenly, with its own weights and covering radius, down to some hundred points.
+    /// [`LodProbe`](crate::LodProbe) chooses among them; all other queries use the finest.
     ///
     /// # Errors
     /// See [`Cloud::sample`].
@@ -87,13 +85,12 @@ impl Part {
     /// ([`Probe::sampling_error_bound`]). Returns the number of points removed from all levels. The tree
     /// is not rebuilt.
     ///
-    /// The nearest point of every remaining surface point is still there: if it had been removed, the
-    /// surface point would be inside the tool as well. The covering radius therefore holds for the
-    /// remaining surface. Points near the rim of the removed surface remain, no deeper than the bound.
-    /// The new surface left by a cut has no points, and no query knows of it. A coarse level whose bound
-    /// exceeds the tool's depth loses no points. If the bound is unknown, because the tool has no
-    /// Lipschitz constant or the cloud no covering radius, all points inside are removed and the
-    /// covering radius becomes unknown.
+    /// The nearest point of every remaining surface point is still there: if it had been removed, the surface point
+    /// would be inside the tool as well. The covering radius therefore holds for the remaining surface. Points near the
+    /// rim of the removed surface remain, no deeper than the bound. The new surface left by a cut has no points, and no
+    /// query knows of it. A coarse level whose bound exceeds the tool's depth loses no points. If the bound is unknown,
+    /// because the tool has no Lipschitz constant or the cloud no covering radius, all points inside are removed and
+    /// the covering radius becomes unknown.
     pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
         let mut removed = 0;
         for tree in &mut self.levels {
@@ -115,9 +112,8 @@ impl Part {
     /// Moves points and rotates their unit normals: `map` takes a point with its normal and returns the new
     /// ones. The tree is not rebuilt, so queries get slower as neighbours move apart. Weights are unchanged.
     ///
-    /// The covering radius grows by twice the largest displacement of a point. This is a bound if no
-    /// surface point between the points moves farther, which only the caller can know, so the radius
-    /// counts as estimated afterwards.
+    /// The covering radius grows by twice the largest displacement of a point. This is a bound if no surface point
+    /// between the points moves farther, which only the caller can know, so the radius counts as estimated afterwards.
     ///
     /// # Errors
     /// Fails for an invalid position or normal; no point has moved then.
@@ -125,14 +121,19 @@ impl Part {
         &mut self,
         mut map: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
     ) -> Result<(), CloudError> {
+        // All points are checked before any is moved.
         let mut levels = Vec::new();
         for tree in &self.levels {
             let mut moved_points = Vec::new();
-            for (index, point, normal) in tree.all() {
-                let (new_point, new_normal) = map(point, normal);
-                if new_point != point || new_normal != normal {
-                    check_position(index, &new_point)?;
-                    moved_points.push((index, new_point, unit_normal(index, new_normal)?));
+            for TreePoint { slot, position, normal } in tree.all() {
+                let (new_position, new_normal) = map(position, normal);
+                if new_position != position || new_normal != normal {
+                    check_position(slot, &new_position)?;
+                    moved_points.push(TreePoint {
+                        slot,
+                        position: new_position,
+                        normal: unit_normal(slot, new_normal)?,
+                    });
                 }
             }
             levels.push(moved_points);
@@ -152,6 +153,7 @@ impl Part {
     #[must_use]
     pub fn converted_to(mut self, unit: Unit) -> Part {
         if unit != self.unit {
+            // The tree stays as it is: only its frame is in the part's unit.
             let factor = self.unit.factor_to(unit);
             self.levels.iter_mut().for_each(|tree| tree.scale_by(factor));
             self.diagnostics = self.diagnostics.map(|diagnostics| diagnostics.to(unit));
@@ -189,8 +191,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
 }
 
 impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
-    /// Creates a probe for a tool and a part with levels of detail, with a budget of nodes per query and
-    /// a law.
+    /// Creates a probe for a tool and a part with levels of detail, with a budget of nodes per query and a law.
     ///
     /// # Errors
     /// Fails if the budget is too small for the coarsest level at some pose of the tool.
@@ -200,6 +201,6 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
         budget: usize,
         law: Law,
     ) -> Result<LodProbe<'a, T>, BudgetError> {
-        LodProbe::of(part.levels().iter().rev(), part.unit(), (tool, budget, law))
+        LodProbe::of(part.levels().iter().rev(), part.unit(), tool, budget, law)
     }
 }

@@ -11,9 +11,8 @@ pub const AXIS_TOLERANCE: f64 = 1e-3;
 /// given. Composing two given poses never reaches it.
 pub const MAX_TIP_COORDINATE: f64 = 1e3 * LARGEST_COORDINATE;
 
-/// A tool's pose in the world: the map from the tool frame (tip at the origin, +z from the tip to the
-/// spindle) to the part's frame, both in the part's unit of length. For a solid without an axis, the
-/// "tip" is the origin of its file.
+/// A tool's pose in the world: the map from the tool frame (tip at the origin, +z from the tip to the spindle) to the
+/// part's frame, both in the part's unit of length. For a solid without an axis, the "tip" is the origin of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     rotation: Matrix3<f64>,
@@ -48,10 +47,9 @@ fn unit_kind(what: &str) -> &'static str {
 }
 
 impl Pose {
-    /// Builds a pose from the tip and the unit vector from the tip to the spindle, as in a 5-axis
-    /// program's `x,y,z,i,j,k`. The spin about the axis does not affect axisymmetric tools. It is chosen
-    /// by the branch-free frame of Duff et al., *Building an orthonormal basis, revisited* (JCGT 2017),
-    /// which is accurate for every axis.
+    /// Builds a pose from the tip and the unit vector from the tip to the spindle, as in a 5-axis program's
+    /// `x,y,z,i,j,k`. The spin about the axis does not affect axisymmetric tools. It is chosen by the branch-free frame
+    /// of Duff et al., *Building an orthonormal basis, revisited* (JCGT 2017), which is accurate for every axis.
     ///
     /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised. The pose has no
     /// [spin](Pose::has_spin), so it does not place a solid without an axis.
@@ -62,6 +60,7 @@ impl Pose {
     pub fn from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Result<Pose, PoseError> {
         let axis = unit("axis", [axis.x, axis.y, axis.z, 0.0])?;
         let [x, y, z, _] = axis;
+        // Without a branch, and without the cancellation at z = -1 that a fixed sign has.
         let sign = 1f64.copysign(z);
         let a = -1.0 / (sign + z);
         let b = x * y * a;
@@ -109,9 +108,8 @@ impl Pose {
         Pose { rotation: orthonormal(rotation), tip, has_spin }
     }
 
-    /// Returns whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`].
-    /// Results for a tool of revolution do not depend on it. Results for a solid without an axis do, so
-    /// it needs a pose with spin.
+    /// Returns whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`]. Results for a tool
+    /// of revolution do not depend on it. Results for a solid without an axis do, so it needs a pose with spin.
     pub fn has_spin(&self) -> bool {
         self.has_spin
     }
@@ -126,8 +124,7 @@ impl Pose {
         self.rotation.column(2).into()
     }
 
-    /// Returns the rotation from the tool frame to the world frame. Its columns are the tool's x, y and
-    /// z.
+    /// Returns the rotation from the tool frame to the world frame. Its columns are the tool's x, y and z.
     pub fn rotation(&self) -> &Matrix3<f64> {
         &self.rotation
     }
@@ -140,8 +137,7 @@ impl Pose {
     /// walk. A motion that returns to its start is rounded in the same way each time, by some 3e-17 rad.
     ///
     /// # Panics
-    /// Panics if the tip leaves [`MAX_TIP_COORDINATE`]: a certifier's answer for such a pose would be
-    /// meaningless.
+    /// Panics if the tip leaves [`MAX_TIP_COORDINATE`]: a certifier's answer for such a pose would be meaningless.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -164,8 +160,7 @@ impl Pose {
     /// Returns the pose translated by a displacement in the world frame.
     ///
     /// # Errors
-    /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one
-    /// allowed.
+    /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one allowed.
     pub fn translated(&self, displacement: Vector3<f64>) -> Result<Pose, PoseError> {
         Pose::finite(self.rotation, self.tip + displacement, self.has_spin)
     }
@@ -190,10 +185,12 @@ impl Pose {
     /// # Panics
     /// Panics if the tip leaves [`MAX_TIP_COORDINATE`].
     pub fn relative_to(&self, frame: &Pose) -> Pose {
+        // Exactly, so that a part at the origin sees the bits of the given pose.
         if *frame == Pose::default() {
             return *self;
         }
         let inverse = frame.rotation.transpose();
+        // The difference first: both tips may be far from the origin.
         let tip = Point3::from(inverse * (self.tip - frame.tip));
         Pose {
             rotation: orthonormal(inverse * self.rotation),
@@ -234,12 +231,11 @@ pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
 /// Corrects the rounding of a matrix `R` that is nearly a rotation. The result `Q` has `QᵀQ` within 6u
 /// of the identity in every entry, with `u = ε/2`, and differs from `R` by half of `|I − RᵀR|`.
 ///
-/// This is a Newton step toward the nearest rotation, `R + R E/2` with `E = I − RᵀR`. Let `E` have
-/// entries below 1e-9. An exact step leaves its square. Entries of `RᵀR` are sums of three products,
-/// whose magnitudes add up to at most 1, and err by 3u (Cauchy and Schwarz); the difference from the
-/// identity is exact (Sterbenz). The computed `E` therefore errs by 3u, and `QᵀQ` by as much. Rounding
-/// `R E/2` is of second order. Rounding the last sum changes an entry of `Q` by u of its magnitude, and
-/// `QᵀQ` by 2u. The total is 5u, and second-order terms add less than another u.
+/// This is a Newton step toward the nearest rotation, `R + R E/2` with `E = I − RᵀR`. Let `E` have entries below 1e-9.
+/// An exact step leaves its square. Entries of `RᵀR` are sums of three products, whose magnitudes add up to at most 1,
+/// and err by 3u (Cauchy and Schwarz); the difference from the identity is exact (Sterbenz). The computed `E` therefore
+/// errs by 3u, and `QᵀQ` by as much. Rounding `R E/2` is of second order. Rounding the last sum changes an entry of `Q`
+/// by u of its magnitude, and `QᵀQ` by 2u. The total is 5u, and second-order terms add less than another u.
 pub(crate) fn orthonormal(product: Matrix3<f64>) -> Matrix3<f64> {
     let error = Matrix3::identity() - product.transpose() * product;
     product + product * error * 0.5

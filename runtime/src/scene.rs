@@ -78,8 +78,7 @@ struct Pair<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Creates an empty scene whose poses and results are in `unit`, with the thesis's law and area
-    /// weights.
+    /// Creates an empty scene whose poses and results are in `unit`, with the thesis's law and area weights.
     pub fn new(unit: Unit) -> Scene<'a> {
         let (law, weights) = (Law::default(), Weights::default());
         Scene { unit, law, weights, parts: Vec::new(), tools: Vec::new() }
@@ -167,6 +166,7 @@ impl<'a> Scene<'a> {
         for (index, (pair, (_, part_pose))) in
             scene_tool.pairs.iter_mut().zip(&self.parts).enumerate()
         {
+            // The wrench is kept with the pair, so that asking for it again costs nothing.
             let Some(candidate) = pair.wrench(&scene_tool.pose, part_pose).deepest else {
                 continue;
             };
@@ -186,6 +186,7 @@ impl<'a> Pair<'a> {
     fn wrench(&mut self, pose: &Pose, part_pose: &Pose) -> Wrench {
         let relative = pose.relative_to(part_pose);
         match &self.last_query {
+            // Both may have moved: what counts is their relative pose, in whose frame the answer is kept.
             Some((last_pose, wrench)) if *last_pose == relative => wrench.turned(part_pose),
             _ => {
                 let wrench = self.probe.wrench(&relative);

@@ -103,8 +103,7 @@ fn edge_pose(u: f64) -> Pose {
     pose_at(cylindrical(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
 }
 
-/// Returns a pose of inside: `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u)
-/// n̂, −1)`.
+/// Returns a pose of inside: `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u) n̂, −1)`.
 fn bore_pose(u: f64) -> Pose {
     let phi = 16.0 * PI * u;
     let lean = 0.002 * (31.0 * u).sin() * radial(phi);

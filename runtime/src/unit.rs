@@ -26,8 +26,7 @@ impl Unit {
         }
     }
 
-    /// Returns the factor that converts a length in `self` to one in `other`; exactly 1 if the units are
-    /// equal.
+    /// Returns the factor that converts a length in `self` to one in `other`; exactly 1 if the units are equal.
     pub fn factor_to(self, other: Unit) -> f64 {
         self.millimetres() / other.millimetres()
     }

@@ -1,9 +1,11 @@
-//! The transform from a part to a tool's frame: the setup that all poses share, and the transform at one pose.
+//! The transform from a part to a tool's frame: the setup that all poses share, the transform at one pose, and its
+//! application to 16 points or boxes at a time, in SIMD lanes of `f32`.
 
-use super::Frame;
+use crate::bvh::{Frame, WIDTH};
 use crate::interval::Interval;
 use crate::pose::Pose;
 use crate::tool::{Symmetry, ToolInfo};
+use fearless_simd::{Simd, SimdBase, f32x16};
 
 /// The unit roundoff of `f32`.
 const ROUNDOFF: f64 = 1.0 / 16_777_216.0;
@@ -20,7 +22,7 @@ pub(crate) const SLABS: usize = 32;
 #[derive(Clone, Debug)]
 pub(crate) struct QuerySetup {
     /// The tool's unit of length in the part's unit.
-    pub(crate) length: f64,
+    length: f64,
     /// The tree's unit in the part's unit (`scale`) and in the tool's unit (`unit`).
     scale: f64,
     pub(crate) unit: f64,
@@ -81,6 +83,7 @@ impl QuerySetup {
         let (rotation, tip) = (pose.rotation(), pose.tip());
         let per_length = 1.0 / self.length;
         for axis in 0..3 {
+            // The difference first, and in `f64`: far from the world's origin nothing else is accurate.
             view.from_tip[axis] = frame.origin[axis] - tip[axis];
         }
         let from = view.from_tip;
@@ -103,14 +106,12 @@ impl QuerySetup {
 
 impl ReachBounds {
     fn new(info: &ToolInfo, margin: f64) -> ReachBounds {
-        let low = |v: f64| ((v - margin) as f32).next_down();
-        let high = |v: f64| ((v + margin) as f32).next_up();
         let (mut slabs, mut all) = ([[0f32; 3]; SLABS], 0);
         for (index, slab) in info.envelope.iter().enumerate() {
             let radius = slab.radius + margin;
             // Two more roundings: the conversion to `f32`, and the square in the comparison.
             let squared = ((radius * radius * (1.0 + 8.0 * ROUNDOFF)) as f32).next_up();
-            let entry = [low(slab.low), high(slab.high), squared];
+            let entry = [below(slab.low, margin), above(slab.high, margin), squared];
             // If there are more slabs than room, the last entry covers the rest.
             let slab: &mut [f32; 3] = &mut slabs[index.min(SLABS - 1)];
             *slab = if index < SLABS {
@@ -118,11 +119,14 @@ impl ReachBounds {
             } else {
                 [slab[0].min(entry[0]), slab[1].max(entry[1]), slab[2].max(entry[2])]
             };
+            // One bit per slab in use: a node passes on to its children those that reach it.
             all |= 1 << index.min(SLABS - 1);
         }
         let across = match info.symmetry {
             Symmetry::Revolved => None,
-            Symmetry::Solid { extent } => Some(extent.map(|side| [low(side.low), high(side.high)])),
+            Symmetry::Solid { extent } => {
+                Some(extent.map(|side| [below(side.low, margin), above(side.high, margin)]))
+            }
         };
         ReachBounds { slabs, all, across }
     }
@@ -131,6 +135,16 @@ impl ReachBounds {
         let across = self.across.iter().flatten().flatten();
         self.slabs.iter().flatten().chain(across).all(|v| v.is_finite())
     }
+}
+
+/// Returns a number of `f32` below `value - margin`.
+fn below(value: f64, margin: f64) -> f32 {
+    ((value - margin) as f32).next_down()
+}
+
+/// Returns a number of `f32` above `value + margin`.
+fn above(value: f64, margin: f64) -> f32 {
+    ((value + margin) as f32).next_up()
 }
 
 /// The transform from a part to the frame of a tool at a pose.
@@ -148,8 +162,7 @@ pub(crate) struct PoseTransform {
 }
 
 impl PoseTransform {
-    /// Returns the centre of a leaf relative to the tip, in the part's frame and unit. The input is in the tree's
-    /// unit.
+    /// Returns the centre of a leaf relative to the tip, in the part's frame and unit. The input is in the tree's unit.
     #[inline(always)]
     pub(crate) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.from_tip[axis] + self.scale * centre[axis])
@@ -166,7 +179,56 @@ impl PoseTransform {
     #[inline(always)]
     pub(crate) fn transform(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         let [a, b, c] = &self.rows;
-        let along = |row: &[f32; 3], from: f32| x * row[0] + y * row[1] + z * row[2] + from;
-        [along(a, self.origin[0]), along(b, self.origin[1]), along(c, self.origin[2])]
+        [
+            x * a[0] + y * a[1] + z * a[2] + self.origin[0],
+            x * b[0] + y * b[1] + z * b[2] + self.origin[1],
+            x * c[0] + y * c[1] + z * c[2] + self.origin[2],
+        ]
     }
+}
+
+/// Vectors in SIMD lanes, coordinate by coordinate: points, box centres or half extents.
+pub(crate) type LaneVector<V> = [V; 3];
+
+/// The index of each lane; added to `16 n` it is the index of a child of node `n`, or of an item of leaf `n`.
+pub(crate) const LANE_INDICES: [u32; WIDTH] =
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+const _: () = assert!(WIDTH == 16, "lanes are f32x16");
+
+// Every function is `#[inline(always)]`, and none takes a closure, as `array::map` would: a closure is compiled as a
+// function of its own, without the vector instructions that its caller enables.
+
+/// Loads sixteen vectors from the lists of their x, y and z coordinates.
+#[inline(always)]
+pub(crate) fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> LaneVector<f32x16<S>> {
+    [
+        f32x16::from_slice(simd, &lists[0]),
+        f32x16::from_slice(simd, &lists[1]),
+        f32x16::from_slice(simd, &lists[2]),
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(v: &LaneVector<f32x16<S>>, row: [f32; 3]) -> f32x16<S> {
+    v[0] * row[0] + v[1] * row[1] + v[2] * row[2]
+}
+
+/// Transforms sixteen vectors to the tool's frame and unit: `rows · v + origin`. `rows` is the rotation times the ratio
+/// of the units; `origin` is the transformed point that the vectors are relative to. Coordinates are rounded to
+/// nearest: the caller adds a margin, such as [`super::QuerySetup::margin`]. Lanes with a NaN stay NaN.
+#[inline(always)]
+pub(crate) fn transform<S: Simd>(
+    v: &LaneVector<f32x16<S>>,
+    rows: &[[f32; 3]; 3],
+    origin: [f32; 3],
+) -> LaneVector<f32x16<S>> {
+    [dot(v, rows[0]) + origin[0], dot(v, rows[1]) + origin[1], dot(v, rows[2]) + origin[2]]
+}
+
+/// Returns the half extents of sixteen boxes along one axis of the tool, in the tool's unit. `half` are their half
+/// extents in the tree's frame and unit, `row` is that axis's row of the transform. The sum is not rounded outward.
+#[inline(always)]
+pub(crate) fn extent<S: Simd>(half: &LaneVector<f32x16<S>>, row: [f32; 3]) -> f32x16<S> {
+    dot(half, [row[0].abs(), row[1].abs(), row[2].abs()])
 }

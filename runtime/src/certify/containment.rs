@@ -4,8 +4,8 @@
 use crate::certify::part::Location;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::tool_model::deepest::DeepestPoint;
-use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::field::DeepestPoint;
+use crate::certify::tool_model::section::Owners;
 use crate::certify::tool_model::{ToolModel, interior};
 use crate::id::SurfaceId;
 use crate::pose::Pose;
@@ -77,14 +77,15 @@ impl CorePoints {
     ) -> Option<Vec<Core>> {
         match tool_model {
             ToolModel::Profile(section) => {
-                let limit = |feature: usize| self.limits[tool_model.surface(feature).0];
-                let limits: Vec<f64> = (0..section.features.len()).map(limit).collect();
-                let witnesses = interior::witnesses(section, &limits, tolerance).into_iter();
-                let to_core = |witness: interior::CorePoint| {
-                    let [d, z] = witness.point;
-                    Core { point: [d, 0.0, z], surface: tool_model.surface(witness.feature) }
-                };
-                Some(witnesses.map(to_core).collect())
+                let surfaces = (0..section.features.len()).map(|k| tool_model.surface(k));
+                let limits: Vec<f64> = surfaces.map(|surface| self.limits[surface.0]).collect();
+                let witnesses = interior::witnesses(section, &limits, tolerance);
+                // Any azimuth will do: a tool with a profile is a solid of revolution.
+                let core_points = witnesses.iter().map(|witness| Core {
+                    point: [witness.point[0], 0.0, witness.point[1]],
+                    surface: tool_model.surface(witness.feature),
+                });
+                Some(core_points.collect())
             }
             ToolModel::Field(field) => {
                 // The tool is assumed to be connected. If not all limits are 0, the points of each region beyond its
@@ -93,6 +94,7 @@ impl CorePoints {
                 let mut core_points = Vec::new();
                 for (index, region) in info.regions.iter().enumerate() {
                     let limit = self.limits[region.surface.0];
+                    // A connected tool needs one point.
                     if limit.is_infinite() || (one && index > 0) {
                         continue;
                     }
@@ -131,6 +133,7 @@ impl QuerySetting<'_> {
             match self.bvh.locate(point) {
                 Location::Inside => return Containment::Inside(*surface),
                 Location::Unknown => return Containment::Unknown,
+                // Another piece may still be certain to be inside.
                 Location::Undecided => found = Containment::Undecided,
                 Location::Outside => {}
             }

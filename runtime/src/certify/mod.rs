@@ -10,20 +10,16 @@
 //! themselves. It traverses a bounding volume hierarchy, [`TriangleBvh`], by branch and bound, and prunes what
 //! cannot be deeper than the deepest point found so far. Depth is the distance to the surface that the tool's
 //! profile describes. Bounds come from the segments of the profile (`bounds/hull`). Where they leave a triangle
-//! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle/local`,
-//! `triangle/line_search`).
+//! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle`).
 //!
-//! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and
-//! every answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding`
-//! derives both.
+//! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and every
+//! answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding` derives both.
 
 mod bounds;
-mod clearance;
 mod containment;
 mod motion_depth;
 mod nearest;
 mod part;
-mod query;
 mod rounding;
 mod search;
 mod space;
@@ -46,19 +42,15 @@ use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::pose::Pose;
 use crate::tool::{Tool, ToolInfo};
-use clearance::ClearanceQuery;
 use containment::CorePoints;
 use fearless_simd::Level;
 use nalgebra::{Point3, Vector3};
-use query::DepthQuery;
-use search::{QuerySetting, SearchState};
+use search::{DepthQuery, QuerySetting, SearchState};
 use std::slice;
 use sweep::Sweeper;
 use tool_model::ToolModel;
-use tool_model::deepest::DeepestPoint;
-use tool_model::field::Field;
-use tool_model::owners::Owners;
-use tool_model::section::Section;
+use tool_model::field::DeepestPoint;
+use tool_model::section::Owners;
 use triangle::line_search::Goal;
 
 /// A tool at a part's triangles: it answers queries at one pose after another with proved bounds.
@@ -129,17 +121,11 @@ impl<'a> Certifier<'a> {
         let length = info.unit.factor_to(bvh.unit());
         let setup = QuerySetup::new(&bvh.frame, info, length);
         let part = f64::from(bvh.frame.size) * bvh.frame.scale / length;
-        let error = rounding::point_error_bound(info, part);
-        let (tool_model, error) = match Section::new(info, error) {
-            Some(section) => (ToolModel::Profile(section), error),
-            None => match Field::new(tool, level) {
-                Some(field) => {
-                    let error = field.error + field.steep * error;
-                    (ToolModel::Field(field), error)
-                }
-                None => return Err(NotCertifiable { tool: info.name.to_string() }),
-            },
+        let point_error = rounding::point_error_bound(info, part);
+        let Some(tool_model) = ToolModel::new(tool, level, point_error) else {
+            return Err(NotCertifiable { tool: info.name.to_string() });
         };
+        let error = tool_model.depth_error(point_error);
         let surfaces = info.surfaces.len();
         let (size, exact) = (info.size(), info.is_exact());
         let setting = QuerySetting { bvh, tool_model, size, exact, setup, level, length, error };
@@ -218,9 +204,8 @@ impl<'a> Certifier<'a> {
     }
 
     /// Computes the deepest penetration of the part's triangles into the tool. The interval is at most as wide as the
-    /// tolerance, in the part's unit, plus the rounding error bound. A tolerance below that bound, 0 or NaN is
-    /// replaced by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is
-    /// spent.
+    /// tolerance, in the part's unit, plus the rounding error bound. A tolerance below that bound, 0 or NaN is replaced
+    /// by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole_query, state, budget, .. } = self;
         penetration(setting, whole_query, state, pose, tolerance, *budget)
@@ -357,6 +342,101 @@ impl<'a> Certifier<'a> {
             query.limit >= 0.0
                 && state.depth(setting, query, [d, 0.0, z]) > query.limit + 2.0 * setting.error
         })
+    }
+}
+
+/// The queries for the distance of some surfaces: the depth of points inside the tool, and the distance of those
+/// outside.
+struct ClearanceQuery {
+    surfaces: Vec<SurfaceId>,
+    inside: DepthQuery,
+    outside: DepthQuery,
+}
+
+impl Certifier<'_> {
+    /// Computes the distance of the part's triangles from the tool. The interval is at most as wide as the tolerance,
+    /// in the part's unit, plus the rounding error bound. It is 0 in contact. For a tool inside the material it is
+    /// the distance to the part's surface.
+    pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
+        let Certifier { setting, whole_query, state, budget, .. } = self;
+        distance(setting, [whole_query, whole_query], state, pose, tolerance, *budget)
+    }
+
+    /// Computes the distance of the part's triangles from some surfaces of the tool. The interval is that of
+    /// [`Certifier::clearance`]. It is 0 if a point inside the tool is the nearest to one of these surfaces. For a point in a region of the tool that other surfaces own, it is the
+    /// distance from the nearest of these surfaces. Without any surfaces it is infinite. For a tool without a profile
+    /// the nearest surface is unknown (see [`Certifier::with_allowance`]): the lower bound is that of the whole tool,
+    /// the upper bound infinite.
+    ///
+    /// # Errors
+    /// If there is no such surface.
+    pub fn clearance_of(
+        &mut self,
+        surfaces: &[SurfaceId],
+        pose: &Pose,
+        tolerance: f64,
+    ) -> Result<Clearance, NoSuchSurface> {
+        for surface in surfaces {
+            self.checked(*surface)?;
+        }
+        if surfaces.is_empty() {
+            let distance = Interval::new(f64::INFINITY, f64::INFINITY);
+            return Ok(Clearance { distance, witness: None });
+        }
+        if let ToolModel::Field(_) = &self.setting.tool_model {
+            let Interval { low, .. } = self.clearance(pose, tolerance).distance;
+            return Ok(Clearance { distance: Interval::new(low, f64::INFINITY), witness: None });
+        }
+        let known = self.clearance_query.take().filter(|known| known.surfaces == surfaces);
+        let ClearanceQuery { inside, outside, .. } =
+            self.clearance_query.insert(known.unwrap_or_else(|| {
+                // Any limit below 0 makes a query for the distance from the surfaces themselves.
+                let [inside, outside] = [0.0, -1.0].map(|limit| {
+                    self.setting.depth_query(limit, |k| surfaces.contains(&SurfaceId(k)))
+                });
+                ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside }
+            }));
+        let queries = [&*inside, &*outside];
+        Ok(distance(&self.setting, queries, &mut self.state, pose, tolerance, self.budget))
+    }
+}
+
+/// Computes the distance of the nearest point, or 0 if one is inside.
+fn distance(
+    setting: &QuerySetting<'_>,
+    [inside, outside]: [&DepthQuery; 2],
+    state: &mut SearchState,
+    pose: &Pose,
+    tolerance: f64,
+    budget: u32,
+) -> Clearance {
+    // A depth is certain to be above 0 if it is found to be more than two errors: its own, and that by which slabs
+    // are widened.
+    let touch = 2.0 * setting.error;
+    let goal = Goal { min_depth: -touch, tolerance: touch, stop_depth: touch, budget };
+    state.inside(setting, inside, pose, goal);
+    if let Some(best) = &state.best {
+        let witness = setting.witness(best, pose);
+        let high = if state.search.is_done() { 0.0 } else { 2.0 * touch + state.search.skew };
+        let distance = Interval::new(0.0, high * setting.length);
+        return Clearance { distance, witness: Some(witness) };
+    }
+    // What was left open may be inside: then no distance above 0 is proved.
+    let unsure = state.search.has_open();
+    // The rounding error grows with the distance.
+    let error = setting.error + rounding::distance_error_bound(state.max_distance());
+    // Written so that a NaN tolerance is replaced.
+    let tolerance = (4.0 * error).max(tolerance / setting.length);
+    let [min_depth, stop_depth] = [f64::NEG_INFINITY, f64::INFINITY];
+    state.outside(setting, outside, pose, Goal { min_depth, tolerance, stop_depth, budget });
+    let more = error + state.search.skew;
+    let low = -state.search.threshold().max(state.search.open_bound) - more;
+    let low = if unsure { 0.0 } else { low.max(0.0) };
+    // For a point outside, a depth field gives only a lower bound of the distance.
+    let high = if setting.exact { -state.search.best + more } else { f64::INFINITY };
+    Clearance {
+        distance: Interval::new(low, high).scaled_by(setting.length),
+        witness: state.best.as_ref().map(|best| setting.witness(best, pose)),
     }
 }
 

@@ -1,21 +1,18 @@
-//! Queries about motions: clearance along the whole motion, and the greatest depth of a surface, with proved
-//! bounds.
+//! Queries about motions: clearance along the whole motion, and the greatest depth of a surface, with proved bounds.
 //!
-//! A sweep either finds a point that is too deep or proves that there is none. The greatest depth is therefore
-//! bounded by repeated sweeps for something deeper than the deepest point known. That point is found by hill
-//! climbing in time, from a few times of the motion and from the points that sweeps return. A sweep proceeds in
-//! order of time and is slow near points whose depth is close to its limit. It is therefore used last, and with
-//! no finer limit than pays off.
+//! A sweep either finds a point that is too deep or proves that there is none. The greatest depth is therefore bounded
+//! by repeated sweeps for something deeper than the deepest point known. That point is found by hill climbing in time,
+//! from a few times of the motion and from the points that sweeps return. A sweep proceeds in order of time and is slow
+//! near points whose depth is close to its limit. It is therefore used last, and with no finer limit than pays off.
 
 use super::containment::{Containment, CorePoints};
-use super::query::DepthQuery;
-use super::rounding;
 use super::search::{MARGIN, QuerySetting, SearchState};
 use super::sweep::{SweepEnd, SweepTask, Sweeper};
 use super::tool_model::ToolModel;
 use super::triangle::line_search::Goal;
 use super::verdict::{MotionDepth, MotionVerdict, Witness};
-use super::{Certifier, ContactVerdict, NoSuchSurface, penetration};
+use super::{Certifier, ContactVerdict, NoSuchSurface, penetration, rounding};
+use crate::certify::search::DepthQuery;
 use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::motion::Motion;
@@ -30,9 +27,8 @@ fn motion_error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
         + rounding::distance_error_bound(motion.displacement().norm() / setting.length)
 }
 
-/// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the
-/// spin.
-pub(super) fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
+/// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the spin.
+fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
     info.symmetry == Symmetry::Revolved || motion.has_spin()
 }
 
@@ -52,13 +48,12 @@ const CLIMB_DIVISOR: f64 = MIN_DEPTH_TOLERANCE;
 const MAX_ROUNDS: u32 = 16;
 
 /// A motion is probed at its beginning and at this number of later times before it is swept.
-pub(super) const INITIAL_TIMES: u32 = 8;
+const INITIAL_TIMES: u32 = 8;
 
 /// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
 const GAP_FRACTION: f64 = 0.125;
 
-/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion
-/// clear.
+/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion clear.
 const BUDGET_DIVISOR: u32 = 16;
 
 /// Time steps shorter than this fraction of a motion are not resolved.
@@ -107,17 +102,9 @@ impl Certifier<'_> {
         if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
             return MotionVerdict::Undecided(0.0);
         }
-        let Certifier {
-            setting,
-            info,
-            whole_query,
-            allowance_queries,
-            core_points,
-            budget,
-            sweeper,
-            ..
-        } = self;
-        let queries = allowance_queries.as_deref().unwrap_or(slice::from_ref(whole_query));
+        let setting = &self.setting;
+        let queries =
+            self.allowance_queries.as_deref().unwrap_or(slice::from_ref(&self.whole_query));
         let error = motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = (MIN_SWEEP_TOLERANCE * error).max(tolerance / setting.length);
@@ -128,7 +115,7 @@ impl Certifier<'_> {
         {
             let limit = query.limit;
             let task = SweepTask { setting, query, motion, limit, error, tolerance };
-            if let Some(end) = sweeper.run(&task, *budget)
+            if let Some(end) = self.sweeper.run(&task, self.budget)
                 && first.as_ref().is_none_or(|first| end.before(first))
             {
                 first = Some(end);
@@ -138,13 +125,17 @@ impl Certifier<'_> {
             Some(SweepEnd::Deeper { at, best }) => {
                 MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
+            // A proof is out of reach, but a contact later in the motion may still be found.
             Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
-            None => match setting.containment(info, core_points, &motion.pose(0.0), tolerance) {
-                Containment::Inside(surface) => MotionVerdict::Inside(surface),
-                Containment::Outside => MotionVerdict::Clear,
-                Containment::Unknown => MotionVerdict::SurfaceOnly,
-                Containment::Undecided => MotionVerdict::Undecided(0.0),
-            },
+            None => {
+                let start = motion.pose(0.0);
+                match setting.containment(self.info, &mut self.core_points, &start, tolerance) {
+                    Containment::Inside(surface) => MotionVerdict::Inside(surface),
+                    Containment::Outside => MotionVerdict::Clear,
+                    Containment::Unknown => MotionVerdict::SurfaceOnly,
+                    Containment::Undecided => MotionVerdict::Undecided(0.0),
+                }
+            }
         }
     }
 
@@ -202,54 +193,46 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Result<MotionDepth, NoSuchSurface> {
         let surface = self.checked(surface)?;
-        let Certifier {
-            setting,
-            info,
-            surface_queries,
-            surface_core_points,
-            state,
-            budget,
-            sweeper,
-            ..
-        } = self;
-        if !determines_pose(info, motion) {
+        if !determines_pose(self.info, motion) {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let new_query = |limit| setting.depth_query(limit, |other| other == surface);
+        let setting = &self.setting;
         let min_tolerance = MIN_DEPTH_TOLERANCE * motion_error(setting, motion);
         // Written so that a NaN tolerance is replaced.
         let tolerance = min_tolerance.max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
-        let inside_query = surface_queries[surface].get_or_insert_with(|| new_query(0.0));
+        let inside_query = self.surface_queries[surface]
+            .get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         let depth = allowed.max(0.0);
-        let core_points = match &mut surface_core_points[surface] {
+        let core_points = match &mut self.surface_core_points[surface] {
             Some((known, core_points)) if *known == depth => core_points,
             other => {
-                let surfaces = 0..info.surfaces.len();
+                let surfaces = 0..self.info.surfaces.len();
                 let limits = surfaces.map(|k| if k == surface { depth } else { f64::INFINITY });
                 &mut other.insert((depth, CorePoints::new(limits))).1
             }
         };
-        let budget = *budget;
         let mut search = MotionSearch {
             setting,
-            info,
+            info: self.info,
             core_points,
-            state,
-            sweeper,
+            state: &mut self.state,
+            sweeper: &mut self.sweeper,
             motion,
             query: inside_query,
             tolerance,
-            budget,
+            budget: self.budget,
         };
+        // With a margin, first whether the surface is in the part at all: that is the graver finding.
         let found = search.deepest(depth);
         if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
             return Ok(found);
         }
+        // Without a profile the distance of a surface from outside points is unknown.
         if let ToolModel::Field(_) = &setting.tool_model {
             return Ok(MotionDepth::Undecided(0.0));
         }
-        let margin_query = new_query(allowed);
+        let margin_query = setting.depth_query(allowed, |other| other == surface);
         search.query = &margin_query;
         Ok(match search.deepest(allowed) {
             MotionDepth::Within => found,
@@ -292,6 +275,8 @@ impl MotionSearch<'_, '_> {
                 Some(SweepEnd::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
                     let depth = Interval::new(allowed, allowed + self.tolerance);
+                    // A sweep proves no more than that the point exceeds the allowance; a probe at that time may tell
+                    // its depth.
                     let swept = DepthPeak { depth, at, witness };
                     self.peak_at(at).map_or(swept, |probed| deeper(swept, probed))
                 }
@@ -321,9 +306,11 @@ impl MotionSearch<'_, '_> {
             let limit = (low + 0.5 * gap).max(allowed);
             match self.sweep(limit, 0.5 * gap, self.budget / BUDGET_DIVISOR) {
                 None => return (best, high.max(any.min(limit + 0.5 * gap))),
+                // Near the limit a sweep is slow: a coarser limit needs less of the budget.
                 Some(SweepEnd::Spent { .. }) => gap_fraction *= 4.0,
                 Some(SweepEnd::Deeper { at, .. }) => match self.peak_at(at) {
                     Some(peak) if peak.depth.low > low => best = self.climb(peak),
+                    // The point found is no deeper at its time: the bound, not the depth, is too coarse.
                     _ => gap_fraction *= 4.0,
                 },
             }
@@ -334,6 +321,7 @@ impl MotionSearch<'_, '_> {
     /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.
     fn sweep(&mut self, limit: f64, tolerance: f64, budget: u32) -> Option<SweepEnd> {
         let MotionSearch { setting, query, motion, .. } = *self;
+        // Nothing outside the tool is at a depth of 0 or more.
         if self.query.limit < 0.0 && limit + tolerance >= 0.0 {
             return None;
         }
@@ -356,6 +344,7 @@ impl MotionSearch<'_, '_> {
     /// short to gain more than the tolerance.
     fn climb(&mut self, from: DepthPeak) -> DepthPeak {
         let QuerySetting { size, length, .. } = *self.setting;
+        // No depth changes faster than the farthest point of the tool moves.
         let pace = self.motion.displacement().norm() / length + self.motion.angle() * size;
         let mut best = from;
         let mut step = 0.5 / f64::from(INITIAL_TIMES);
@@ -383,6 +372,7 @@ impl MotionSearch<'_, '_> {
         let MotionSearch { setting, query, ref mut state, budget, .. } = *self;
         let pose = self.motion.pose(at);
         if query.limit >= 0.0 {
+            // `penetration` takes and returns lengths in the part's unit.
             let tolerance = tolerance * setting.length;
             let found = penetration(setting, query, state, &pose, tolerance, budget);
             let Interval { low, high } = found.depth;

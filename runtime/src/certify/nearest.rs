@@ -5,15 +5,13 @@ use crate::bvh::WIDTH;
 use crate::mesh::area_and_normal;
 use nalgebra::{Point3, Vector3};
 
-/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a
-/// bound.
+/// A search for nearest triangles. It is fast for points near the one before: the triangle found last gives a bound.
 #[derive(Debug)]
 pub struct NearestTriangle<'a> {
     bvh: &'a TriangleBvh,
     /// The triangle found last, as an index in the tree's order.
     last: usize,
-    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared
-    /// distance.
+    /// Nodes that may hold a nearer triangle: their levels and indices, and lower bounds on the squared distance.
     stack: Vec<(f64, usize, usize)>,
 }
 
@@ -28,12 +26,11 @@ impl NearestTriangle<'_> {
     pub fn distance(&mut self, point: Point3<f64>) -> f64 {
         let frame = &self.bvh.frame;
         let p = frame.inside(point.into());
-        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at
-        // most 1.
+        // Boxes and the point were converted with errors of a few units of roundoff of their coordinates, at most 1.
         let farthest = p.iter().fold(1.0, |farthest: f64, part| farthest.max(part.abs()));
         let margin = 16.0 * f64::EPSILON * farthest;
-        let corners = |triangle: usize| self.bvh.corners[triangle].map(Point3::from);
-        let mut nearest = squared_distance(point, corners(self.last));
+        let bvh = self.bvh;
+        let mut nearest = squared_distance(point, bvh.corners[self.last].map(Point3::from));
         self.stack.clear();
         self.stack.push((0.0, 0, 0));
         while let Some((low, level, index)) = self.stack.pop() {
@@ -43,7 +40,7 @@ impl NearestTriangle<'_> {
             let Some(boxes) = self.bvh.levels.get(level) else {
                 let first = index * WIDTH;
                 for triangle in first..first + self.bvh.children(level, index) {
-                    let corners = corners(triangle);
+                    let corners = bvh.corners[triangle].map(Point3::from);
                     if squared_distance_of_box(point, &corners) < nearest {
                         let distance = squared_distance(point, corners);
                         if distance < nearest {

@@ -27,29 +27,28 @@
 //!
 //! A triangle whose corners move has all of its points moved by no more than the corners, and depth changes by no
 //! more than the displacement. An upper bound has all of these errors, `61 uM + 5 uW + 18 uS`, which is less than
-//! `105 uS + 115 uP`. [`place`] allows 128 u for both.
+//! `105 uS + 115 uP`. [`point_error_bound`] allows 128 u for both.
 //!
 //! **Motions.** A motion turns by the exact fraction of its stored angle, starting from the rotation nearest to
 //! its stored start. In norms: a matrix whose `RᵀR` is the identity to 6u in each entry (every start, frame and
 //! pose) is within 9u of a rotation. A rounded angle of less than half a turn, with its sine and cosine, adds 5u.
 //! Columns that are sums of two products add 4u, and the step toward the nearest rotation adds 7u of its own. The
-//! total is 25 uM, less than `36 uS + 44 uP`: half of [`place`], which has 128 u of each. With spin the frame
+//! total is 25 uM, less than `36 uS + 44 uP`: half of [`point_error_bound`], which has 128 u of each. With spin the frame
 //! adds 9u and its product, sums of three products, another 9u: 43 uM, less than `61 uS + 75 uP`. A whole
-//! [`place`] is allowed for that.
+//! [`point_error_bound`] is allowed for that.
 //!
-//! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. For the two shorter edges
-//! that is at most the shortest edge, `s`, times the longest. The normal is therefore off by an angle
-//! `η ≤ 6u s / h`, where `h` is the height over the longest edge. Let `x` be a point of the true meridian at the
-//! distance `d` from the axis, and let the triangle be inclined by `θ`. The azimuth of the normal is off by
-//! `η / sin θ`. If `sin θ ≥ 1/2`, the plane through the axis at the wrong azimuth passes `x` at a distance of
-//! `2 η d`. If not, rotate `x` about the axis to that azimuth. It stays at the distance `d`, and its height in
-//! the triangle's plane changes by at most `2 tan θ · d`, and by `tan θ · d · α² / 2` after a small turn `α`: by
-//! at most `2 η d` in total. If it leaves the triangle on the way, it does so through an edge, which is searched
-//! too. The computed plane passes that point at another `2 η r`, where `r` is the largest distance of a corner
-//! from the tip. Some point of the computed meridian or of an edge is therefore within `4 η r`, the [`skew`], of
-//! a point that is as deep as `x`. Points within the skew of an owned point count as owned. No point of a
-//! triangle is farther than its [`height`] from its longest edge, which is searched too. Where the height is less
-//! than the skew, no meridian is used.
+//! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. For the two shorter edges that is
+//! at most the shortest edge, `s`, times the longest. The normal is therefore off by an angle `η ≤ 6u s / h`, where `h`
+//! is the height over the longest edge. Let `x` be a point of the true meridian at the distance `d` from the axis, and
+//! let the triangle be inclined by `θ`. The azimuth of the normal is off by `η / sin θ`. If `sin θ ≥ 1/2`, the plane
+//! through the axis at the wrong azimuth passes `x` at a distance of `2 η d`. If not, rotate `x` about the axis to that
+//! azimuth. It stays at the distance `d`, and its height in the triangle's plane changes by at most `2 tan θ · d`, and
+//! by `tan θ · d · α² / 2` after a small turn `α`: by at most `2 η d` in total. If it leaves the triangle on the way,
+//! it does so through an edge, which is searched too. The computed plane passes that point at another `2 η r`, where
+//! `r` is the largest distance of a corner from the tip. Some point of the computed meridian or of an edge is therefore
+//! within `4 η r`, the [`skew`], of a point that is as deep as `x`. Points within the skew of an owned point count as
+//! owned. No point of a triangle is farther than its [`height`] from its longest edge, which is searched too. Where the
+//! height is less than the skew, no meridian is used.
 
 use crate::tool::ToolInfo;
 

@@ -1,20 +1,104 @@
-//! The branch-and-bound search of a part's triangles, and the state that it keeps between queries.
+//! Queries for the depth of some surfaces of a tool in a part, or for their distance from it, and the branch-and-bound
+//! search of the part's triangles that answers them. The search keeps its state between queries.
 
 use crate::bvh::{PoseTransform, QuerySetup};
 use crate::certify::bounds::batch::Batch;
-use crate::certify::bounds::descent::Descent;
+use crate::certify::bounds::descent::{BoundedTree, Descent};
+use crate::certify::bounds::hull::Hull;
+use crate::certify::bounds::shell::Shell;
 use crate::certify::part::{TriangleBvh, flat};
-use crate::certify::query::DepthQuery;
 use crate::certify::space::Point;
 use crate::certify::tool_model::ToolModel;
-use crate::certify::tool_model::field::Scratch;
+use crate::certify::tool_model::field::{Field, Scratch};
+use crate::certify::tool_model::section::{Owners, Section};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
-use crate::certify::triangle::local::{LocalTriangle, nearest};
+use crate::certify::triangle::{LocalTriangle, nearest};
 use crate::certify::verdict::Witness;
 use crate::pose::Pose;
 use crate::tool::LANES;
 use fearless_simd::Level;
 use nalgebra::Vector3;
+
+/// A set of surfaces and the structures that bound their depth. Lengths are in the tool's unit.
+pub(crate) struct DepthQuery {
+    pub(crate) owners: Owners,
+    pub(crate) hull: Hull<f32>,
+    pub(crate) exact: Hull<f64>,
+    shell: Shell,
+    /// The allowed depth of the owners. If negative, its magnitude is the distance that they have to keep.
+    pub(crate) limit: f64,
+}
+
+impl DepthQuery {
+    /// A query for the features of some surfaces. `margin` is the rounding error of a point in `f32`.
+    fn new(
+        section: &Section,
+        margin: f64,
+        limit: f64,
+        surfaces: impl Fn(usize) -> bool,
+    ) -> DepthQuery {
+        if limit < 0.0 {
+            let owners = Owners::near(section, surfaces);
+            return DepthQuery {
+                hull: Hull::holding(section, &owners, margin),
+                exact: Hull::holding(section, &owners, section.error),
+                shell: Shell::new(section, &owners),
+                owners,
+                limit,
+            };
+        }
+        let owners = Owners::of(section, surfaces);
+        // The search begins two errors below the limit; the zones have room for the errors of heights and distances, too.
+        let zones = owners.zones(section, limit - 8.0 * section.error);
+        DepthQuery {
+            hull: Hull::new(section, &zones, margin),
+            exact: Hull::new(section, &zones, section.error),
+            shell: Shell::new(section, &owners),
+            owners,
+            limit,
+        }
+    }
+
+    /// A query for some surfaces of a tool that is known by its depth field. `errors` are the rounding errors of a
+    /// point in `f32` and in `f64`.
+    fn of_field(
+        field: &Field<'_>,
+        errors: [f64; 2],
+        limit: f64,
+        surfaces: impl Fn(usize) -> bool,
+    ) -> DepthQuery {
+        let info = field.info();
+        DepthQuery {
+            owners: Owners::of_regions(info, |_, region| surfaces(region.surface.0)),
+            hull: Hull::about(info, field.steep, errors[0]),
+            exact: Hull::about(info, field.steep, errors[1]),
+            shell: Shell::about(info),
+            limit,
+        }
+    }
+
+    /// Returns the queries that check the allowances of all surfaces, given in the order of the tool's list: one query
+    /// per allowance, for all surfaces that have it. The largest allowance comes first; infinite ones need no query.
+    pub(crate) fn all(setting: &QuerySetting<'_>, allowed: &[f64]) -> Vec<DepthQuery> {
+        let depths =
+            allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());
+        let gaps = allowed.iter().copied().filter(|allowed| *allowed < 0.0);
+        let mut limits: Vec<f64> = depths.chain(gaps).collect();
+        limits.sort_by(f64::total_cmp);
+        limits.dedup();
+        // The largest first: a deep contact is found at once, and ends the check.
+        limits
+            .into_iter()
+            .rev()
+            .map(|limit| {
+                setting.depth_query(limit, |surface| {
+                    let allowed = allowed[surface];
+                    if limit < 0.0 { allowed == limit } else { allowed.max(0.0) == limit }
+                })
+            })
+            .collect()
+    }
+}
 
 /// The data that all queries of a tool at a part share. Lengths are in the tool's unit.
 pub(crate) struct QuerySetting<'a> {
@@ -73,7 +157,7 @@ impl QuerySetting<'_> {
 /// The state and the result of a search.
 #[derive(Default)]
 pub(crate) struct SearchState {
-    pub(crate) view: PoseTransform,
+    view: PoseTransform,
     pub(crate) search: DepthSearch,
     pub(crate) descent: Descent,
     batch: Batch,
@@ -82,6 +166,13 @@ pub(crate) struct SearchState {
     pub(crate) best: Option<DeepestCandidate>,
     /// The triangle at which the last query ended.
     last: Option<u32>,
+}
+
+/// The pose of the tool, and the transform to the tool's frame there.
+#[derive(Clone, Copy)]
+struct PlacedTool<'a> {
+    pose: &'a Pose,
+    view: &'a PoseTransform,
 }
 
 /// The depth bounds of the part's flat faces, computed on first use in a query.
@@ -96,6 +187,7 @@ struct Faces {
 impl Faces {
     fn begin(&mut self, bvh: &TriangleBvh) {
         self.generation = self.generation.wrapping_add(1);
+        // A part with other faces, or a count that begins again at 0, would find bounds of other queries.
         if self.generation == 0 || self.cached.len() != bvh.coplanar_faces.faces.len() {
             self.generation = 1;
             self.cached.clear();
@@ -108,9 +200,10 @@ impl Faces {
         &mut self,
         of: &QuerySetting<'_>,
         query: &DepthQuery,
-        (pose, view): (&Pose, &PoseTransform),
+        placed: PlacedTool<'_>,
         faces: &[u32],
     ) -> f64 {
+        // A point of the face may be off the rectangle's plane by the tolerance, and deeper by as much.
         let more = of.tool_model.lipschitz() * flat(&of.bvh.frame) / of.length;
         let mut max_depth = f64::NEG_INFINITY;
         for indices in faces.chunks(LANES / 2) {
@@ -120,14 +213,19 @@ impl Faces {
                 if generation == self.generation {
                     max_depth = max_depth.max(depth);
                 } else {
-                    self.batch.rectangle(&of.bvh.coplanar_faces.faces[*face as usize], pose, *face);
+                    self.batch.rectangle(
+                        &of.bvh.coplanar_faces.faces[*face as usize],
+                        placed.pose,
+                        *face,
+                    );
                 }
             }
             if self.batch.len() == 0 {
                 continue;
             }
-            self.batch.turn(view);
+            self.batch.turn(placed.view);
             self.batch.bound(of.level, &query.exact, f64::NEG_INFINITY);
+            // Two triangles per rectangle.
             for half in (0..self.batch.len()).step_by(2) {
                 let depth = self.batch.bounds[half].max(self.batch.bounds[half + 1]) + more;
                 self.cached[self.batch.index(half) as usize] = (self.generation, depth);
@@ -176,6 +274,7 @@ impl SearchState {
         pose: &Pose,
         goal: Goal,
     ) {
+        // Distances in `f32` err by a few units of roundoff, 2^-24, of their size.
         let margin = of.margin() + self.max_distance() / f64::from(1 << 20);
         self.best = None;
         self.search.begin(goal);
@@ -226,6 +325,7 @@ impl SearchState {
             if bound <= self.search.threshold() || !self.search.spend(bound) {
                 continue;
             }
+            // Bounds in `f32` may be too low by the margin.
             let threshold = (self.search.threshold() - margin) as f32;
             if node.is_triangle(of.bvh) {
                 let indices = self.descent.triangles(of.bvh, node, threshold);
@@ -234,8 +334,8 @@ impl SearchState {
                 {
                     indices.retain(|index| {
                         of.bvh.coplanar_faces.of_triangle(*index).is_none_or(|face| {
-                            let view = (pose, &self.view);
-                            self.faces.depth(of, query, view, &[face]) > self.search.threshold()
+                            let placed = PlacedTool { pose, view: &self.view };
+                            self.faces.depth(of, query, placed, &[face]) > self.search.threshold()
                         })
                     });
                 }
@@ -250,12 +350,13 @@ impl SearchState {
                 continue;
             }
             let (level, bvh, view) = (of.level, of.bvh, &self.view);
+            let placed = PlacedTool { pose, view };
             // The plane of a node may decide where `f32` or the boxes cannot.
             opened += 1;
             if let Side::Inside = side
                 && opened > FACE_CHECK_NODES
                 && let Some(faces) = node.faces(bvh)
-                && self.faces.depth(of, query, (pose, &self.view), faces) <= self.search.threshold()
+                && self.faces.depth(of, query, placed, faces) <= self.search.threshold()
             {
                 continue;
             }
@@ -269,16 +370,24 @@ impl SearchState {
             let descent = &mut self.descent;
             match side {
                 _ if margin > MARGIN => descent.open_all(bvh, node),
-                Side::Inside => descent.open(level, (bvh, &query.hull, view), node, threshold),
-                Side::Outside => descent.open(level, (bvh, &query.shell, view), node, threshold),
+                Side::Inside => {
+                    let tree = BoundedTree { bvh, bounds: &query.hull, view };
+                    descent.open(level, &tree, node, threshold);
+                }
+                Side::Outside => {
+                    let tree = BoundedTree { bvh, bounds: &query.shell, view };
+                    descent.open(level, &tree, node, threshold);
+                }
             }
         }
         if let ToolModel::Field(field) = &of.tool_model {
             let outside = matches!(side, Side::Outside);
             let scratch = &mut self.scratch;
+            // Only now, since all triangles share one queue: the deepest piece of any of them comes first.
             let found = field.search_triangles(&mut self.search, scratch, &query.owners, outside);
             self.best = found.or(self.best);
         }
+        // Without contact nothing is remembered: the next query begins at the root.
         self.last = self.best.map(|best| best.index);
     }
 
@@ -353,8 +462,8 @@ impl SearchState {
         // Points beside the computed meridian may be deeper by the skew. Contact checks start lower by two errors,
         // which covers a skew up to one error; a larger skew lowers the threshold for this triangle.
         let best = self.best;
-        let cached = triangle.skew <= of.error;
-        let before = if cached { None } else { self.search.lower(triangle.skew) };
+        let is_covered = triangle.skew <= of.error;
+        let before = if is_covered { None } else { self.search.lower(triangle.skew) };
         for line in triangle.search_lines().chain(levels) {
             let found = match side {
                 Side::Inside => self.search.inside(section, owners, triangle.skew, &line),

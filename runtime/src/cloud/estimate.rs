@@ -2,8 +2,8 @@
 //! cell is assumed flat, in the plane through the point perpendicular to its normal.
 
 use super::SAME_SIDE;
-use super::point_grid::NeighbourBvh;
-use super::voronoi::{Corner, EDGE, area, clip};
+use super::pieces::{Corner, EDGE, area, clip};
+use crate::cloud::neighbours::{Neighbour, NeighbourBvh};
 use crate::parallel;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -11,8 +11,7 @@ use std::ops::Range;
 
 /// Number of neighbours that define the local spacing.
 const NEIGHBOURS: usize = 8;
-/// Radii of the initial cell, in spacings: the normal one, and the one used where the cell shows that
-/// the surface ends.
+/// Radii of the initial cell, in spacings: the normal one, and the one used where the cell shows that the surface ends.
 const CELL_RADII: [f64; 2] = [2.0, 0.7];
 /// Cosine of the angle between normals (45°) below which a neighbour lies beyond an edge.
 const EDGE_COSINE: f64 = 0.7;
@@ -21,8 +20,7 @@ const POLYGON_CORNERS: usize = 16;
 /// Positions per parallel task.
 const POINTS_PER_TASK: usize = 1 << 10;
 
-/// Maximum number of distinct normals examined at a position; if there are more, a subsample represents
-/// all.
+/// Maximum number of distinct normals examined at a position; if there are more, a subsample represents all.
 const MAX_SIDES: usize = 1 << 10;
 /// Maximum weight of a position with many points in the estimate of the spacing.
 const MAX_SHARED: usize = 16;
@@ -36,16 +34,17 @@ pub(super) fn estimate(
     let distinct = DistinctPoints::of(points, normals);
     let positions = &distinct.positions;
     let tree = NeighbourBvh::new(positions);
-    let weight = |index: u32| distinct.count(index).min(MAX_SHARED);
     let lists = parallel::ranges(positions.len(), POINTS_PER_TASK, |range| {
         let (mut neighbours, mut cell) = (vec![], SideCell::default());
         let (mut areas, mut max_radius) = (Vec::with_capacity(range.len()), Some(0f64));
         for index in range {
             let (position, site) = (positions[index], index as u32);
-            let neighbour_count = (weight(site) * (1 + NEIGHBOURS)).min(points.len());
-            let spacing = (PI * tree.distance_to_weight(position.into(), neighbour_count, weight)
-                / NEIGHBOURS as f64)
-                .sqrt();
+            let neighbour_count = (distinct.weight(site) * (1 + NEIGHBOURS)).min(points.len());
+            let squared = tree.distance_to_weight(position.into(), neighbour_count, |index| {
+                distinct.weight(index)
+            });
+            // The area per point of a disc that holds so many neighbours.
+            let spacing = (PI * squared / NEIGHBOURS as f64).sqrt();
             let max_distance = 2.0 * CELL_RADII[0] * spacing;
             tree.within(position.into(), max_distance, &mut neighbours);
             for side in distinct.sides(site) {
@@ -111,13 +110,13 @@ impl SideCell {
         distinct: &DistinctPoints,
         site: u32,
         side: &Side,
-        neighbours: &[(f64, u32)],
+        neighbours: &[Neighbour],
         spacing: f64,
     ) {
         for radius in CELL_RADII {
             self.corners.clear();
             self.corners.extend(polygon(&side.normal, radius * spacing));
-            for &(squared, neighbour) in neighbours {
+            for &Neighbour { squared, index: neighbour } in neighbours {
                 let mut sides = distinct.sides(neighbour).iter();
                 if squared > 0.0 && sides.any(|other| side.faces_same_way(other)) {
                     let [from, to] = [site, neighbour].map(|k| distinct.positions[k as usize]);
@@ -125,7 +124,7 @@ impl SideCell {
                     clip(corners, clipped, to - from, squared / 2.0, neighbour);
                 }
             }
-            if self.corners.iter().all(|(_, neighbour)| *neighbour != EDGE) {
+            if self.corners.iter().all(|corner| corner.neighbour != EDGE) {
                 return;
             }
         }
@@ -133,20 +132,22 @@ impl SideCell {
 
     /// Returns the largest distance of a corner from the position.
     fn radius(&self) -> f64 {
-        self.corners.iter().map(|(corner, _)| corner.norm()).fold(0.0, f64::max)
+        self.corners.iter().map(|corner| corner.at.norm()).fold(0.0, f64::max)
     }
 }
 
 impl DistinctPoints {
     fn of(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> DistinctPoints {
-        // Zero has two bit patterns.
-        let bits = |part: f64| (part + 0.0).to_bits();
-        let key = |index: u32| {
-            let (position, normal) = (points[index as usize], normals[index as usize]);
-            [position.x, position.y, position.z, normal.x, normal.y, normal.z].map(bits)
-        };
-        let mut keyed: Vec<([u64; 6], u32)> =
-            (0..points.len() as u32).map(|index| (key(index), index)).collect();
+        let mut keyed: Vec<([u64; 6], u32)> = points
+            .iter()
+            .zip(normals)
+            .zip(0u32..)
+            .map(|((position, normal), index)| {
+                let parts = [position.x, position.y, position.z, normal.x, normal.y, normal.z];
+                // Zero has two bit patterns.
+                (parts.map(|part| (part + 0.0).to_bits()), index)
+            })
+            .collect();
         parallel::sort(&mut keyed);
         let mut groups: Vec<&[([u64; 6], u32)]> =
             keyed.chunk_by(|a, b| a.0[..3] == b.0[..3]).collect();
@@ -184,11 +185,16 @@ impl DistinctPoints {
 
     /// Returns whether a neighbour within the larger radius of a cell lies beyond an edge, but not on the opposite side of
     /// something thin. The neighbours are in the order of their distances.
-    fn is_near_edge(&self, side: &Side, neighbours: &[(f64, u32)], spacing: f64) -> bool {
+    fn is_near_edge(&self, side: &Side, neighbours: &[Neighbour], spacing: f64) -> bool {
         let max_squared = (CELL_RADII[0] * spacing).powi(2);
-        let near = neighbours.iter().take_while(|(squared, _)| *squared < max_squared);
-        near.flat_map(|(_, neighbour)| self.sides(*neighbour))
+        let near = neighbours.iter().take_while(|neighbour| neighbour.squared < max_squared);
+        near.flat_map(|neighbour| self.sides(neighbour.index))
             .any(|other| (SAME_SIDE..EDGE_COSINE).contains(&other.normal.dot(&side.normal)))
+    }
+
+    /// Returns the number of points at a position, as it counts in the estimate of the spacing.
+    fn weight(&self, index: u32) -> usize {
+        self.count(index).min(MAX_SHARED)
     }
 
     /// Returns the number of points at a position.
@@ -198,14 +204,14 @@ impl DistinctPoints {
     }
 }
 
-/// Returns the corners of a regular polygon around a circle of the given radius, perpendicular to a
-/// normal.
+/// Returns the corners of a regular polygon around a circle of the given radius, perpendicular to a normal.
 fn polygon(normal: &Vector3<f64>, radius: f64) -> impl Iterator<Item = Corner> {
+    // The axis of the least component is the farthest from being parallel to the normal.
     let tangent = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
     let other = normal.cross(&tangent);
     let out = radius / (PI / POLYGON_CORNERS as f64).cos();
     (0..POLYGON_CORNERS).map(move |corner| {
         let (sin, cos) = (TAU * corner as f64 / POLYGON_CORNERS as f64).sin_cos();
-        (out * (cos * tangent + sin * other), EDGE)
+        Corner { at: out * (cos * tangent + sin * other), neighbour: EDGE }
     })
 }

@@ -1,48 +1,34 @@
-//! Weighted point clouds on a part's surface: positions, outward normals, and the area that each point
-//! represents.
+//! Weighted point clouds on a part's surface: positions, outward normals, and the area that each point represents.
 
 mod blue_noise;
-mod cells;
-mod decimate;
-mod duplicates;
-mod error;
 mod estimate;
-mod lists;
-mod method;
-#[cfg(test)]
-mod odd;
+mod neighbours;
 mod pieces;
-mod point_grid;
 mod sampling;
 mod voronoi;
 
-pub use error::CloudError;
-pub use method::{Sampling, SamplingMethod};
+pub use sampling::{Sampling, SamplingMethod};
 
 use crate::id::TriangleId;
-use crate::mesh::{Mesh, OrientedPoints, area_and_normal, is_valid_coordinate};
+use crate::mesh::{LARGEST_COORDINATE, Mesh, OrientedPoints, area_and_normal, is_valid_coordinate};
 use crate::unit::Unit;
-use cells::Cells;
 use nalgebra::{Point3, Vector3};
 use pieces::Surface;
 use sampling::AreaSampler;
-use voronoi::VoronoiSites;
+use voronoi::{Cells, VoronoiSites};
 
-/// Cosine of the angle between normals (107°) below which two points lie on opposite sides of something
-/// thin.
+/// Cosine of the angle between normals (107°) below which two points lie on opposite sides of something thin.
 const SAME_SIDE: f64 = -0.3;
 
-/// Largest deviation of a given normal's norm from 1: files round normals to a few decimals. A normal
-/// within this tolerance is normalised, any other is refused. The value is a choice of what counts as a
-/// mistake.
+/// Largest deviation of a given normal's norm from 1: files round normals to a few decimals. A normal within this
+/// tolerance is normalised, any other is refused. The value is a choice of what counts as a mistake.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
 
 /// A weighted point cloud on a part's surface.
 ///
-/// All four lists have the same, non-zero length. Points are in the world frame and in [`Cloud::unit`].
-/// Normals are unit vectors out of the material. Triangles are the ids of the mesh's triangles that the
-/// points lie on. Weights are areas, in the square of the unit, so that `Σ weight · f(point)`
-/// approximates the integral of f over the surface.
+/// All four lists have the same, non-zero length. Points are in the world frame and in [`Cloud::unit`]. Normals are
+/// unit vectors out of the material. Triangles are the ids of the mesh's triangles that the points lie on. Weights are
+/// areas, in the square of the unit, so that `Σ weight · f(point)` approximates the integral of f over the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloud {
     points: Vec<Point3<f64>>,
@@ -53,12 +39,10 @@ pub struct Cloud {
     covering_radius: Option<CoveringRadius>,
 }
 
-/// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during
-/// sampling.
+/// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during sampling.
 pub const MAX_BLUE_NOISE_POINTS: usize = 20_000_000;
 
-/// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the
-/// cloud.
+/// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CoveringRadius {
@@ -66,6 +50,96 @@ pub struct CoveringRadius {
     pub radius: f64,
     /// `true` if the radius is proved for a mesh, `false` if it is estimated from the points alone.
     pub proved: bool,
+}
+
+/// Reasons why lists do not form a cloud, or why a requested cloud cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CloudError {
+    /// The cloud would have no points.
+    #[error("the cloud has no point: ask for one at least")]
+    Empty,
+    /// There are more points than 32-bit indices can number.
+    #[error("{count} points are more than 32-bit indices can tell apart: ask for fewer")]
+    TooMany {
+        /// The requested number of points.
+        count: usize,
+    },
+    /// There are more points than [`MAX_BLUE_NOISE_POINTS`].
+    #[error(
+        "{count} points are more than {MAX_BLUE_NOISE_POINTS}, the most that are spread evenly: take random ones"
+    )]
+    TooManyBlueNoise {
+        /// The requested number of points.
+        count: usize,
+    },
+    /// The covering radius is not a positive finite length.
+    #[error("{radius} is no covering radius: give a finite length above 0")]
+    Radius {
+        /// The requested covering radius.
+        radius: f64,
+    },
+    /// The covering radius needs too many points.
+    #[error(
+        "a covering radius of {radius} needs about {needed:.1e} points, more than {limit}, \
+         which give one of about {attainable:.2e}: ask for that, or query the triangles \
+         (`certify`), between which nothing lies"
+    )]
+    TooFine {
+        /// The requested covering radius.
+        radius: f64,
+        /// The approximate number of points it needs.
+        needed: f64,
+        /// The maximum number of points.
+        limit: usize,
+        /// The approximate covering radius of that maximum number of points.
+        attainable: f64,
+    },
+    /// The lists have different lengths.
+    #[error(
+        "{points} points, {normals} normals, {triangles} triangle ids and {weights} weights: give \
+         one of each for every point"
+    )]
+    Lengths {
+        /// The number of points.
+        points: usize,
+        /// The number of normals.
+        normals: usize,
+        /// The number of triangle ids.
+        triangles: usize,
+        /// The number of weights.
+        weights: usize,
+    },
+    /// A coordinate is NaN, infinite or too large.
+    #[error(
+        "point {point} has the coordinate {coordinate}: coordinates must be finite and within \
+         {LARGEST_COORDINATE:e}"
+    )]
+    Coordinate {
+        /// The point's index.
+        point: usize,
+        /// The coordinate.
+        coordinate: f64,
+    },
+    /// A normal is not a unit vector.
+    #[error(
+        "the normal of point {point} has norm {norm}: give a unit vector (within \
+         {NORMAL_TOLERANCE} of 1)"
+    )]
+    Normal {
+        /// The point's index.
+        point: usize,
+        /// The normal's norm; NaN if a component is NaN.
+        norm: f64,
+    },
+    /// A weight is not a valid area.
+    #[error("the weight of point {point} is {weight}: give a finite area, 0 or more")]
+    Weight {
+        /// The point's index.
+        point: usize,
+        /// The weight.
+        weight: f64,
+    },
 }
 
 impl Cloud {
@@ -119,6 +193,7 @@ impl Cloud {
         loop {
             let required_count = area * (ratio / radius).powi(2);
             if required_count > max_count as f64 {
+                // The radius falls with the square root of the area per point.
                 let attainable = ratio * (area / max_count as f64).sqrt();
                 return Err(CloudError::TooFine {
                     radius,
@@ -129,6 +204,7 @@ impl Cloud {
             }
             let count = (required_count.ceil() as usize).max(1);
             let mut cloud = Cloud::sample(mesh, Sampling { count, ..sampling })?;
+            // A Monte Carlo cloud keeps its equal weights, but its radius is needed here.
             if cloud.covering_radius.is_none() {
                 cloud.covering_radius = cloud.clone().with_voronoi_weights(mesh).covering_radius;
             }
@@ -143,10 +219,9 @@ impl Cloud {
         }
     }
 
-    /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material.
-    /// Without given areas, these are estimated from the distances between neighbours. The [covering
-    /// radius](Cloud::covering_radius) is always estimated that way. Without given triangles, each point has
-    /// its own.
+    /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material. Without given
+    /// areas, these are estimated from the distances between neighbours. The [covering radius](Cloud::covering_radius)
+    /// is always estimated that way. Without given triangles, each point has its own.
     ///
     /// # Errors
     /// See [`Cloud::new`].
@@ -158,6 +233,7 @@ impl Cloud {
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
         let mut cloud = Cloud::new(points, normals, triangles, weights, unit)?;
         let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
+        // Between points without a mesh the surface may do anything.
         cloud.covering_radius = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {
             cloud.weights = areas;
@@ -190,10 +266,9 @@ impl Cloud {
         let sampler = AreaSampler::of(mesh);
         let mut cloud = Cloud::with_capacity(count.min(self.len()), self.unit);
         for index in
-            decimate::decimate(&self.points, &self.normals, sampler.distinct_area, count.max(1))
+            blue_noise::decimate(&self.points, &self.normals, sampler.distinct_area, count.max(1))
         {
-            let index = index as usize;
-            cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
+            cloud.push_of(self, index as usize);
         }
         let surface = Surface::new(mesh, &sampler, cloud.len());
         cloud.weighted_on(&surface)
@@ -276,6 +351,11 @@ impl Cloud {
         self.normals.push(normal);
         self.triangles.push(triangle);
         self.weights.push(weight);
+    }
+
+    /// Appends a point of another cloud, without weight.
+    fn push_of(&mut self, other: &Cloud, index: usize) {
+        self.push(other.points[index], other.normals[index], other.triangles[index], 0.0);
     }
 
     /// Returns the points, in the world frame and in [`Cloud::unit`].

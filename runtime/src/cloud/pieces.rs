@@ -11,13 +11,12 @@
 //! pieces. Results computed from the pieces hold for pieces of any size.
 
 use super::sampling::AreaSampler;
-use super::voronoi::{Corner, EDGE, area, clip};
 use crate::mesh::{Mesh, area_and_normal};
 use nalgebra::{Point3, Vector3};
 use std::ops::Range;
 
 /// Triangles are cut until about as many points have a cell in each piece.
-pub(super) const MAX_POINTS_PER_PIECE: f64 = 64.0;
+const MAX_POINTS_PER_PIECE: f64 = 64.0;
 /// Cells that triangles meet, per point and per triangle, before a coarser grain is used.
 const MAX_MEAN_PIECES: f64 = 64.0;
 /// Number of cells that is always allowed.
@@ -69,11 +68,13 @@ impl Surface {
         let grain = grain(mesh, sampler, spacing, count);
         let mut surface = Surface { pieces: vec![], corners: vec![], spacing, grain, size };
         for (triangle, corners) in (0..).zip(mesh.corners()) {
+            // Coincident triangles are divided once, and their areas are added up.
             let copies = sampler.copies.count(triangle);
             if copies > 0 {
                 let (area, normal) = area_and_normal(&corners).unwrap_or_default();
                 let origin = corners[0];
-                let polygon = corners.map(|corner| (corner - origin, EDGE)).to_vec();
+                let polygon =
+                    corners.map(|corner| Corner { at: corner - origin, neighbour: EDGE }).to_vec();
                 let triangle_pieces = TrianglePieces {
                     triangle,
                     copies,
@@ -87,14 +88,13 @@ impl Surface {
         surface
     }
 
-    /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in
-    /// each piece.
+    /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in each piece.
     fn add(&mut self, triangle_pieces: &TrianglePieces, part: Vec<Corner>, area: f64) {
         let TrianglePieces { triangle, copies, origin, normal, axes } = *triangle_pieces;
         let ends = ends(&part, &axes);
         if expected_points(&ends, self.grain) <= MAX_POINTS_PER_PIECE {
             let start = self.corners.len();
-            self.corners.extend(part.iter().map(|(corner, _)| origin + corner));
+            self.corners.extend(part.iter().map(|corner| origin + corner.at));
             let corners = start..self.corners.len();
             self.pieces.push(SurfacePiece { triangle, copies, corners, normal, area });
             return;
@@ -127,8 +127,7 @@ impl Surface {
     }
 }
 
-/// Returns the direction of a triangle's longest side and the direction across it in the triangle's
-/// plane.
+/// Returns the direction of a triangle's longest side and the direction across it in the triangle's plane.
 fn axes([a, b, c]: &[Point3<f64>; 3], normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let edges = [b - a, c - b, a - c].into_iter();
     let longest =
@@ -140,8 +139,9 @@ fn axes([a, b, c]: &[Point3<f64>; 3], normal: &Vector3<f64>) -> [Vector3<f64>; 2
 /// Returns the ranges of the corners' coordinates along two axes.
 fn ends(part: &[Corner], axes: &[Vector3<f64>; 2]) -> [[f64; 2]; 2] {
     axes.map(|axis| {
-        let along = || part.iter().map(|(v, _)| v.dot(&axis));
-        [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)]
+        part.iter()
+            .map(|corner| corner.at.dot(&axis))
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
     })
 }
 
@@ -158,17 +158,84 @@ fn grain(mesh: &Mesh, sampler: &AreaSampler, spacing: f64, count: usize) -> f64 
     let boxes: Vec<[[f64; 2]; 2]> = triangles
         .map(|(_, corners)| {
             let normal = area_and_normal(&corners).unwrap_or_default().1;
-            let polygon = corners.map(|corner| (corner - corners[0], EDGE));
+            let polygon = corners.map(|corner| Corner { at: corner - corners[0], neighbour: EDGE });
             ends(&polygon, &axes(&corners, &normal))
         })
         .collect();
-    let total = |grain: f64| boxes.iter().map(|ends| expected_points(ends, grain)).sum::<f64>();
     let size = (count + boxes.len()) as f64;
     let mut grain = spacing;
-    if total(grain) > MAX_MEAN_PIECES * size + FREE_PIECES {
-        while total(grain) > COARSE_MEAN_PIECES * size {
+    // Results hold for pieces of any size: what is at stake is the number of pieces.
+    if total_points(&boxes, grain) > MAX_MEAN_PIECES * size + FREE_PIECES {
+        while total_points(&boxes, grain) > COARSE_MEAN_PIECES * size {
             grain *= 2.0;
         }
     }
     grain
+}
+
+/// Returns the sum of [`expected_points`] over all boxes.
+fn total_points(boxes: &[[[f64; 2]; 2]], spacing: f64) -> f64 {
+    boxes.iter().map(|ends| expected_points(ends, spacing)).sum()
+}
+
+/// A corner of a convex polygon in a surface, relative to some point: the corner of a triangle, or the point of a cell.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    pub(super) at: Vector3<f64>,
+    /// The point of the cloud whose line the next edge lies on, or [`EDGE`].
+    pub(super) neighbour: u32,
+}
+
+/// Marks an edge of the piece, which belongs to no point.
+pub(super) const EDGE: u32 = u32::MAX;
+
+/// Cuts away the part of a polygon beyond `v · to_other = half`. Returns whether there was any. `cut` is memory kept
+/// between calls.
+pub(super) fn clip(
+    cell: &mut Vec<Corner>,
+    cut: &mut Vec<Corner>,
+    to_other: Vector3<f64>,
+    half: f64,
+    other: u32,
+) -> bool {
+    if cell.iter().all(|corner| corner.beyond(&to_other, half) <= 0.0) {
+        return false;
+    }
+    cut.clear();
+    for (index, corner) in cell.iter().enumerate() {
+        let next = &cell[(index + 1) % cell.len()];
+        let [distance, next_distance] = [corner, next].map(|c| c.beyond(&to_other, half));
+        if distance <= 0.0 {
+            cut.push(*corner);
+            if next_distance > 0.0 {
+                let at = corner.toward(next, distance / (distance - next_distance));
+                cut.push(Corner { at, neighbour: other });
+            }
+        } else if next_distance <= 0.0 {
+            // The polygon is entered again, on the edge that was left out up to here.
+            let at = corner.toward(next, distance / (distance - next_distance));
+            cut.push(Corner { at, neighbour: corner.neighbour });
+        }
+    }
+    std::mem::swap(cell, cut);
+    true
+}
+
+impl Corner {
+    /// Returns `v · to_other - half`: the distance beyond a line, times the length of `to_other`.
+    pub(super) fn beyond(&self, to_other: &Vector3<f64>, half: f64) -> f64 {
+        self.at.dot(to_other) - half
+    }
+
+    /// Returns the point at a fraction of the way to another corner.
+    fn toward(&self, next: &Corner, fraction: f64) -> Vector3<f64> {
+        self.at + (next.at - self.at) * fraction
+    }
+}
+
+/// Returns the area of a polygon.
+pub(super) fn area(cell: &[Corner], normal: &Vector3<f64>) -> f64 {
+    let Some((first, rest)) = cell.split_first() else { return 0.0 };
+    let fan = rest.windows(2).map(|pair| (pair[0].at - first.at).cross(&(pair[1].at - first.at)));
+    (fan.map(|cross| cross.dot(normal)).sum::<f64>() / 2.0).max(0.0)
 }

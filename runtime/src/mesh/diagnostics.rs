@@ -1,18 +1,15 @@
-//! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, and irregularities.
+//! Diagnostics of a mesh as numbers and sentences: closed or open, orientation, shells, and irregularities.
 
-use std::fmt;
-
-use super::topology::{Edges, shells};
-use super::{CompensatedSum, Mesh, area_and_normal};
+use crate::mesh::{CompensatedSum, Mesh, area_and_normal};
 use crate::unit::Unit;
+use std::fmt;
 
 /// The result of [`Mesh::diagnostics`].
 ///
-/// A surface has an inside if the winding number (the number of times it goes around a point) is an
-/// integer at every point off it. This holds exactly if the mesh is
-/// [`closed`](MeshDiagnostics::is_closed) and [`oriented`](MeshDiagnostics::is_oriented): each edge is
-/// used equally often in both directions. Only then can it be decided whether a tool is wholly inside
-/// the material.
+/// A surface has an inside if the winding number (the number of times it goes around a point) is an integer at every
+/// point off it. This holds exactly if the mesh is [`closed`](MeshDiagnostics::is_closed) and
+/// [`oriented`](MeshDiagnostics::is_oriented): each edge is used equally often in both directions. Only then can it be
+/// decided whether a tool is wholly inside the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshDiagnostics {
@@ -30,9 +27,8 @@ pub struct MeshDiagnostics {
     pub volume: f64,
     /// Edges where a surface ends: used by one triangle, or by another odd number of them.
     pub open_edges: usize,
-    /// Edges where the surface does not end, but whose triangles disagree on the outward side. Two
-    /// triangles use such an edge in the same direction, where consistently oriented neighbours use it
-    /// in opposite ones.
+    /// Edges where the surface does not end, but whose triangles disagree on the outward side. Two triangles use such
+    /// an edge in the same direction, where consistently oriented neighbours use it in opposite ones.
     pub crossed_edges: usize,
     /// Edges used by more than two triangles. This is valid where two solids touch along an edge. Such
     /// edges also count as open or crossed if they are.
@@ -127,53 +123,54 @@ impl MeshDiagnostics {
     /// Returns the findings as sentences: first the kind of mesh, then each irregularity. A mesh without
     /// irregularities has one sentence.
     pub fn findings(&self) -> Vec<String> {
-        let mut findings = vec![self.summary()];
-        let mut note = |count: usize, noun: &str, text: &str| {
-            if count > 0 {
-                findings.push(format!("{}{text}", format_count(count, noun)));
-            }
-        };
-        note(
-            self.open_edges,
-            "open edge",
-            ": the mesh leaks; whether a tool is wholly inside cannot be known",
-        );
-        note(
-            self.crossed_edges,
-            "edge",
-            " where neighbouring triangles disagree on which side is out; which way the part \
-             pushes back there cannot be trusted",
-        );
-        note(
-            self.shared_edges,
-            "edge",
-            " shared by more than two triangles: surfaces touch or cross there",
-        );
-        if self.is_inside_out() {
-            note(
+        // Where all triangles face inward, no shell stands out.
+        let (inward, inward_noun, inward_text) = if self.is_inside_out() {
+            (
                 self.triangles,
                 "triangle",
                 ", all facing inward: the part would pull the tool in; flip the mesh's normals \
                  where it was made",
-            );
+            )
         } else {
-            note(
+            (
                 self.inverted_shells,
                 "inward-facing shell",
                 ": a void in the material, or a piece that is inside out",
-            );
-        }
-        note(
-            self.opposed_normals,
-            "facet",
-            " whose normal in the file opposes the order of its corners; the order is what counts",
-        );
-        note(
-            self.degenerate,
-            "triangle",
-            " without area: nothing can touch them, the numbering of the others stays",
-        );
-        findings
+            )
+        };
+        let irregularities = [
+            (
+                self.open_edges,
+                "open edge",
+                ": the mesh leaks; whether a tool is wholly inside cannot be known",
+            ),
+            (
+                self.crossed_edges,
+                "edge",
+                " where neighbouring triangles disagree on which side is out; which way the part \
+                 pushes back there cannot be trusted",
+            ),
+            (
+                self.shared_edges,
+                "edge",
+                " shared by more than two triangles: surfaces touch or cross there",
+            ),
+            (inward, inward_noun, inward_text),
+            (
+                self.opposed_normals,
+                "facet",
+                " whose normal in the file opposes the order of its corners; the order is what counts",
+            ),
+            (
+                self.degenerate,
+                "triangle",
+                " without area: nothing can touch them, the numbering of the others stays",
+            ),
+        ];
+        let present = irregularities.into_iter().filter(|(count, ..)| *count > 0);
+        let sentences =
+            present.map(|(count, noun, text)| format!("{}{text}", format_count(count, noun)));
+        [self.summary()].into_iter().chain(sentences).collect()
     }
 
     fn summary(&self) -> String {
@@ -232,6 +229,135 @@ fn format_number(value: f64) -> String {
     } else {
         text
     }
+}
+
+/// Numbers of edges by their uses.
+struct Edges {
+    /// Edges with an odd number of uses.
+    open: usize,
+    /// Edges with an even number of uses that are not equally many in both directions.
+    crossed: usize,
+    /// Edges used by more than two triangles.
+    shared: usize,
+}
+
+impl Edges {
+    /// Counts edges by sorting. All uses of an edge go into the bucket of its lower vertex; each bucket,
+    /// with a handful of entries, is sorted by the higher vertex.
+    fn of(mesh: &Mesh) -> Edges {
+        let mut starts = vec![0usize; mesh.vertices().len() + 1];
+        for [from, to] in edge_uses(mesh) {
+            starts[from.min(to) as usize + 1] += 1;
+        }
+        for vertex in 1..starts.len() {
+            starts[vertex] += starts[vertex - 1];
+        }
+        let mut uses = vec![0u64; starts[starts.len() - 1]];
+        // Counting sort: the starts themselves stay, as the bounds of the buckets.
+        let mut next_slots = starts.clone();
+        for [from, to] in edge_uses(mesh) {
+            let slot = &mut next_slots[from.min(to) as usize];
+            // The direction in the last bit: sorting brings the uses of an edge together.
+            uses[*slot] = u64::from(from.max(to)) << 1 | u64::from(from < to);
+            *slot += 1;
+        }
+        let mut edges = Edges { open: 0, crossed: 0, shared: 0 };
+        for bucket in starts.windows(2) {
+            let bucket = &mut uses[bucket[0]..bucket[1]];
+            bucket.sort_unstable();
+            for edge in bucket.chunk_by(|a, b| a >> 1 == b >> 1) {
+                let upward = edge.iter().filter(|&&entry| entry & 1 == 1).count();
+                edges.open += usize::from(edge.len() % 2 == 1);
+                edges.crossed += usize::from(edge.len() % 2 == 0 && 2 * upward != edge.len());
+                edges.shared += usize::from(edge.len() > 2);
+            }
+        }
+        edges
+    }
+}
+
+/// Iterates over the directed edges of all triangles, except triangles that name a vertex twice. These
+/// have collapsed into an edge or a point, and their contributions would cancel.
+fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
+    mesh.triangles()
+        .iter()
+        .filter(|[a, b, c]| a != b && b != c && c != a)
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+}
+
+/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece continues only
+/// across edges of exactly two triangles, so pieces that touch in a vertex or along an edge are separate.
+pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
+    let [low, high] = mesh.bounds();
+    let origin = nalgebra::center(&low, &high);
+    let mut parent: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
+    let mut uses: Vec<([u32; 2], u32)> = (0..)
+        .zip(mesh.triangles())
+        .flat_map(|(id, [a, b, c])| {
+            [[a, b], [b, c], [c, a]].map(|[x, y]| ([*x.min(y), *x.max(y)], id))
+        })
+        .collect();
+    uses.sort_unstable();
+    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, first), (_, second)] = edge {
+            let [first, second] = [first, second].map(|id| root(&mut parent, *id));
+            // Toward the lower number, so that a root is the lowest of its piece.
+            parent[first.max(second) as usize] = first.min(second);
+        }
+    }
+    let mut volumes = vec![0.0; parent.len()];
+    for (id, corners) in (0..).zip(mesh.corners()) {
+        if let Some((area, normal)) = area_and_normal(&corners) {
+            let component = root(&mut parent, id) as usize;
+            volumes[component] += normal.dot(&(corners[0] - origin)) * area / 3.0;
+        }
+    }
+    (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
+}
+
+/// Returns the shell index of each vertex and the number of shells, by union-find. The entry of a vertex
+/// that no triangle uses is meaningless.
+fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
+    const UNUSED: u32 = u32::MAX;
+    let mut parent = vec![UNUSED; mesh.vertices().len()];
+    for triangle in mesh.triangles() {
+        for &vertex in triangle {
+            if parent[vertex as usize] == UNUSED {
+                parent[vertex as usize] = vertex;
+            }
+        }
+        let [a, b, c] = triangle.map(|vertex| root(&mut parent, vertex));
+        let lowest = a.min(b).min(c);
+        for vertex in [a, b, c] {
+            parent[vertex as usize] = lowest;
+        }
+    }
+    // The root is the lowest vertex of its shell, so it is numbered before the others.
+    let mut count = 0;
+    let mut shell_of = vec![0; parent.len()];
+    for vertex in 0..parent.len() {
+        if parent[vertex] == UNUSED {
+            continue;
+        }
+        let root_vertex = root(&mut parent, vertex as u32) as usize;
+        if root_vertex == vertex {
+            shell_of[vertex] = count;
+            count += 1;
+        } else {
+            shell_of[vertex] = shell_of[root_vertex];
+        }
+    }
+    (shell_of, count as usize)
+}
+
+fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
+    while parent[vertex as usize] != vertex {
+        let next = parent[vertex as usize];
+        // Halves the path on the way, which keeps all paths short.
+        parent[vertex as usize] = parent[next as usize];
+        vertex = next;
+    }
+    vertex
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ pub(super) struct Tokens<'a> {
 
 impl<'a> Tokens<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Tokens<'a> {
+        // Editors put a byte order mark before UTF-8.
         let rest = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         Tokens { rest, line: 1 }
     }
@@ -44,6 +45,7 @@ impl<'a> Tokens<'a> {
 
     /// Returns the next word on the current line, if there is one.
     pub(super) fn next_on_line(&mut self) -> Option<&'a [u8]> {
+        // A look ahead: the word is consumed only if it is on this line.
         let mut ahead = self.clone();
         let word = ahead.next()?;
         if ahead.line != self.line {
@@ -58,6 +60,7 @@ impl<'a> Tokens<'a> {
         while let [space, rest @ ..] = self.rest
             && is_space(*space)
         {
+            // CR LF is one end of a line, and the LF counts.
             let ends_line = *space == b'\n' || (*space == b'\r' && rest.first() != Some(&b'\n'));
             self.line += usize::from(ends_line);
             self.rest = rest;
@@ -65,9 +68,8 @@ impl<'a> Tokens<'a> {
     }
 
     pub(super) fn skip_line(&mut self) {
-        let is_line_end = |&byte: &u8| byte == b'\n' || byte == b'\r';
-        let end = self.rest.iter().position(is_line_end).unwrap_or(self.rest.len());
-        self.rest = &self.rest[end..];
+        let end = self.rest.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+        self.rest = &self.rest[end.unwrap_or(self.rest.len())..];
     }
 }
 
@@ -79,15 +81,14 @@ fn is_space(byte: u8) -> bool {
 /// NaN: exporters write them where a normal cannot be computed.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     let text = str::from_utf8(word).ok()?;
-    let is_non_finite = || {
+    text.parse().ok().or_else(|| {
         let text = text.to_ascii_lowercase();
-        ["nan", "inf", "#ind"].iter().any(|spelling| text.contains(spelling))
-    };
-    text.parse().ok().or_else(|| is_non_finite().then_some(f64::NAN))
+        let is_non_finite = ["nan", "inf", "#ind"].iter().any(|spelling| text.contains(spelling));
+        is_non_finite.then_some(f64::NAN)
+    })
 }
 
-/// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long
-/// and unprintable.
+/// Returns a printable form of a word, escaped and at most 32 characters long: binary data can be long and unprintable.
 pub(super) fn printable(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(256)]);
     let start: String = text.chars().take(32).collect();

@@ -4,8 +4,8 @@
 use nalgebra::Point3;
 
 use super::faces::Faces;
+use super::faces::Outlier;
 use super::location::{SourceLocation, Tokens, number, printable};
-use super::outlier::{Outlier, find_outlier};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
 use crate::unit::Unit;
 
@@ -129,7 +129,7 @@ impl Mesh {
     /// # Errors
     /// See [`ObjError`].
     pub fn from_obj(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, ObjError> {
-        let file = || name.to_owned();
+        let file = name.to_owned();
         let mut lines = Lines { tokens: Tokens::new(bytes), name };
         let mut vertices = Vec::new();
         let mut faces = Faces::default();
@@ -143,7 +143,7 @@ impl Mesh {
                     faces.push(location, &corners);
                 }
                 Some(word) if !SKIPPED.contains(&word) => {
-                    let (file, line, word) = (file(), lines.tokens.line, printable(word));
+                    let (line, word) = (lines.tokens.line, printable(word));
                     return Err(ObjError::Unread { file, line, word });
                 }
                 _ => {}
@@ -151,21 +151,17 @@ impl Mesh {
             lines.tokens.skip_line();
         }
         if faces.is_empty() {
-            return Err(ObjError::NoFaces { file: file() });
+            return Err(ObjError::NoFaces { file });
         }
         if let Some(location) = faces.folded(&vertices) {
-            return Err(ObjError::Folded { file: file(), location });
+            return Err(ObjError::Folded { file, location });
         }
-        let (used_vertices, corners) = faces.used_vertices(&vertices);
-        if let Some((index, _, outlier)) = find_outlier(&corners) {
-            return Err(ObjError::Outlier {
-                file: file(),
-                location: line_of(bytes, used_vertices[index]),
-                outlier,
-            });
+        if let Some((vertex, outlier)) = faces.outlier(&vertices) {
+            // No lines are kept for vertices, so the file is read once more.
+            return Err(ObjError::Outlier { file, location: line_of(bytes, vertex), outlier });
         }
         let mesh = faces.weld(&vertices, unit);
-        mesh.map_err(|source| ObjError::Mesh { file: file(), source })
+        mesh.map_err(|source| ObjError::Mesh { file, source })
     }
 }
 
@@ -221,8 +217,7 @@ impl<'a> Lines<'a, '_> {
         ObjError::Expected { file: self.name.to_owned(), line: self.tokens.line, expected, found }
     }
 
-    /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the
-    /// position.
+    /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the position.
     fn vertex(&mut self) -> Result<Point3<f64>, ObjError> {
         let expected = "a coordinate, such as 1.5 or 2e-3";
         let mut vertex = Point3::origin();
@@ -242,14 +237,17 @@ impl<'a> Lines<'a, '_> {
         let expected = "a corner such as 7, 7/1 or 7//2: a face has three or more";
         corners.clear();
         while let Some(word) = self.word() {
+            // Texture and normal follow the vertex after slashes.
             let vertex = word.split(|&byte| byte == b'/').next().unwrap_or_default();
             let index = str::from_utf8(vertex).ok().and_then(|text| text.parse::<i64>().ok());
             let index = index.ok_or_else(|| self.expected(expected, Some(word)))?;
-            let count_back = |back: u64| vertices.checked_sub(usize::try_from(back).ok()?);
+            // An index below 0 counts back from the vertex read last.
             let corner = match index {
                 0 => None,
                 1.. => usize::try_from(index - 1).ok(),
-                ..0 => count_back(index.unsigned_abs()),
+                ..0 => usize::try_from(index.unsigned_abs())
+                    .ok()
+                    .and_then(|back| vertices.checked_sub(back)),
             };
             let valid = corner.filter(|&corner| corner < vertices);
             corners.push(valid.and_then(|corner| u32::try_from(corner).ok()).ok_or_else(|| {

@@ -49,9 +49,8 @@ pub enum GeometryError {
 }
 
 impl Geometry {
-    /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise
-    /// the file extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces
-    /// is points.
+    /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise the file
+    /// extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces is points.
     ///
     /// # Errors
     /// Every defect of the file is reported with the file name and the location.
@@ -72,6 +71,7 @@ impl Geometry {
     pub fn from_bytes(bytes: &[u8], name: &str, unit: Unit) -> Result<Geometry, GeometryError> {
         let extension = Path::new(name).extension().unwrap_or_default();
         let has_extension = |known: &str| extension.eq_ignore_ascii_case(known);
+        // PLY alone has a beginning that nothing else has. STL may be anything, and OBJ any text.
         Ok(if ply::begins(bytes) || has_extension("ply") {
             match ply::has_faces(bytes, name)? {
                 true => Geometry::Mesh(Mesh::from_ply(bytes, name, unit)?),

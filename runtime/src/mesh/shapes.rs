@@ -1,27 +1,23 @@
-//! Generated meshes, as parts for examples, tests and benchmarks, and STL output for any mesh.
+//! Generated meshes, as parts for examples, tests and benchmarks.
 //!
 //! Dimensions are in the given unit, and triangles are counter-clockwise seen from outside. Each
 //! function returns [`MeshError::Shape`] if its dimensions are invalid.
 
 use std::collections::HashMap;
-use std::io::{self, Write};
 
 use nalgebra::{Point3, Vector3};
 
-use super::stl::{HEADER, RECORD};
-use super::{Mesh, MeshError, area_and_normal};
+use super::{Mesh, MeshError};
 use crate::unit::Unit;
 
-/// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part
-/// needs.
+/// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part needs.
 pub const MAX_TRIANGLES: u64 = 1 << 25;
 
 /// Generates a tube about the z axis from z = 0 to `height`, closed and oriented outward; its inside is
 /// a bore. It has `segments` flat sides, whose edges lie on the radii, and `layers` along the height,
 /// hence `4 segments (layers + 1)` triangles.
 ///
-/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the thesis's
-/// tube.
+/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the thesis's tube.
 ///
 /// # Errors
 /// Fails unless `0 < inner < outer`, `height > 0`, `segments >= 3`, `layers >= 1` and there are at most
@@ -61,19 +57,11 @@ pub fn tube(
             let bore = [inside(l, s), inside(l + 1, s), inside(l + 1, s + 1), inside(l, s + 1)];
             triangles.extend(split_quad(bore));
         }
-        let top = layers;
-        triangles.extend(split_quad([
-            inside(0, s),
-            inside(0, s + 1),
-            outside(0, s + 1),
-            outside(0, s),
-        ]));
-        triangles.extend(split_quad([
-            inside(top, s),
-            outside(top, s),
-            outside(top, s + 1),
-            inside(top, s + 1),
-        ]));
+        let bottom = [inside(0, s), inside(0, s + 1), outside(0, s + 1), outside(0, s)];
+        triangles.extend(split_quad(bottom));
+        let [l, next] = [layers, s + 1];
+        let top = [inside(l, s), outside(l, s), outside(l, next), inside(l, next)];
+        triangles.extend(split_quad(top));
     }
     Mesh::new(vertices, triangles, unit)
 }
@@ -90,10 +78,12 @@ pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, Me
     }
     let vertices = (0..8usize)
         .map(|corner| {
-            let pick = |axis: usize| {
-                if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
-            };
-            Point3::new(pick(0), pick(1), pick(2))
+            // Each bit of the number decides along one axis.
+            Point3::from([0, 1, 2].map(
+                |axis| {
+                    if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
+                },
+            ))
         })
         .collect();
     let sides =
@@ -126,9 +116,8 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     Mesh::new(vertices, triangles, unit)
 }
 
-/// Generates a sphere about the origin, closed and oriented outward. The triangles of an icosahedron are
-/// divided into four `subdivisions` times, hence `20 · 4^subdivisions` triangles; all vertices lie on
-/// the sphere.
+/// Generates a sphere about the origin, closed and oriented outward. The triangles of an icosahedron are divided into
+/// four `subdivisions` times, hence `20 · 4^subdivisions` triangles; all vertices lie on the sphere.
 ///
 /// # Errors
 /// Fails unless `radius > 0` and `subdivisions <= 10`.
@@ -151,6 +140,7 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
         let mut finer = Vec::with_capacity(4 * triangles.len());
         for [a, b, c] in triangles {
             let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[from, to]: [u32; 2]| {
+                // Both triangles at an edge get the same vertex in its middle.
                 *middles.entry((from.min(to), from.max(to))).or_insert_with(|| {
                     let middle = directions[from as usize] + directions[to as usize];
                     directions.push(middle.normalize());
@@ -185,57 +175,6 @@ fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
 /// Splits a four-sided face into two triangles.
 fn split_quad([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     [[a, b, c], [a, c, d]]
-}
-
-impl Mesh {
-    /// Writes the mesh as binary STL, in its own unit, which is named in the header text. Coordinates
-    /// are rounded to `f32`, as the format requires.
-    ///
-    /// # Errors
-    /// Returns the errors of `out`, and `InvalidInput` for a coordinate beyond the range of `f32`.
-    pub fn write_stl(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut bytes = Vec::with_capacity(HEADER + RECORD * self.triangles.len());
-        bytes.extend(format!("binary STL in {} by touchoff", self.unit).bytes());
-        bytes.resize(80, b' ');
-        // `Mesh::new` guarantees that the ids fit 32 bits, and hence their count.
-        bytes.extend((self.triangles.len() as u32).to_le_bytes());
-        for corners in self.corners() {
-            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
-            for vector in [normal, corners[0].coords, corners[1].coords, corners[2].coords] {
-                for &number in vector.iter() {
-                    let rounded = number as f32;
-                    if !rounded.is_finite() {
-                        let text = format!("{number:e} is beyond binary STL: write ASCII instead");
-                        return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
-                    }
-                    bytes.extend(rounded.to_le_bytes());
-                }
-            }
-            bytes.extend([0, 0]);
-        }
-        out.write_all(&bytes)
-    }
-
-    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again yields bitwise
-    /// the same corners.
-    ///
-    /// # Errors
-    /// Returns the errors of `out`.
-    pub fn write_stl_ascii(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut out = io::BufWriter::new(out);
-        writeln!(out, "solid touchoff, in {}", self.unit)?;
-        for corners in self.corners() {
-            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
-            writeln!(out, "  facet normal {:e} {:e} {:e}", normal.x, normal.y, normal.z)?;
-            writeln!(out, "    outer loop")?;
-            for p in corners {
-                writeln!(out, "      vertex {:e} {:e} {:e}", p.x, p.y, p.z)?;
-            }
-            writeln!(out, "    endloop\n  endfacet")?;
-        }
-        writeln!(out, "endsolid touchoff")?;
-        out.flush()
-    }
 }
 
 #[cfg(test)]
@@ -319,30 +258,5 @@ mod tests {
             assert!(matches!(error, MeshError::Shape { .. }), "{error}");
         }
         assert!(matches!(sphere(1e70, 0, UNIT), Err(MeshError::Coordinate { .. })));
-    }
-
-    #[test]
-    fn written_stl_is_read_back() {
-        let mesh = tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
-        let mut text = Vec::new();
-        mesh.write_stl_ascii(&mut text).expect("written");
-        let read_back = Mesh::from_stl(&text, "", UNIT).expect("read");
-        assert!(mesh.corners().eq(read_back.corners()));
-
-        let mut binary = Vec::new();
-        mesh.write_stl(&mut binary).expect("written");
-        assert!(binary.starts_with(b"binary STL in mm"));
-        let read_back = Mesh::from_stl(&binary, "", UNIT).expect("read");
-        assert!(
-            mesh.corners()
-                .flatten()
-                .zip(read_back.corners().flatten())
-                .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
-        );
-        assert!(read_back.diagnostics().is_solid() && read_back.diagnostics().opposed_normals == 0);
-
-        let huge = sphere(1e40, 0, UNIT).expect("a large sphere");
-        let error = huge.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
-        assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
     }
 }

@@ -1,18 +1,18 @@
-//! Reading STL, binary and ASCII. The crate has its own reader because `stl_io` names no line or
+//! Reading and writing STL, binary and ASCII. The crate has its own reader because `stl_io` names no line or
 //! triangle in its errors and takes a binary file whose header begins with `solid` for text.
 
-use std::io;
+use std::io::{self, Write};
 
 use nalgebra::{Point3, Vector3};
 
+use super::faces::{Outlier, OutlyingVertex, find_outlier};
 use super::location::{SourceLocation, Tokens, number, printable};
-use super::outlier::{Outlier, find_outlier};
-use super::{LARGEST_COORDINATE, MeshError, area_and_normal, is_valid_coordinate};
+use super::{LARGEST_COORDINATE, Mesh, MeshError, area_and_normal, is_valid_coordinate};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
-pub(super) const HEADER: usize = 84;
+const HEADER: usize = 84;
 /// Bytes per triangle in a binary file: 12 numbers of 4 bytes, 2 bytes of attributes.
-pub(super) const RECORD: usize = 50;
+const RECORD: usize = 50;
 
 /// Reasons why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
 #[derive(Debug, thiserror::Error)]
@@ -153,6 +153,58 @@ pub enum StlError {
     },
 }
 
+impl Mesh {
+    /// Writes the mesh as binary STL, in its own unit, which is named in the header text. Coordinates
+    /// are rounded to `f32`, as the format requires.
+    ///
+    /// # Errors
+    /// Returns the errors of `out`, and `InvalidInput` for a coordinate beyond the range of `f32`.
+    pub fn write_stl(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut bytes = Vec::with_capacity(HEADER + RECORD * self.triangles.len());
+        bytes.extend(format!("binary STL in {} by touchoff", self.unit).bytes());
+        bytes.resize(80, b' ');
+        // `Mesh::new` guarantees that the ids fit 32 bits, and hence their count.
+        bytes.extend((self.triangles.len() as u32).to_le_bytes());
+        for corners in self.corners() {
+            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
+            for vector in [normal, corners[0].coords, corners[1].coords, corners[2].coords] {
+                for &number in vector.iter() {
+                    let rounded = number as f32;
+                    if !rounded.is_finite() {
+                        let text = format!("{number:e} is beyond binary STL: write ASCII instead");
+                        return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
+                    }
+                    bytes.extend(rounded.to_le_bytes());
+                }
+            }
+            // No attributes.
+            bytes.extend([0, 0]);
+        }
+        out.write_all(&bytes)
+    }
+
+    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again yields bitwise
+    /// the same corners.
+    ///
+    /// # Errors
+    /// Returns the errors of `out`.
+    pub fn write_stl_ascii(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut out = io::BufWriter::new(out);
+        writeln!(out, "solid touchoff, in {}", self.unit)?;
+        for corners in self.corners() {
+            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
+            writeln!(out, "  facet normal {:e} {:e} {:e}", normal.x, normal.y, normal.z)?;
+            writeln!(out, "    outer loop")?;
+            for p in corners {
+                writeln!(out, "      vertex {:e} {:e} {:e}", p.x, p.y, p.z)?;
+            }
+            writeln!(out, "    endloop\n  endfacet")?;
+        }
+        writeln!(out, "endsolid touchoff")?;
+        out.flush()
+    }
+}
+
 /// The content of a file: the corners of each facet, in the file's order.
 #[derive(Default)]
 pub(super) struct StlFacets {
@@ -183,7 +235,8 @@ impl StlFacets {
 /// A vertex far outside all others is refused.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let (facets, is_text) = facets(bytes, name)?;
-    let Some((corner, axis, outlier)) = find_outlier(facets.corners.as_flattened()) else {
+    let outlying = find_outlier(facets.corners.as_flattened());
+    let Some(OutlyingVertex { index: corner, axis, outlier }) = outlying else {
         return Ok(facets);
     };
     let triangle = corner / 3;
@@ -212,9 +265,9 @@ fn line_of(bytes: &[u8], corner: usize) -> SourceLocation {
 
 /// Reads the facets of a file and returns them with `true` if the file is text.
 fn facets(bytes: &[u8], name: &str) -> Result<(StlFacets, bool), StlError> {
-    let file = || name.to_owned();
+    let file = name.to_owned();
     if bytes.is_empty() {
-        return Err(StlError::Empty { file: file() });
+        return Err(StlError::Empty { file });
     }
     let binary = bytes.split_first_chunk::<HEADER>().map(|(header, body)| {
         let count = u32::from_le_bytes([header[80], header[81], header[82], header[83]]);
@@ -226,6 +279,7 @@ fn facets(bytes: &[u8], name: &str) -> Result<(StlFacets, bool), StlError> {
         Some((triangles, body)) => {
             let expected = RECORD as u64 * u64::from(triangles);
             let found = body.len() as u64;
+            // Some programs begin binary files with `solid`, so the length decides first.
             if expected == found {
                 return Ok((read_binary(body, name)?, false));
             }
@@ -234,13 +288,13 @@ fn facets(bytes: &[u8], name: &str) -> Result<(StlFacets, bool), StlError> {
             }
             let (expected, found) = (expected + HEADER as u64, found + HEADER as u64);
             Err(if found < expected {
-                StlError::Truncated { file: file(), triangles, expected, found }
+                StlError::Truncated { file, triangles, expected, found }
             } else {
-                StlError::Trailing { file: file(), triangles, expected, found }
+                StlError::Trailing { file, triangles, expected, found }
             })
         }
         None if is_text => Ok((read_ascii(bytes, name)?, true)),
-        None => Err(StlError::NotStl { file: file(), bytes: bytes.len() }),
+        None => Err(StlError::NotStl { file, bytes: bytes.len() }),
     }
 }
 
@@ -248,11 +302,13 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let mut facets = StlFacets::default();
     let (records, _) = body.as_chunks::<RECORD>();
     for (triangle, record) in records.iter().enumerate() {
+        // The attributes have no agreed meaning.
         let (fields, _attributes) = record.as_chunks::<4>();
         let mut numbers = [0f32; 12];
         for (number, field) in numbers.iter_mut().zip(fields) {
             *number = f32::from_le_bytes(*field);
         }
+        // A normal that is not finite does no harm: it counts only where it opposes the winding's.
         if let Some(k) = (3..12).find(|&k| !numbers[k].is_finite()) {
             return Err(StlError::TriangleCoordinate {
                 file: name.to_owned(),
@@ -261,8 +317,9 @@ fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
                 coordinate: numbers[k],
             });
         }
-        let point = |k: usize| Vector3::new(numbers[k], numbers[k + 1], numbers[k + 2]).cast();
-        facets.push(point(0), [3, 6, 9].map(|k| point(k).into()));
+        let [normal, corners @ ..] = [0, 3, 6, 9]
+            .map(|k| Vector3::new(numbers[k], numbers[k + 1], numbers[k + 2]).cast::<f64>());
+        facets.push(normal, corners.map(Point3::from));
     }
     Ok(facets)
 }

@@ -1,4 +1,4 @@
-//! Tests of reading, welding and refusing meshes.
+//! Tests of reading, writing, welding and refusing meshes.
 
 use super::*;
 use crate::id::TriangleId;
@@ -315,4 +315,29 @@ fn reads_parts_from_ply_files() {
             "{file}: {diagnostics}"
         );
     }
+}
+
+#[test]
+fn written_stl_is_read_back() {
+    let mesh = shapes::tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
+    let mut text = Vec::new();
+    mesh.write_stl_ascii(&mut text).expect("written");
+    let read_back = Mesh::from_stl(&text, "", UNIT).expect("read");
+    assert!(mesh.corners().eq(read_back.corners()));
+
+    let mut binary = Vec::new();
+    mesh.write_stl(&mut binary).expect("written");
+    assert!(binary.starts_with(b"binary STL in mm"));
+    let read_back = Mesh::from_stl(&binary, "", UNIT).expect("read");
+    assert!(
+        mesh.corners()
+            .flatten()
+            .zip(read_back.corners().flatten())
+            .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
+    );
+    assert!(read_back.diagnostics().is_solid() && read_back.diagnostics().opposed_normals == 0);
+
+    let huge = shapes::sphere(1e40, 0, UNIT).expect("a large sphere");
+    let error = huge.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
+    assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput);
 }

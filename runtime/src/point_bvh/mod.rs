@@ -12,13 +12,11 @@
 //! move by 2^-24 of its size. The descent reads 12 bytes of a point and its share of the boxes, 1.6 bytes.
 
 mod build;
-mod candidates;
-mod edit;
 mod filter;
 mod traverse;
 
-pub(crate) use candidates::Candidates;
-pub(crate) use filter::filter;
+pub(crate) use build::TreePoint;
+pub(crate) use filter::{Candidates, filter};
 pub(crate) use traverse::{Traversal, TraversalInput};
 
 use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};
@@ -38,7 +36,7 @@ pub(crate) struct Leaf {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct LeafAttributes {
-    pub(crate) normal: [[f32; WIDTH]; 3],
+    normal: [[f32; WIDTH]; 3],
     pub(crate) weight: [f32; WIDTH],
 }
 
@@ -72,6 +70,7 @@ impl PointBvh {
     pub(crate) fn scale_by(&mut self, factor: f64) {
         self.frame.origin *= factor;
         self.frame.scale *= factor;
+        // Weights are areas.
         self.weight *= factor * factor;
         self.covering_radius = self.covering_radius.map(|covering_radius| CoveringRadius {
             radius: factor * covering_radius.radius,
@@ -132,7 +131,7 @@ impl PointBvh {
 
     /// Returns the centre of a point's leaf relative to the origin, and the point relative to that centre, in the
     /// tree's unit.
-    pub(crate) fn stored(&self, index: usize) -> [[f64; 3]; 2] {
+    fn stored(&self, index: usize) -> [[f64; 3]; 2] {
         let (leaf, lane) = (index / WIDTH, index % WIDTH);
         let offset = &self.leaves[leaf].offset;
         [self.centre(leaf), std::array::from_fn(|axis| f64::from(offset[axis][lane]))]
@@ -140,7 +139,7 @@ impl PointBvh {
 
     /// Returns the centre of a leaf's box relative to the origin, in the tree's unit.
     #[inline(always)]
-    pub(crate) fn centre(&self, leaf: usize) -> [f64; 3] {
+    fn centre(&self, leaf: usize) -> [f64; 3] {
         let (boxes, lane) = (&self.levels[self.levels.len() - 1][leaf / WIDTH], leaf % WIDTH);
         std::array::from_fn(|axis| f64::from(boxes.centre[axis][lane]))
     }

@@ -113,10 +113,12 @@ impl Traversal {
         max_nodes: usize,
     ) -> Option<usize> {
         let TraversalInput { tree, setup, .. } = input;
+        // Levels alternate between the lists, the root in list 0.
         self.leaves = tree.levels.len() % 2;
         if setup.fits {
             return descend(level, &mut self.nodes, input, levels, max_nodes);
         }
+        // Where `f32` cannot hold the coordinates, nothing can be ruled out.
         let count = tree.levels.get(levels).map_or(tree.leaves.len(), |boxes| boxes.len());
         (count <= max_nodes).then(|| {
             self.nodes[levels % 2].set_all(count);
@@ -178,6 +180,8 @@ pub(super) fn within<S: Simd>(
 ) -> (u32, u32x16<S>) {
     let (low, high) = (*z - half[2], *z + half[2]);
     let zero = f32x16::splat(simd, 0.0);
+    // The distance from the axis of the nearest point of the box. The boxes are those along the tool's axes, so a
+    // rotated box is taken larger than it is.
     let (dx, dy) = ((x.abs() - half[0]).max(zero), (y.abs() - half[1]).max(zero));
     let squared = dx * dx + dy * dy;
     let mut by = u32x16::splat(simd, 0);
@@ -185,6 +189,7 @@ pub(super) fn within<S: Simd>(
     while left != 0 {
         let slab = left.trailing_zeros();
         left &= left - 1;
+        // The remainder changes no index; it saves the bounds check.
         let [slab_low, slab_high, radius] = reach.slabs[slab as usize % SLABS];
         let here = low.simd_le(slab_high) & high.simd_ge(slab_low) & squared.simd_le(radius);
         by = here.select(by | (1 << slab), by);
@@ -232,6 +237,7 @@ fn descend_on<S: Simd>(
     for (level, boxes) in input.tree.levels[..levels].iter().enumerate() {
         let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
         children_on(simd, input, boxes, from, 0..from.count, to);
+        // The budget counts what was kept: these are the nodes that the next level opens.
         spent += to.count;
         if spent > max_nodes {
             return None;
@@ -263,6 +269,7 @@ fn children_on<S: Simd>(
     kept: &mut Nodes,
 ) {
     let TraversalInput { setup, view, .. } = input;
+    // For all children of all nodes, so that the loop need not test the room.
     kept.make_room(positions.len() * WIDTH);
     let mut count = 0;
     for position in positions {

@@ -43,19 +43,22 @@ impl ToolEnvelope {
     pub fn widened(tree: &PointBvh, info: &ToolInfo, unit: Unit, distance: f64) -> ToolEnvelope {
         let length = info.unit.factor_to(unit);
         let distance = distance / length;
-        let wide = |Interval { low, high }| Interval::new(low - distance, high + distance);
-        let slab = |slab: &EnvelopeSlab| {
+        let slabs = info.envelope.iter().map(|slab| {
             EnvelopeSlab::new(slab.low - distance, slab.high + distance, slab.radius + distance)
-        };
+        });
+        // The setup reads nothing but the envelope, the symmetry and the unit.
         let envelope = ToolInfo {
             name: Cow::Borrowed(""),
             title: Cow::Borrowed(""),
             surfaces: Cow::Borrowed(&[]),
             regions: Cow::Borrowed(&[]),
-            envelope: info.envelope.iter().map(slab).collect(),
+            envelope: slabs.collect(),
             symmetry: match info.symmetry {
                 Symmetry::Revolved => Symmetry::Revolved,
-                Symmetry::Solid { extent } => Symmetry::Solid { extent: extent.map(wide) },
+                Symmetry::Solid { extent } => Symmetry::Solid {
+                    extent: extent
+                        .map(|side| Interval::new(side.low - distance, side.high + distance)),
+                },
             },
             outline: Cow::Borrowed(&[]),
             ..*info
@@ -98,6 +101,7 @@ impl InsideQuery {
         if candidates.points.is_empty() {
             return;
         }
+        // Only what the result holds is computed.
         let outputs = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         tool.evaluate(level, outputs, &candidates.points, *length, evaluations);
         points.extend(evaluations.inside_indices().map(|candidate| InsidePoint {
@@ -120,6 +124,7 @@ impl InsideQuery {
         }
         let input = TraversalInput { tree, setup: &envelope.setup, view: &self.view };
         let visited = self.traversal.leaves(Level::new(), input, MAX_REACH_NODES);
+        // An aborted descent has found nothing yet, which proves nothing.
         visited.is_some() && self.traversal.found().len() == 0
     }
 }

@@ -76,7 +76,9 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
     pub(crate) fn of(
         trees: impl DoubleEndedIterator<Item = &'a PointBvh> + Clone,
         unit: Unit,
-        (tool, budget, law): (&'a T, usize, Law),
+        tool: &'a T,
+        budget: usize,
+        law: Law,
     ) -> Result<LodProbe<'a, T>, BudgetError> {
         let needed = trees.clone().next().map_or(0, PointBvh::nodes);
         if budget < needed {
@@ -90,6 +92,7 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
     pub fn wrench(&mut self, pose: &Pose) -> LodWrench {
         let last = self.last.take();
         let (mut nodes, mut finest, mut in_reach) = (0, 0, false);
+        // From the coarsest level on: what remains of the budget buys the next finer one.
         let coarsest = self.probes.len() - 1;
         for (index, probe) in self.probes.iter_mut().enumerate() {
             if last.as_ref().is_some_and(|last| last.remaining > 0 && coarsest - index < last.level)
@@ -113,6 +116,7 @@ impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
                 ),
                 None => ([Vector3::zeros(); 2], 0),
             };
+            // At the change the result is that of the query before; the difference fades out.
             let weight = f64::from(remaining) / f64::from(BLEND_QUERIES);
             wrench.force += weight * step[0];
             wrench.torque += weight * step[1];

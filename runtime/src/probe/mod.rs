@@ -8,20 +8,15 @@
 
 mod contacts;
 mod inside;
-mod law;
 mod lod;
-mod posture;
 mod state;
-mod stiffness;
 mod wrench;
 
-pub use contacts::{Contact, Summary, summary};
+pub use contacts::{Contact, DeepestPoint, Posture, Summary, summary};
 pub use inside::{InsidePoint, InsideQuery, ToolEnvelope};
-pub use law::{Law, Weights};
 pub use lod::{BudgetError, LodProbe, LodWrench};
-pub use posture::{DeepestPoint, Posture};
-pub use stiffness::Stiffness;
-pub use wrench::{Wrench, WrenchRounding};
+pub use state::{Law, Weights};
+pub use wrench::{Stiffness, Wrench, WrenchRounding};
 
 use crate::bvh::WIDTH;
 use crate::debug::debug;
@@ -48,6 +43,8 @@ use state::QueryState;
 pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
     tool: &'a T,
     state: QueryState<'a>,
+    /// Memory of [`Probe::contacts`].
+    contacts: Vec<Contact>,
 }
 
 debug!([T: ?Sized] Probe<'_, T>, "Probe", |this| {
@@ -97,7 +94,7 @@ impl OutputSelection for Everything {
 impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// Makes a probe of a part's points in their tree, whose lengths are in `unit`.
     pub(crate) fn of(tree: &'a PointBvh, unit: Unit, tool: &'a T) -> Probe<'a, T> {
-        Probe { tool, state: QueryState::new(tree, unit, tool.info()) }
+        Probe { tool, state: QueryState::new(tree, unit, tool.info()), contacts: Vec::new() }
     }
 
     /// Sets the force law.
@@ -135,7 +132,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     pub fn with_reserved_memory(mut self) -> Probe<'a, T> {
         self.reserve();
         let points = self.state.tree.slots();
-        reserve(&mut self.state.contacts, points);
+        reserve(&mut self.contacts, points);
         self
     }
 
@@ -195,6 +192,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
     /// without contact, plus the [sampling error bound](Probe::sampling_error_bound). `None` if that bound is not
     /// known.
     pub fn depth_bound(&mut self, pose: &Pose) -> Option<f64> {
+        // Before the query: without a bound it would be in vain.
         let error_bound = self.sampling_error_bound()?;
         Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + error_bound)
     }
@@ -206,6 +204,7 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
             return false;
         }
         self.state.traverse_to_last_hit();
+        // The remaining nodes are visited one by one, so that a hit ends the query early.
         let is_inside = self.filter_and_evaluate::<Inside>() || {
             // Each node has sixteen leaves.
             let nodes = self.state.traverse_to_nodes();
@@ -222,13 +221,13 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
 
     /// Returns the deepest point; `None` without contact.
     pub fn deepest(&mut self, pose: &Pose) -> Option<DeepestPoint> {
-        if self.query::<Depths>(pose) { posture::deepest(&self.state, pose) } else { None }
+        if self.query::<Depths>(pose) { contacts::deepest(&self.state, pose) } else { None }
     }
 
     /// Returns the quantities that a posture is judged by: niceness, and the depth at cutting and other surfaces.
     pub fn posture(&mut self, pose: &Pose) -> Posture {
         if self.query::<Postures>(pose) {
-            posture::posture(&self.state, self.tool.info(), pose)
+            contacts::posture(&self.state, self.tool.info(), pose)
         } else {
             Posture::default()
         }
@@ -265,13 +264,11 @@ impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
 
     /// Returns every point of the part inside the tool, with all outputs there.
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
-        let mut contacts = std::mem::take(&mut self.state.contacts);
-        contacts.clear();
+        self.contacts.clear();
         if self.query::<Everything>(pose) {
-            contacts::collect(&self.state, self.tool.info(), pose, &mut contacts);
+            contacts::collect(&self.state, self.tool.info(), pose, &mut self.contacts);
         }
-        self.state.contacts = contacts;
-        &self.state.contacts
+        &self.contacts
     }
 
     /// Returns the tree indices of the points inside that are deeper than `depth`, which is in the part's unit.

@@ -8,15 +8,39 @@
 //! Only [`QueryState::evaluate`] depends on the tool's type, so everything else is compiled once, in this crate.
 
 use crate::bvh::{PoseTransform, QuerySetup, WIDTH};
+use crate::keywords::keyword_enum;
 use crate::point_bvh::{Candidates, PointBvh, Traversal, TraversalInput, filter};
 use crate::pose::Pose;
-use crate::probe::contacts::Contact;
-use crate::probe::law::{Law, Weights};
-use crate::probe::wrench::{self, Wrench};
 use crate::tool::{BatchEvaluator, Evaluations, OutputSelection, ToolInfo};
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
+
+/// The force on the tool as a function of a contact's magnitude. `m` is the magnitude, `w` the weight, `n` the part's
+/// outward normal, `u` the direction to the tool's nearest surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Law {
+    /// `w m (n − u)` (Ho 1999, eq. 5.1, without the factor ½). Not conservative.
+    #[default]
+    Thesis,
+    /// `w m ∇m`, the gradient of the energy `½ Σ w m²`: conservative.
+    Gradient,
+    /// The law `Thesis` without points whose normal faces away (`u · n > 0`), for thin sheets.
+    Facing,
+}
+
+/// The weight of a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Weights {
+    /// The point's share of the surface: forces converge as the cloud gets denser.
+    #[default]
+    Area,
+    /// 1 for every point, as in the thesis: forces grow with the density.
+    Unit,
+}
+
+keyword_enum!(Law, "thesis, gradient, facing", Thesis "thesis", Gradient "gradient", Facing "facing");
+keyword_enum!(Weights, "area, unit", Area "area", Unit "unit");
 
 /// A part, the settings of a query, and memory for the results.
 pub(super) struct QueryState<'a> {
@@ -40,7 +64,6 @@ pub(super) struct QueryState<'a> {
     pub(super) evaluations: Evaluations,
     /// Memory that tools keep between evaluations of single points.
     pub(super) scratch: Evaluations,
-    pub(super) contacts: Vec<Contact>,
 }
 
 impl<'a> QueryState<'a> {
@@ -63,7 +86,6 @@ impl<'a> QueryState<'a> {
             hit: 0,
             evaluations: Evaluations::default(),
             scratch: Evaluations::default(),
-            contacts: Vec::new(),
         }
     }
 
@@ -116,6 +138,7 @@ impl<'a> QueryState<'a> {
         &mut self,
         tool: &T,
     ) -> bool {
+        // The evaluations are those of the query before, and must not be read.
         if self.candidates.points.is_empty() {
             return false;
         }
@@ -126,11 +149,6 @@ impl<'a> QueryState<'a> {
             &mut self.evaluations,
         );
         self.evaluations.inside.iter().any(|block| *block != 0)
-    }
-
-    /// Sums the evaluations of the points inside.
-    pub(super) fn reduce(&self, pose: &Pose) -> Wrench {
-        wrench::sum(self, pose)
     }
 
     /// Records the leaf of the first point inside.

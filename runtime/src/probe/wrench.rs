@@ -1,12 +1,14 @@
-//! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5).
+//! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5), and the derivative of that wrench with respect to
+//! the tool's pose.
 
-use super::state::QueryState;
-use super::{DeepestPoint, Law, Weights, posture};
 use crate::bvh::LaneVector;
 use crate::pose::Pose;
-use crate::tool::LANES;
+use crate::probe::contacts::{DeepestPoint, deepest_point};
+use crate::probe::state::QueryState;
+use crate::probe::{Everything, Law, Probe, Weights};
+use crate::tool::{BatchEvaluator, LANES, Tool};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// The wrench on a tool at a pose. Force and torque act on the tool and are given in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +67,7 @@ impl Wrench {
 
     /// Adds the wrench of another part, in the same frame and about the same point.
     pub(crate) fn add(&mut self, other: &Wrench) {
+        // A sum with nothing keeps its bits, the law and the weights included.
         if other.colliding == 0 {
             return;
         }
@@ -96,13 +99,11 @@ impl Wrench {
     /// Transforms the wrench from its own frame to the frame in which its own is at `frame`.
     pub(crate) fn turned(mut self, frame: &Pose) -> Wrench {
         if self.colliding > 0 && *frame != Pose::default() {
-            let turned = |v: Vector3<f64>| {
-                (frame.rotation() * v, ROTATION_ERROR_FACTOR * UNIT_ROUNDOFF * v.norm())
-            };
-            let (force, torque) = (turned(self.force), turned(self.torque));
-            (self.force, self.torque) = (force.0, torque.0);
-            self.rounding.force += force.1;
-            self.rounding.torque += torque.1;
+            let error = ROTATION_ERROR_FACTOR * UNIT_ROUNDOFF;
+            self.rounding.force += error * self.force.norm();
+            self.rounding.torque += error * self.torque.norm();
+            self.force = frame.rotation() * self.force;
+            self.torque = frame.rotation() * self.torque;
             if let Some(deepest) = &mut self.deepest {
                 deepest.point = frame.tip() + frame.rotation() * deepest.point.coords;
             }
@@ -148,30 +149,31 @@ struct Totals {
     deepest: f64,
 }
 
-/// Sums the evaluations of the points inside.
-pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
-    let colliding = state.evaluations.count();
-    let totals = dispatch!(state.level, simd => totals(simd, state, pose));
-    let rotation = pose.rotation();
-    let vector =
-        |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
-    // In the tool's frame, lengths are in the tool's unit.
-    let force = rotation * vector(&totals.tool, 0);
-    let torque_about_tip = rotation * (vector(&totals.tool, 3) * state.length);
-    let arm = rotation * state.centre.coords;
-    let torque = torque_about_tip - arm.cross(&force);
-    Wrench {
-        law: state.law,
-        weights: state.weights,
-        colliding,
-        deepest: (totals.depth >= 0.0)
-            .then(|| posture::deepest_point(state, pose, totals.deepest as usize, totals.depth)),
-        force,
-        torque,
-        niceness: (colliding > 0).then_some(totals.niceness),
-        integral: totals.weighted_sums[0],
-        energy: totals.weighted_sums[1] / 2.0,
-        rounding: rounding(state, &totals, torque),
+impl QueryState<'_> {
+    /// Sums the evaluations of the points inside.
+    pub(super) fn reduce(&self, pose: &Pose) -> Wrench {
+        let colliding = self.evaluations.count();
+        let totals = dispatch!(self.level, simd => totals(simd, self, pose));
+        let rotation = pose.rotation();
+        let [fx, fy, fz, mx, my, mz] = totals.tool;
+        let force = rotation * Vector3::new(fx, fy, fz);
+        // In the tool's frame, lengths are in the tool's unit.
+        let torque_about_tip = rotation * (Vector3::new(mx, my, mz) * self.length);
+        let arm = rotation * self.centre.coords;
+        let torque = torque_about_tip - arm.cross(&force);
+        Wrench {
+            law: self.law,
+            weights: self.weights,
+            colliding,
+            deepest: (totals.depth >= 0.0)
+                .then(|| deepest_point(self, pose, totals.deepest as usize, totals.depth)),
+            force,
+            torque,
+            niceness: (colliding > 0).then_some(totals.niceness),
+            integral: totals.weighted_sums[0],
+            energy: totals.weighted_sums[1] / 2.0,
+            rounding: rounding(self, &totals, torque),
+        }
     }
 }
 
@@ -216,6 +218,7 @@ fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
         }
     }
     let depth = sums.depth.reduce_max();
+    // Of equally deep points the first: the least index in any lane, as if the points were taken one by one.
     let last = f64x8::splat(simd, f64::INFINITY);
     let deepest = sums.depth.simd_ge(depth).select(sums.deepest, last);
     Totals {
@@ -294,6 +297,7 @@ fn add<S: Simd>(
     let niceness = sums.niceness.min(load(simd, &evaluations.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
     let depth = load(simd, &evaluations.depth, block);
+    // Lanes outside hold meaningless depths.
     let deeper = in_solid & depth.simd_gt(sums.depth);
     let indices = f64x8::from_slice(simd, &LANE_INDICES) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
@@ -321,6 +325,7 @@ fn add<S: Simd>(
         *part = turned - *part;
     }
     let force = match state.law {
+        // A point whose normal faces the way out of the tool lies on the far side of a thin sheet.
         Law::Facing => facing.simd_le(zero).select(weighted_magnitude, zero),
         _ => weighted_magnitude,
     };
@@ -348,4 +353,138 @@ fn accumulate<S: Simd>(
     sums[3] += p[1] * f[2] - p[2] * f[1];
     sums[4] += p[2] * f[0] - p[0] * f[2];
     sums[5] += p[0] * f[1] - p[1] * f[0];
+}
+
+/// A wrench, and its derivative with respect to the tool's pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    /// The wrench at the pose.
+    pub wrench: Wrench,
+    /// The matrix `K`. As the tool moves by a small `u` and rotates by a small `θ` about its compliance centre, both in
+    /// the world's frame, its force grows by the first three components of `-K (u, θ)` and its torque by the last
+    /// three. The four blocks are in force per unit of length (the part's), force per radian, torque per unit of length
+    /// and torque per radian.
+    ///
+    /// A point that enters the tool contributes nothing at first, since its magnitude is 0 at the surface. Torque is
+    /// about a centre that moves with the tool. In a contact that exerts force, only the first three rows and columns
+    /// are therefore symmetric, and these only for [`Law::Gradient`].
+    pub matrix: Matrix6<f64>,
+}
+
+impl<T: BatchEvaluator + ?Sized> Probe<'_, T> {
+    /// Returns the wrench and its derivative with respect to the pose. The derivative of each point inside is taken by
+    /// the chain rule through the tool's own evaluators ([`Tool::derivatives`]), so it is exact up to rounding, except
+    /// on borders between regions.
+    pub fn stiffness(&mut self, pose: &Pose) -> Stiffness {
+        if !self.state.set_pose(pose) {
+            return self.zero_stiffness();
+        }
+        self.state.traverse(usize::MAX);
+        self.state.filter(true);
+        if !self.state.evaluate::<Everything, T>(self.tool) {
+            return self.zero_stiffness();
+        }
+        let wrench = self.state.reduce(pose);
+        Stiffness { wrench, matrix: self.state.matrix(self.tool, pose) }
+    }
+
+    /// Returns the stiffness without contact.
+    fn zero_stiffness(&self) -> Stiffness {
+        Stiffness { wrench: self.zero_wrench(), matrix: Matrix6::zeros() }
+    }
+}
+
+impl QueryState<'_> {
+    /// Sums the derivatives over all points inside, in the tool's frame, and rotates the sum to the world's frame at
+    /// the end.
+    ///
+    /// Let `p` be the point in the tool's frame and `r` the arm from the centre to it. A force `f = R φ(p)` changes by
+    /// `θ × f - A (u + θ × r)`, where `A = R Dφ Rᵀ`. For a force along `n - R u`, in which the part's normal `n` does
+    /// not rotate with the tool, the first term is `θ × f'` instead, where `f'` is the tool's share of the force. The
+    /// arm changes by `-u`.
+    fn matrix<T: Tool + ?Sized>(&mut self, tool: &T, pose: &Pose) -> Matrix6<f64> {
+        let rotation = pose.rotation();
+        // The tool needs it while the evaluations of this state are read.
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut sum = StiffnessSum::default();
+        for candidate in self.evaluations.inside_indices() {
+            let index = self.candidates.indices()[candidate] as usize;
+            let weight = match self.weights {
+                Weights::Area => self.tree.weight(index),
+                Weights::Unit => 1.0,
+            };
+            let vector =
+                |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[candidate]));
+            let position = vector(self.candidates.points.lists());
+            // The centre is in the part's unit, the candidates are in the tool's.
+            let arm = position * self.length - self.centre.coords;
+            let magnitude = self.evaluations.magnitude[candidate];
+            let gradient = vector(&self.evaluations.gradient);
+            let derivatives = tool.derivatives(position.into(), self.length, &mut scratch);
+            let gradient_row = gradient.transpose();
+            if self.law == Law::Gradient {
+                let block = weight
+                    * (gradient * gradient_row + magnitude * matrix_of(derivatives.gradient));
+                let force = weight * magnitude * gradient;
+                sum.add(block, arm, force, force);
+                continue;
+            }
+            let direction = vector(&self.evaluations.direction);
+            let normal = rotation.tr_mul(&Vector3::from(self.tree.normal(index)));
+            // Such a point exerts no force, nor does it after a small displacement.
+            if self.law == Law::Facing && normal.dot(&direction) > 0.0 {
+                continue;
+            }
+            let relative = normal - direction;
+            let block =
+                weight * (relative * gradient_row - magnitude * matrix_of(derivatives.direction));
+            let weighted_magnitude = weight * magnitude;
+            sum.add(block, arm, weighted_magnitude * relative, -weighted_magnitude * direction);
+        }
+        self.scratch = scratch;
+        sum.rotated(rotation)
+    }
+}
+
+fn matrix_of(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| rows[row][column])
+}
+
+/// The four blocks of the matrix, in the tool's frame.
+#[derive(Default)]
+struct StiffnessSum {
+    force: [Matrix3<f64>; 2],
+    torque: [Matrix3<f64>; 2],
+}
+
+impl StiffnessSum {
+    /// Adds a force at an arm, given its derivative `block` with respect to the position and the share `moment` of it that
+    /// rotates with the tool.
+    fn add(
+        &mut self,
+        block: Matrix3<f64>,
+        arm: Vector3<f64>,
+        force: Vector3<f64>,
+        moment: Vector3<f64>,
+    ) {
+        let (arm, moment) = (arm.cross_matrix(), moment.cross_matrix());
+        // A rotation `θ` moves the point by `θ × arm`, and turns the share of the force that turns with the tool.
+        let by_rotation = moment - block * arm;
+        self.force[0] += block;
+        self.force[1] += by_rotation;
+        // The torque `arm × force`: the arm shortens by what the tool moves.
+        self.torque[0] += arm * block - force.cross_matrix();
+        self.torque[1] += arm * by_rotation;
+    }
+
+    fn rotated(&self, rotation: &Matrix3<f64>) -> Matrix6<f64> {
+        let mut matrix = Matrix6::zeros();
+        for (row, blocks) in [&self.force, &self.torque].into_iter().enumerate() {
+            for (column, block) in blocks.iter().enumerate() {
+                let rotated = rotation * block * rotation.transpose();
+                matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column).copy_from(&rotated);
+            }
+        }
+        matrix
+    }
 }

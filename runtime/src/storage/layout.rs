@@ -27,7 +27,7 @@ const CHECKSUM_RANGE: std::ops::Range<usize> = 16..20;
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Start {
-    pub(super) magic: [u8; 16],
+    magic: [u8; 16],
     /// The checksum of the whole header, computed with this field set to 0.
     pub(super) checksum: u32,
     pub(super) version: u32,
@@ -39,7 +39,7 @@ pub(super) struct Start {
     pub(super) trees: u32,
     /// 1 if there are mesh diagnostics, otherwise 0.
     pub(super) surveyed: u32,
-    pub(super) zero: [u32; 3],
+    zero: [u32; 3],
 }
 
 /// Mesh diagnostics; all zeros if there are none.
@@ -77,7 +77,7 @@ pub(super) struct SectionHeader {
     pub(super) at: u64,
     pub(super) bytes: u64,
     pub(super) checksum: u32,
-    pub(super) zero: u32,
+    zero: u32,
 }
 
 /// One of a tree's lists.
@@ -108,6 +108,7 @@ pub(super) fn lists(points: u64) -> Vec<(List, u64)> {
     while let Some(&count) = boxes.last()
         && count > 1
     {
+        // As the tree is built: until one block holds a whole level.
         boxes.push(count.div_ceil(WIDTH as u64));
     }
     let boxes = boxes.into_iter().rev().enumerate();
@@ -224,6 +225,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
         .iter()
         .flat_map(|(tree, lists)| lists.iter().map(|(list, _)| list.of(tree)))
         .collect();
+    // All at once, on all cores: the header that holds them comes first in the file.
     let mut sums = checksums(&sections).into_iter();
 
     let records = size_of::<Start>()
@@ -244,6 +246,7 @@ pub(super) fn of(part: &Part) -> (Vec<u8>, Vec<&[u8]>) {
             at += bytes.next_multiple_of(ALIGN);
         }
     }
+    // So that the first list begins at a multiple of the alignment.
     header.resize(length, 0);
     let start = Start {
         magic: MAGIC,
@@ -276,12 +279,12 @@ pub(super) fn header_checksum(header: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// Returns the checksum of each section, padded with zeros to a multiple of [`ALIGN`]: the CRC-32 of the
-/// CRC-32s of its chunks. A CRC-32 detects every change within 32 consecutive bits. A flipped bit is
-/// therefore always detected: it changes its chunk's CRC-32, which is 32 consecutive bits of the input
-/// of the last CRC-32.
+/// Returns the checksum of each section, padded with zeros to a multiple of [`ALIGN`]: the CRC-32 of the CRC-32s of its
+/// chunks. A CRC-32 detects every change within 32 consecutive bits. A flipped bit is therefore always detected: it
+/// changes its chunk's CRC-32, which is 32 consecutive bits of the input of the last CRC-32.
 pub(super) fn checksums(sections: &[&[u8]]) -> Vec<u32> {
     let chunks: Vec<&[u8]> = sections.iter().flat_map(|bytes| bytes.chunks(CHUNK)).collect();
+    // In chunks, so that one long list is not left to one core.
     let sums = parallel::ranges(chunks.len(), 1, |at| {
         let chunk = chunks[at.start];
         let mut sum = crc32fast::Hasher::new();

@@ -1,24 +1,18 @@
 //! Saving parts to files and opening them in milliseconds.
 //!
-//! **The file** is the part's memory image, little-endian. Its header contains the [magic
-//! bytes](layout::MAGIC), the header's checksum and length, the version, the file's length, the unit,
-//! and the mesh diagnostics. For each tree it contains the frame, the number of points, and the offset,
-//! length and checksum of each list ([`layout`] defines the records). Then come the lists, each at a
-//! multiple of 64 bytes, with the finest tree first. The lists of a tree are the boxes level by level
-//! from the root's children, the points, their normals and weights, and their triangles' ids.
+//! **The file** is the part's memory image, little-endian. Its header contains the [magic bytes](layout::MAGIC), the
+//! header's checksum and length, the version, the file's length, the unit, and the mesh diagnostics. For each tree it
+//! contains the frame, the number of points, and the offset, length and checksum of each list ([`layout`] defines the
+//! records). Then come the lists, each at a multiple of 64 bytes, with the finest tree first. The lists of a tree are
+//! the boxes level by level from the root's children, the points, their normals and weights, and their triangles' ids.
 //!
-//! **Opening** reads each list directly into its final memory and then validates it. The checks cover
-//! the magic bytes, the file length, every checksum, the lengths of the lists for the number of points,
-//! and the ends of the lists. After that, no query can index outside a list. The lists are not
-//! memory-mapped: another process may shorten a mapped file, which terminates the program, and no safe
-//! function can rule that out.
+//! **Opening** reads each list directly into its final memory and then validates it. The checks cover the magic bytes,
+//! the file length, every checksum, the lengths of the lists for the number of points, and the ends of the lists. After
+//! that, no query can index outside a list. The lists are not memory-mapped: another process may shorten a mapped file,
+//! which terminates the program, and no safe function can rule that out.
 
-mod error;
-mod foreign;
 mod layout;
 mod read;
-
-pub use error::SavedError;
 
 use crate::atomic_file::AtomicFile;
 use crate::input;
@@ -26,6 +20,116 @@ use crate::part::Part;
 use layout::ALIGN;
 use std::io::{self, Write};
 use std::path::Path;
+
+/// Reasons why a saved part could not be opened, or why a part could not be saved. Byte offsets count from 0.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SavedError {
+    /// The file system refused to read the file.
+    #[error("cannot read {file}: {source}: check the path and its permissions")]
+    Unreadable {
+        /// The file name.
+        file: String,
+        /// The error of the operating system.
+        source: io::Error,
+    },
+    /// The file does not begin as saved parts do.
+    #[error(
+        "{file} is no saved part: it seems to be {seems}: open what `Part::save` wrote, and make \
+         a part from a mesh by `Part::from_mesh`"
+    )]
+    UnknownFormat {
+        /// The file name.
+        file: String,
+        /// The presumed kind of file.
+        seems: &'static str,
+    },
+    /// The file is shorter than its header declares.
+    #[error(
+        "{file} is cut off: it has {has} bytes and needs at least {needs}: copy it again, or \
+         make it again from the mesh"
+    )]
+    Truncated {
+        /// The file name.
+        file: String,
+        /// The file length in bytes.
+        has: u64,
+        /// The minimum file length in bytes.
+        needs: u64,
+    },
+    /// The file continues after the end of the part.
+    #[error(
+        "{file} has {has} bytes, and the part in it ends after {needs}: copy it again, or make \
+         it again from the mesh"
+    )]
+    Trailing {
+        /// The file name.
+        file: String,
+        /// The file length in bytes.
+        has: u64,
+        /// The expected file length in bytes.
+        needs: u64,
+    },
+    /// The file has a later version than this program supports.
+    #[error(
+        "{file} is a saved part of version {version}, and versions up to {reads} are read here: \
+         update this program, or make the file again from the mesh"
+    )]
+    Newer {
+        /// The file name.
+        file: String,
+        /// The version of the file.
+        version: u32,
+        /// The newest supported version.
+        reads: u32,
+    },
+    /// A checksum does not match the bytes.
+    #[error(
+        "{file} is damaged: the checksum of {section}, bytes {from} to {to}, is wrong: copy it \
+         again, or make it again from the mesh"
+    )]
+    Damaged {
+        /// The file name.
+        file: String,
+        /// The damaged section.
+        section: String,
+        /// The byte offset at which the section begins.
+        from: u64,
+        /// The byte offset at which the section ends: the first byte after it.
+        to: u64,
+    },
+    /// The checksums match, but the content is not a valid part.
+    #[error(
+        "{file} contradicts itself: {what}: the program that wrote it has a fault; make it again \
+         from the mesh with another version, and report this"
+    )]
+    Inconsistent {
+        /// The file name.
+        file: String,
+        /// The contradiction found.
+        what: String,
+    },
+    /// The file system refused to write the file; any previous file is unchanged.
+    #[error(
+        "cannot write {file}: {source}: check the path, its permissions and the room left; the \
+         file is as it was"
+    )]
+    Unwritable {
+        /// The file name.
+        file: String,
+        /// The error of the operating system.
+        source: io::Error,
+    },
+    /// This machine is big-endian.
+    #[error(
+        "{file}: saved parts are little-endian and this machine is big-endian: make the part \
+         from the mesh instead"
+    )]
+    BigEndian {
+        /// The file name.
+        file: String,
+    },
+}
 
 impl Part {
     /// Writes the part to a file for [`Part::open`], replacing an existing file: completely or, if
@@ -36,15 +140,13 @@ impl Part {
     /// Returns the errors of the file system, and [`SavedError::BigEndian`] on a big-endian machine.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SavedError> {
         let path = path.as_ref();
-        let file = || path.display().to_string();
         refuse_big_endian(path)?;
         let (header, sections) = layout::of(self);
         replace(path, |out| write(out, &header, &sections))
-            .map_err(|source| SavedError::Unwritable { file: file(), source })
+            .map_err(|source| SavedError::Unwritable { file: path.display().to_string(), source })
     }
 
-    /// Opens a part written by [`Part::save`]. Every query gives bitwise the same answers as with the
-    /// saved part.
+    /// Opens a part written by [`Part::save`]. Every query gives bitwise the same answers as with the saved part.
     ///
     /// The file is read into memory, 34 bytes per point and level, and then validated. The part does not
     /// depend on the file afterwards: the file may be changed, shortened or removed while the part is in

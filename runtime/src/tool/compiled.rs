@@ -116,6 +116,7 @@ impl<T: Evaluators> Tool for T {
     }
 
     fn clearance(&self, point: [f64; 3]) -> f64 {
+        // The formulas of the clearance hold outside only.
         if T::contains(point) { 0.0 } else { T::clearance(point) }
     }
 
@@ -142,6 +143,7 @@ impl<T: Evaluators> Tool for T {
     }
 
     fn derivatives(&self, point: [f64; 3], length: f64, _: &mut Evaluations) -> Derivatives {
+        // The derivatives are the slopes of these two, so nothing else has to be evaluated.
         let outputs = Outputs { direction: true, gradient: true, ..Outputs::INSIDE };
         let evaluation =
             T::evaluate_lanes(Dual::point(point), Dual::constant(length), true, outputs);
@@ -184,6 +186,7 @@ fn evaluate_blocks<T: Evaluators, S: Simd>(
     let lists = points.coordinates();
     for index in 0..evaluations.inside.len() {
         let block = index * LANES..(index + 1) * LANES;
+        // Padding must not count as inside, whatever numbers it holds.
         let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), index)));
         let p = [
             f64x8::from_slice(simd, &lists[0][block.clone()]),

@@ -11,6 +11,7 @@ use crate::interval::Interval;
 use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 use tool_dsl::bound::lateral_extent;
 use tool_dsl::domain::Domain;
@@ -172,6 +173,7 @@ impl Tool for Interpreted {
             return 0.0;
         }
         let block = point.map(|coordinate| [coordinate; BLOCK_POINTS]);
+        // A tape runs on blocks, so the point is put in every lane.
         let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK_POINTS]]);
         self.clearance_tape.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
         results[0][0]
@@ -198,13 +200,15 @@ impl Tool for Interpreted {
         reference: [f64; 3],
         scratch: &mut Evaluations,
     ) -> Option<EvaluationEnclosure> {
+        // With a profile, distances are known exactly, and no enclosure is as tight.
         if !self.info.outline.is_empty() {
             return None;
         }
         let (point, one) = (Enclosure::of_box(sides, reference), Enclosure::constant(1.0));
         let mut enclosure = EvaluationEnclosure::empty();
-        let visit = |owner, test| enclosure.include(owner, test);
-        self.plan.for_each_owner(point, one, &mut scratch.enclosures, visit);
+        self.plan.for_each_owner(point, one, &mut scratch.enclosures, |owner, test| {
+            enclosure.include(owner, test);
+        });
         Some(enclosure)
     }
 
@@ -212,8 +216,8 @@ impl Tool for Interpreted {
         let mut results = [Dual::default(); OUTPUT_COUNT];
         let duals = (Dual::point(point), Dual::constant(length));
         self.plan.run(duals.0, duals.1, &mut scratch.duals, &mut results);
-        let vector = |from: usize| std::array::from_fn(|k| results[from + k]);
-        Derivatives::of(vector(4), vector(7), length)
+        let [_, _, _, _, direction @ .., gx, gy, gz] = results;
+        Derivatives::of(direction, [gx, gy, gz], length)
     }
 
     fn reserve(&self, evaluations: &mut Evaluations) {
@@ -309,27 +313,28 @@ impl Interpreted {
             Outputs { depth: true, .. } => 2,
             _ => 1,
         };
+        let request = EvaluationRequest { outputs, result_count, length };
         let coordinates = points.coordinates();
         for start in (0..points.len()).step_by(BLOCK_POINTS) {
             let count = BLOCK_POINTS.min(points.len() - start);
+            // Both ways give the same bits; which one is taken is a question of speed alone.
             if count <= MAX_SEPARATE_POINTS {
-                self.evaluate_points(
-                    start..start + count,
-                    coordinates,
-                    (outputs, result_count, length),
-                    evaluations,
-                );
+                self.evaluate_points(start..start + count, coordinates, request, evaluations);
             } else {
-                self.evaluate_block(
-                    start,
-                    coordinates,
-                    (outputs, result_count, length),
-                    points.len(),
-                    evaluations,
-                );
+                self.evaluate_block(start..start + count, coordinates, request, evaluations);
             }
         }
     }
+}
+
+/// The requested outputs of an evaluation, the number of results that they need, and the unit of length.
+#[derive(Clone, Copy)]
+struct EvaluationRequest {
+    outputs: Outputs,
+    /// The results are in a fixed order, of which only the first ones are computed.
+    result_count: usize,
+    /// The tool's unit in the part's unit.
+    length: f64,
 }
 
 /// Maximum number of points of a block that are evaluated one by one, because a tape computes all lanes of a block.
@@ -340,11 +345,12 @@ const MIN_TAPE_POINTS: usize = 8;
 impl Interpreted {
     fn evaluate_points(
         &self,
-        indices: std::ops::Range<usize>,
+        indices: Range<usize>,
         [x, y, z]: [&[f64]; 3],
-        (outputs, result_count, length): (Outputs, usize, f64),
+        request: EvaluationRequest,
         evaluations: &mut Evaluations,
     ) {
+        let EvaluationRequest { outputs, result_count, length } = request;
         let mut results = [0.0; OUTPUT_COUNT];
         for index in indices {
             let point = [x[index], y[index], z[index]];
@@ -360,17 +366,17 @@ impl Interpreted {
     #[inline(always)]
     fn evaluate_block(
         &self,
-        start: usize,
+        indices: Range<usize>,
         coordinates: [&[f64]; 3],
-        (outputs, result_count, length): (Outputs, usize, f64),
-        total: usize,
+        request: EvaluationRequest,
         evaluations: &mut Evaluations,
     ) {
+        let EvaluationRequest { outputs, result_count, length } = request;
+        let (start, count) = (indices.start, indices.len());
         let mut block: [Lanes; 3] = [[0.0; BLOCK_POINTS]; 3];
         let mut owners = [-1.0; BLOCK_POINTS];
-        let count = BLOCK_POINTS.min(total - start);
         for (component, list) in block.iter_mut().zip(coordinates) {
-            component[..count].copy_from_slice(&list[start..start + count]);
+            component[..count].copy_from_slice(&list[indices.clone()]);
         }
         let points = (block.each_ref(), count);
         self.plan.owners(points, length, &mut evaluations.lanes, &mut owners);
@@ -388,6 +394,7 @@ impl Interpreted {
             remaining_count += 1;
         }
         let mut results = [[0.0; BLOCK_POINTS]; OUTPUT_COUNT];
+        // Region by region: the points of one are gathered, so that its tape runs on full lanes.
         while remaining_count > 0 {
             let region = owners[remaining[0]];
             let (mut owned_count, mut other_count) = (0, 0);
@@ -407,6 +414,7 @@ impl Interpreted {
                     component[lane] = list[*index];
                 }
             }
+            // The first result is the owner, which a tape of one region does not compute.
             results[0] = [region; BLOCK_POINTS];
             if owned.len() < MIN_TAPE_POINTS {
                 let mut values = [0.0; OUTPUT_COUNT];

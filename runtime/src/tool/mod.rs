@@ -5,7 +5,6 @@
 //! frame) and in the unit of the tool's file, unless stated otherwise.
 
 mod compiled;
-mod dual;
 mod enclosure;
 mod info;
 #[cfg(feature = "interpreter")]
@@ -13,7 +12,6 @@ mod interpreted;
 mod lane;
 
 pub use compiled::{Evaluators, LaneEvaluation, PointEvaluation};
-pub use dual::Dual;
 pub(crate) use enclosure::bit;
 pub use enclosure::{Enclosure, EvaluationEnclosure, Ternary};
 pub use info::{
@@ -21,7 +19,7 @@ pub use info::{
 };
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
-pub use lane::Lane;
+pub use lane::{Dual, Lane};
 
 use crate::interval::Interval;
 use fearless_simd::Level;
@@ -126,7 +124,7 @@ pub struct Derivatives {
 
 impl Derivatives {
     /// Converts results computed at a [`Dual::point`] of the tool's own unit to derivatives in the part's unit.
-    pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
+    fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
         let rows =
             |vector: [Dual; 3]| vector.map(|component| component.slope.map(|slope| slope / length));
         Derivatives { direction: rows(direction), gradient: rows(gradient) }
@@ -237,7 +235,9 @@ impl PointBatch {
 
     /// Makes room for `additional` further points.
     pub(crate) fn make_room(&mut self, additional: usize) {
+        // Evaluators read whole blocks, so the last one needs its padding.
         let padded = (self.count + additional).next_multiple_of(LANES);
+        // The lists never shrink: numbers from before are as good as padding as zeros are.
         if self.lists[0].len() < padded {
             self.lists.iter_mut().for_each(|list| list.resize(padded, 0.0));
         }
@@ -299,19 +299,19 @@ pub struct Evaluations {
     pub region: Vec<f64>,
     /// Registers of the interpreter's tapes.
     #[cfg(feature = "interpreter")]
-    pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
+    registers: Vec<tool_dsl::interpret::Lanes>,
     /// Scratch memory of the interpreter for a point.
     #[cfg(feature = "interpreter")]
-    pub(crate) scratch: tool_dsl::interpret::Scratch,
+    scratch: tool_dsl::interpret::Scratch,
     /// Scratch memory of the interpreter for a point with derivatives.
     #[cfg(feature = "interpreter")]
-    pub(crate) duals: tool_dsl::interpret::Scratch<Dual>,
+    duals: tool_dsl::interpret::Scratch<Dual>,
     /// Scratch memory of the interpreter for a box.
     #[cfg(feature = "interpreter")]
-    pub(crate) enclosures: tool_dsl::interpret::Scratch<Enclosure>,
+    enclosures: tool_dsl::interpret::Scratch<Enclosure>,
     /// Scratch memory of the interpreter for a block of points.
     #[cfg(feature = "interpreter")]
-    pub(crate) lanes: tool_dsl::interpret::Registers,
+    lanes: tool_dsl::interpret::Registers,
 }
 
 impl Evaluations {
@@ -323,6 +323,7 @@ impl Evaluations {
     /// Returns the indices of the points inside, in ascending order.
     pub fn inside_indices(&self) -> impl Iterator<Item = usize> {
         self.inside.iter().enumerate().flat_map(|(block, bits)| {
+            // Bit by bit from the lowest, each cleared once it was taken.
             let mut remaining = *bits;
             std::iter::from_fn(move || {
                 let lane = (remaining != 0).then(|| remaining.trailing_zeros() as usize)?;
@@ -340,9 +341,10 @@ impl Evaluations {
     }
 
     /// Resizes the requested lists for the points, and marks no point as inside.
-    pub(crate) fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
+    fn reserve(&mut self, points: &PointBatch, outputs: Outputs) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
+        // Only the bits are reset. The entries of points outside are meaningless anyway.
         self.inside.resize(blocks, 0);
         self.for_each_requested(outputs, |list| {
             if list.len() < blocks * LANES {
@@ -371,13 +373,15 @@ impl Evaluations {
 /// Reserves memory for a list of `count` entries in all. Nothing is written, so unused memory costs only address space
 /// on systems that hand out pages at the first touch.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
+    // Exactly, since doubling would reserve twice the address space that is counted in the documentation.
     list.reserve_exact(count.saturating_sub(list.len()));
 }
 
 /// Returns the bits of a block that are points and not padding.
-pub(crate) fn present(count: usize, block: usize) -> u8 {
+fn present(count: usize, block: usize) -> u8 {
     match count - block * LANES {
         remaining if remaining >= LANES => u8::MAX,
+        // The last block: as many low bits as there are points left.
         remaining => (1 << remaining) - 1,
     }
 }

@@ -29,6 +29,7 @@ impl Batch {
         for (lane, index) in self.indices.iter().enumerate() {
             for (list, corner) in self.corners.iter_mut().zip(&bvh.corners[*index as usize]) {
                 for axis in 0..3 {
+                    // The difference of given doubles first: it errs by one rounding, wherever part and tool are.
                     list[axis][lane] = corner[axis] - tip[axis];
                 }
             }
@@ -96,6 +97,7 @@ impl Batch {
 
     #[inline(always)]
     fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
+        // The lanes behind the last triangle hold old corners, whose bounds nobody reads.
         let (bound, point) = hull.triangles(simd, &self.load_corners(simd), threshold, None);
         bound.store_slice(&mut self.bounds);
         store(&mut self.points, point);
@@ -111,6 +113,7 @@ impl Batch {
         let points = load(simd, &self.points);
         let (bound, point) =
             hull.triangles(simd, &self.load_corners(simd), threshold, Some(&points));
+        // Both bounds hold, whatever their directions.
         f64x8::from_slice(simd, &self.bounds).min(bound).store_slice(&mut self.bounds);
         store(&mut self.points, point);
     }

@@ -1,8 +1,7 @@
 //! The depth-first traversal of the triangle tree, deepest children first.
 
 use crate::bvh::{Boxes, LaneVector, PoseTransform, WIDTH, extent, load, transform};
-use crate::certify::part::NodeRing;
-use crate::certify::part::{Corners, TriangleBvh};
+use crate::certify::part::{Corners, NodeRing, TriangleBvh};
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
@@ -109,8 +108,7 @@ pub(crate) trait Bounds: BoxBounds {
     ) -> f32x16<S>;
 }
 
-/// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of
-/// heights.
+/// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of heights.
 pub(crate) struct BoxRings<V> {
     pub(crate) near: V,
     pub(crate) far: V,
@@ -164,6 +162,7 @@ pub(crate) fn rings<S: Simd>(
         let across = [far[2] * v + far[1] * w, far[2] * u + far[0] * w, far[0] * v + far[1] * u];
         let curve = shift.deviation_bound(simd, across[0] + across[1] + across[2]);
         for axis in 0..3 {
+            // A component of `axis × p` is no longer than the distance from the axis of the rotation.
             let turned = reach.min(across[axis]) * shift.turn;
             wide[axis] = wide[axis] + turned + shift.straight[axis] + curve;
         }
@@ -178,8 +177,12 @@ pub(crate) fn rings<S: Simd>(
     }
 }
 
-/// The input of a traversal step: the tree, the bound, and the transform to the tool's frame.
-pub(crate) type DescentInput<'a, B> = (&'a TriangleBvh, &'a B, &'a PoseTransform);
+/// A tree of triangles with the bounds by which it is descended, and the transform to the tool's frame.
+pub(crate) struct BoundedTree<'a, B> {
+    pub(crate) bvh: &'a TriangleBvh,
+    pub(crate) bounds: &'a B,
+    pub(crate) view: &'a PoseTransform,
+}
 
 impl Descent {
     pub(crate) fn clear(&mut self) {
@@ -215,6 +218,7 @@ impl Descent {
         while self.indices.len() < LANES
             && let Some(next) = self.stack.pop_if(|node| node.is_triangle(bvh))
         {
+            // The threshold may have risen since it was pushed.
             if next.bound > threshold || next.bound.is_nan() {
                 self.indices.push(next.index);
             }
@@ -226,16 +230,16 @@ impl Descent {
     pub(crate) fn open<B: Bounds>(
         &mut self,
         level: Level,
-        seen: DescentInput<'_, B>,
+        tree: &BoundedTree<'_, B>,
         node: Node,
         threshold: f32,
     ) {
-        let bvh = seen.0;
+        let bvh = tree.bvh;
         let mut bounds = [node.bound; WIDTH];
         let hits = if node.is_leaf(bvh) {
-            of_leaf(level, seen, node, threshold, &mut bounds)
+            of_leaf(level, tree, node, threshold, &mut bounds)
         } else {
-            of_children(level, seen, node, threshold, &mut bounds)
+            of_children(level, tree, node, threshold, &mut bounds)
         };
         self.take(bvh, node, hits, &bounds);
     }
@@ -247,6 +251,7 @@ impl Descent {
 
     fn take(&mut self, bvh: &TriangleBvh, node: Node, hits: u32, bounds: &[f32; WIDTH]) {
         let children = bvh.children(node.level as usize, node.index as usize);
+        // A node at the end of its level has fewer children than 16.
         let mut hits = hits & (u32::MAX >> (32 - children));
         let first = self.stack.len();
         while hits != 0 {
@@ -255,6 +260,7 @@ impl Descent {
             let bound = bounds[lane as usize];
             let index = node.index * WIDTH as u32 + lane;
             let child = Node { level: node.level + 1, index, bound };
+            // Insertion keeps the deepest on top: there are at most 16 children, most of them in order.
             let mut at = self.stack.len();
             self.stack.push(child);
             while at > first && self.stack[at - 1].bound > bound {
@@ -269,30 +275,31 @@ impl Descent {
 /// Returns a bit mask of the bounds that are above `threshold` or NaN.
 #[inline(always)]
 pub(crate) fn above<S: Simd>(bound: f32x16<S>, threshold: f32) -> u32 {
+    // Not `simd_gt`: a NaN bound rules nothing out.
     !bound.simd_le(threshold).to_bitmask() as u32
 }
 
 /// Returns a bit mask of the children of an inner node whose bounds may exceed `threshold`.
 pub(crate) fn of_children<B: BoxBounds>(
     level: Level,
-    seen: DescentInput<'_, B>,
+    tree: &BoundedTree<'_, B>,
     node: Node,
     threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    dispatch!(level, simd => of_boxes(simd, seen, node, threshold, bounds))
+    dispatch!(level, simd => of_boxes(simd, tree, node, threshold, bounds))
 }
 
 #[inline(always)]
 fn of_boxes<S: Simd, B: BoxBounds>(
     simd: S,
-    (bvh, bounded, view): DescentInput<'_, B>,
+    tree: &BoundedTree<'_, B>,
     node: Node,
     threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let boxes = &bvh.levels[node.level as usize][node.index as usize];
-    let bound = bounded.of_boxes(simd, boxes, view, threshold);
+    let boxes = &tree.bvh.levels[node.level as usize][node.index as usize];
+    let bound = tree.bounds.of_boxes(simd, boxes, tree.view, threshold);
     bound.store_slice(bounds);
     above(bound, threshold)
 }
@@ -300,25 +307,25 @@ fn of_boxes<S: Simd, B: BoxBounds>(
 /// The same for a leaf. Without vector instructions its triangles keep the leaf's bound.
 fn of_leaf<B: Bounds>(
     level: Level,
-    seen: DescentInput<'_, B>,
+    tree: &BoundedTree<'_, B>,
     node: Node,
     threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    on_vectors!(level, simd => of_leaf_on(simd, seen, node, threshold, bounds));
+    on_vectors!(level, simd => of_leaf_on(simd, tree, node, threshold, bounds));
     u32::MAX
 }
 
 #[inline(always)]
 fn of_leaf_on<S: Simd, B: Bounds>(
     simd: S,
-    (bvh, bounded, view): DescentInput<'_, B>,
+    tree: &BoundedTree<'_, B>,
     node: Node,
     threshold: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let corners = node.corners(simd, bvh, view);
-    let bound = bounded.of_triangles(simd, &corners, threshold);
+    let corners = node.corners(simd, tree.bvh, tree.view);
+    let bound = tree.bounds.of_triangles(simd, &corners, threshold);
     bound.store_slice(bounds);
     above(bound, threshold)
 }

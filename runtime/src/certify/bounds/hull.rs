@@ -3,13 +3,12 @@
 use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{
-    Clip, NearestPoint, Real, choose, direction_from_axis, distances, extents_from, from_ring,
-    max3, min3, radial_extents, under_both,
+    AxisDistances, Clip, NearestPoint, Real, Ring, choose, direction_from_axis, distances,
+    extents_from, from_ring, max3, min3, radial_extents, under_both,
 };
 use crate::certify::part::NodeRing;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint};
-use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::{self, Section};
+use crate::certify::tool_model::feature::MeridianPoint;
+use crate::certify::tool_model::section::{Owners, Section};
 use crate::interval::Interval;
 use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
@@ -31,9 +30,8 @@ pub(crate) struct HullSlab<R> {
     pub(crate) hole: Option<R>,
     /// A ball about a point of the axis, as `[z, radius]`: the bound is the distance inside it.
     pub(crate) ball: Option<[R; 2]>,
-    /// Circles about the axis, as `[d, z]`: the bound is the distance from them. The flag tells if the level ring
-    /// beyond the circle is on the tool's surface too.
-    pub(crate) rings: Vec<([R; 2], bool)>,
+    /// Circles on the tool's surface: the bound is the distance from them.
+    pub(crate) rings: Vec<Ring<R>>,
 }
 
 impl<R: Real> Hull<R> {
@@ -45,21 +43,21 @@ impl<R: Real> Hull<R> {
                 let [from, to] = (*zone)?;
                 let side = &section.features[slab.side];
                 let [[d0, z0], [d1, z1]] = side.ends;
-                let plane = |n: MeridianPoint, [d, z]: MeridianPoint| {
-                    [n[0], n[1], n[0] * d + n[1] * z].map(R::of)
-                };
-                let touching =
-                    |line: &Feature| plane([line.along[1], -line.along[0]], line.ends[0]);
                 // The radial distance to the surface.
                 let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
                 let slope = (d1 - d0) / (z1 - z0);
                 let convex = side.circle.is_some_and(|circle| circle.convex);
                 let line = side.tangent();
                 if line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index)) {
-                    planes.extend(line.as_ref().map(touching));
+                    planes.extend(
+                        line.map(|line| plane([line.along[1], -line.along[0]], line.ends[0])),
+                    );
                 } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
+                    // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
+                    // Steeper planes have larger errors than `margin` in `search` allows for.
                     planes.push(plane([1.0, -slope], side.ends[0]));
                 }
+                // The tool's lower and upper end bound depth too, where they are as near as the side can be.
                 let [low, high] = section.reach();
                 if slab.low - low <= slab.radius {
                     planes.push(plane([0.0, -1.0], [0.0, low]));
@@ -70,7 +68,11 @@ impl<R: Real> Hull<R> {
                 // For an arc that does not reach the axis, the feet next to it are not on the surface.
                 let to_axis = d0.min(d1) == 0.0;
                 let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
-                let rings = section.reflex(slab).map(|(point, level)| (point.map(R::of), level));
+                let rings = section.reflex(slab).map(|corner| Ring {
+                    radius: R::of(corner.point[0]),
+                    height: R::of(corner.point[1]),
+                    annulus: corner.ends_level,
+                });
                 let [low, high] = [from - error, to + error].map(R::of);
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
                 Some(HullSlab { low, high, planes, hole, ball, rings: rings.collect() })
@@ -82,15 +84,12 @@ impl<R: Real> Hull<R> {
     /// distance to the boundary of the envelope.
     pub(crate) fn about(info: &ToolInfo, steep: f64, error: f64) -> Hull<R> {
         let Interval { low: bottom, high: top } = info.reach();
-        let plane = |nd: f64, nz: f64, c: f64| [nd, nz, c].map(|part| R::of(steep * part));
         let slabs = info.envelope.iter().map(|slab| HullSlab {
             low: R::of(slab.low - error),
             high: R::of(slab.high + error),
-            planes: vec![
-                plane(1.0, 0.0, slab.radius),
-                plane(0.0, -1.0, -bottom),
-                plane(0.0, 1.0, top),
-            ],
+            planes: [[1.0, 0.0, slab.radius], [0.0, -1.0, -bottom], [0.0, 1.0, top]]
+                .map(|plane| plane.map(|part| R::of(steep * part)))
+                .to_vec(),
             hole: None,
             ball: None,
             rings: Vec::new(),
@@ -101,10 +100,11 @@ impl<R: Real> Hull<R> {
     /// Creates a hull of the regions that some features bound, for points no farther from these features than the
     /// hull is grown.
     pub(crate) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
-        let side = |slab: &section::SectionSlab| {
-            owners.is_owned(slab.side).then_some([slab.low, slab.high])
-        };
-        let zones: Vec<_> = section.slabs.iter().map(side).collect();
+        let zones: Vec<_> = section
+            .slabs
+            .iter()
+            .map(|slab| owners.is_owned(slab.side).then_some([slab.low, slab.high]))
+            .collect();
         let mut hull = Hull::new(section, &zones, error);
         // A level feature is the side of no slab.
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
@@ -166,6 +166,11 @@ impl<R: Real> Hull<R> {
         }
         (bound, point)
     }
+}
+
+/// Returns the plane with a normal through a point, as in [`HullSlab::planes`].
+fn plane<R: Real>(n: MeridianPoint, [d, z]: MeridianPoint) -> [R; 3] {
+    [n[0], n[1], n[0] * d + n[1] * z].map(R::of)
 }
 
 /// The maximum number of linear bounds of a slab for a triangle.
@@ -263,7 +268,8 @@ impl<R: Real> HullSlab<R> {
                 }
             }
             for ring in &self.rings {
-                let in_slab = from_ring(simd, corners, (&out, &far), *ring);
+                let from_axis = AxisDistances { least: &out, greatest: &far };
+                let in_slab = from_ring(simd, corners, &from_axis, *ring);
                 depth = depth.min(max_over(simd, &part, in_slab));
                 if refine_at.is_some() && count < MAX_BOUNDS {
                     bounds[count] = in_slab;
@@ -271,6 +277,8 @@ impl<R: Real> HullSlab<R> {
                 }
             }
         }
+        // Where one bound grows and another falls, the least of both is greatest between the corners: pairs of bounds are
+        // tighter than each by itself. That pays off only once the directions are those of a likely deepest point.
         if refine_at.is_some() {
             for plane in &self.planes {
                 if count < MAX_BOUNDS {
@@ -313,6 +321,7 @@ impl Hull<f64> {
         let in_slab =
             self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
         let depths = in_slab.map(|slab| {
+            // Only the part of the ring between the slab's heights.
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
             let planes = slab.planes.iter().map(|[nd, nz, max3]| {
                 max3 - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
@@ -363,11 +372,11 @@ impl Hull<f32> {
             if let Some(hole) = slab.hole {
                 depth = depth.min(far - hole);
             }
-            for &([d, z], level) in &slab.rings {
-                let inward = f32x16::splat(simd, d) - near;
-                let outward = if level { zero } else { far - d };
+            for &Ring { radius, height, annulus } in &slab.rings {
+                let inward = f32x16::splat(simd, radius) - near;
+                let outward = if annulus { zero } else { far - radius };
                 let across = inward.max(outward).max(zero);
-                let along = (low - z).abs().max((high - z).abs());
+                let along = (low - height).abs().max((high - height).abs());
                 depth = depth.min((across * across + along * along).sqrt());
             }
             bound = in_slab.select(bound.max(depth), bound);

@@ -3,8 +3,8 @@
 //!
 //! - `hull`: upper bounds of a tool's depth in boxes and triangles.
 //! - `shell`: lower bounds of a tool's distance from boxes and triangles, in `f32`.
-//! - `swept`: upper bounds of depth in moving triangles.
-//! - `batch`, `swept_batch`: eight triangles in `f64`, at rest and in motion.
+//! - `swept`: upper bounds of depth in moving boxes and triangles.
+//! - `batch`: eight triangles in `f64`.
 //! - `descent`: depth-first traversal of the tree, children with the largest bounds first.
 //! - `nearest`: geometry of triangles relative to the tool's axis, shared by all bounds.
 //!
@@ -17,6 +17,3 @@ pub(crate) mod hull;
 pub(crate) mod nearest;
 pub(crate) mod shell;
 pub(crate) mod swept;
-pub(crate) mod swept_batch;
-#[cfg(test)]
-mod tests;

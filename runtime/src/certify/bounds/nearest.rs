@@ -162,6 +162,7 @@ impl<V: Copy> NearestPoint<V> {
         let (u, v, w) = (cross_z(b, c), cross_z(c, a), cross_z(a, b));
         let through = (u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero))
             | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
+        // The areas opposite the corners are the barycentric coordinates of the point on the axis.
         let z = (u * a[2] + v * b[2] + w * c[2]) / (u + v + w);
         let distance = square.sqrt();
         let scale = (through | distance.simd_le(negligible))
@@ -186,6 +187,7 @@ impl<V: Copy> NearestPoint<V> {
         let a = [a[0], a[1], a[2] - centre];
         let b = [b[0], b[1], b[2] - centre];
         let c = [c[0], c[1], c[2] - centre];
+        // Relative to the point on the axis, the nearest points are those nearest to the origin.
         let (edge, _) = on_edges(simd, [&a, &b, &c], false);
         // The foot on the plane, in barycentric coordinates times a positive number.
         let (ab, ac) = (minus(&b, &a), minus(&c, &a));
@@ -215,9 +217,17 @@ impl<V: Copy> NearestPoint<V> {
 /// no gap is left.
 pub(crate) struct Clip<V, M> {
     kept: [M; 3],
-    /// Per side: the parameters of the cuts at the lower and at the upper height, and masks of the lanes that have
-    /// them.
-    cuts: [[(V, M); 2]; 3],
+    /// Per side: the cuts at the lower and at the upper height.
+    cuts: [[Crossing<V, M>; 2]; 3],
+}
+
+/// Where a linear function takes a value between two points.
+#[derive(Clone, Copy)]
+struct Crossing<V, M> {
+    /// The parameter, from 0 to 1.
+    at: V,
+    /// A mask of the lanes in which there is a crossing.
+    exists: M,
 }
 
 impl<V: Copy, M: Copy> Clip<V, M> {
@@ -258,8 +268,8 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         for k in 0..3 {
             let (from, to) = (values[k], values[(k + 1) % 3]);
             max = max.max(self.kept[k].select(from, none));
-            for (at, cut) in self.cuts[k] {
-                max = max.max(cut.select(from + at * (to - from), none));
+            for Crossing { at, exists } in self.cuts[k] {
+                max = max.max(exists.select(from + at * (to - from), none));
             }
         }
         max
@@ -296,22 +306,21 @@ impl<V: Copy, M: Copy> Clip<V, M> {
 fn cut_at<S: Simd, V: SimdBase<S>>(
     from: &LaneVector<V>,
     to: &LaneVector<V>,
-    [(low, at_low), (high, at_high)]: &[(V, V::Mask); 2],
+    [low, high]: &[Crossing<V, V::Mask>; 2],
     upper: V::Mask,
 ) -> (LaneVector<V>, V::Mask) {
-    let (at, direction) = (upper.select(*high, *low), minus(to, from));
+    let (at, direction) = (upper.select(high.at, low.at), minus(to, from));
     let point =
         [from[0] + at * direction[0], from[1] + at * direction[1], from[2] + at * direction[2]];
-    (point, (upper & *at_high) | (!upper & *at_low))
+    (point, (upper & high.exists) | (!upper & low.exists))
 }
 
-/// Returns where a linear function, `from` at parameter 0 and `to` at 1, takes the value `level` strictly between, and a
-/// mask of the lanes where it does.
+/// Returns where a linear function, `from` at parameter 0 and `to` at 1, takes the value `level` strictly between.
 #[inline(always)]
-fn crossing<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, level: V) -> (V, V::Mask) {
-    let crosses =
+fn crossing<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, level: V) -> Crossing<V, V::Mask> {
+    let exists =
         (from.simd_lt(level) & to.simd_gt(level)) | (from.simd_gt(level) & to.simd_lt(level));
-    (crosses.select((level - from) / (to - from), zero), crosses)
+    Crossing { at: exists.select((level - from) / (to - from), zero), exists }
 }
 
 /// Returns the direction of a point from the point of the axis at height `z`, no longer than 1, and 0 where the distance
@@ -370,27 +379,39 @@ pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[LaneVector<V>; 3]
     ]
 }
 
-/// Returns upper bounds, up to rounding, on the distances of corners from the circle of radius `d` about the axis at
-/// height `z`; with `annulus`, from the part of that plane at radius `d` or more. The bound is convex over a triangle, so
-/// its linear interpolation between corners bounds it. `out` are lower and `far` upper bounds of the corners' distances
-/// from the axis.
+/// A circle about the axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Ring<R> {
+    pub(crate) radius: R,
+    pub(crate) height: R,
+    /// True if the part of the circle's plane outside it counts as the ring, too.
+    pub(crate) annulus: bool,
+}
+
+/// Lower and upper bounds of the distances of three corners from the axis.
+pub(crate) struct AxisDistances<'a, V> {
+    pub(crate) least: &'a [V; 3],
+    pub(crate) greatest: &'a [V; 3],
+}
+
+/// Returns upper bounds, up to rounding, on the distances of corners from a ring. The bound is convex over a triangle, so
+/// its linear interpolation between corners bounds it.
 #[inline(always)]
 pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[LaneVector<V>; 3],
-    (out, far): (&[V; 3], &[V; 3]),
-    ([d, z], annulus): ([R; 2], bool),
+    from_axis: &AxisDistances<'_, V>,
+    ring: Ring<R>,
 ) -> [V; 3] {
-    let ring = [V::splat(simd, d), V::splat(simd, z)];
+    let AxisDistances { least: out, greatest: far } = *from_axis;
     [
-        to_ring(simd, [out[0], far[0], a[2]], ring, annulus),
-        to_ring(simd, [out[1], far[1], b[2]], ring, annulus),
-        to_ring(simd, [out[2], far[2], c[2]], ring, annulus),
+        to_ring(simd, [out[0], far[0], a[2]], ring),
+        to_ring(simd, [out[1], far[1], b[2]], ring),
+        to_ring(simd, [out[2], far[2], c[2]], ring),
     ]
 }
 
-/// Returns the maximum of the lesser of two functions that are linear on each triangle, and the point where it
-/// occurs.
+/// Returns the maximum of the lesser of two functions that are linear on each triangle, and the point where it occurs.
 #[inline(always)]
 pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     zero: V,
@@ -398,6 +419,8 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     first: &[V; 3],
     second: &[V; 3],
 ) -> (V, LaneVector<V>) {
+    // The lesser of two linear functions is concave: along an edge it is greatest at a corner, or where both are
+    // equal. Inside it is no greater, since the line on which both are equal ends on edges.
     let mut max = first[0].min(second[0]);
     let mut point = corners[0];
     for k in 1..3 {
@@ -409,8 +432,8 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     for k in 0..3 {
         let next = (k + 1) % 3;
         let (from, to) = (first[k] - second[k], first[next] - second[next]);
-        let (at, crosses) = crossing(zero, from, to, zero);
-        let here = crosses.select(first[k] + at * (first[next] - first[k]), max);
+        let Crossing { at, exists } = crossing(zero, from, to, zero);
+        let here = exists.select(first[k] + at * (first[next] - first[k]), max);
         let more = here.simd_gt(max);
         max = more.select(here, max);
         let direction = minus(&corners[next], &corners[k]);
@@ -424,16 +447,61 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     (max, point)
 }
 
-/// Returns the bound of [`from_ring`] for one point at height `z`.
+/// Returns the bound of [`from_ring`] for one point: its least and greatest distance from the axis, and its height.
 #[inline(always)]
 pub(crate) fn to_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [out, far, z]: [V; 3],
-    [d, height]: [V; 2],
-    annulus: bool,
+    ring: Ring<R>,
 ) -> V {
+    let (d, height) = (V::splat(simd, ring.radius), V::splat(simd, ring.height));
     let inward = (d - out).max(V::splat(simd, R::of(0.0)));
-    let radial = if annulus { inward } else { inward.max(far - d) };
+    let radial = if ring.annulus { inward } else { inward.max(far - d) };
     let along = z - height;
     (radial * radial + along * along).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, dispatch, f32x16, f64x8};
+
+    #[test]
+    fn directions_are_no_longer_than_1_at_any_distance() {
+        dispatch!(Level::new(), simd => {
+            check::<_, f32, f32x16<_>>(simd, -150, |lanes| f64::from(lanes[0]));
+            check::<_, f64, f64x8<_>>(simd, -1080, |lanes| lanes[0]);
+        });
+    }
+
+    /// Compares directions of points and of triangles whose nearest corner is 2^`min_exponent` and more from the axis.
+    fn check<S: Simd, R: Real, V>(simd: S, min_exponent: i32, first: impl Fn(V) -> f64)
+    where
+        V: SimdFloat<S, Element = R>,
+    {
+        let (mut longest, mut directions) = (0.0f64, 0);
+        for exponent in min_exponent..10 {
+            for step in 0..40 {
+                let (sine, cosine) = (0.37 * f64::from(step)).sin_cos();
+                let distance = 2f64.powi(exponent) * (1.0 + f64::from(step) / 40.0);
+                let vector = |p: [f64; 3]| p.map(|coordinate| V::splat(simd, R::of(coordinate)));
+                let point = [distance * cosine, distance * sine, 0.0];
+                // The corner is nearest to the axis and to the origin: the others are farther out.
+                let corner = |z: f64| [point[0] + cosine, point[1] + sine, z];
+                let triangle = [vector(point), vector(corner(1.0)), vector(corner(-1.0))];
+                let zero = R::of(0.0);
+                for direction in [
+                    direction_from_axis(simd, &triangle[0], V::splat(simd, zero)),
+                    NearestPoint::to_axis(simd, &triangle).direction,
+                    NearestPoint::to_axis_point(simd, &triangle, zero).direction,
+                ] {
+                    let length =
+                        direction.map(&first).iter().map(|part| part * part).sum::<f64>().sqrt();
+                    longest = longest.max(length);
+                    directions += usize::from(length > 0.9);
+                }
+            }
+        }
+        assert!(longest <= 1.0 && directions > 1000, "{longest} in {directions}");
+    }
 }

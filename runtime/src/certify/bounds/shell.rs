@@ -3,14 +3,11 @@
 use crate::bvh::{Boxes, LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{NearestPoint, max3, min3, radial_extents};
-use crate::certify::tool_model::feature::Feature;
-use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::Section;
+use crate::certify::tool_model::section::{Owners, Section};
 use crate::tool::ToolInfo;
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
-/// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the
-/// axis.
+/// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the axis.
 pub(crate) struct Shell {
     slabs: Vec<ShellSlab>,
 }
@@ -37,21 +34,21 @@ impl Shell {
 
     /// Creates the shell of the owners.
     pub(crate) fn new(section: &Section, owners: &Owners) -> Shell {
-        let own = |(index, feature): (usize, &Feature)| {
+        let features = section.features.iter().enumerate();
+        let owned = features.filter(|(index, _)| owners.is_owned(*index));
+        let slabs = owned.filter_map(|(index, feature)| {
             // A level feature has no slab of its own. It needs none if all features are owned.
             let level = !section.slabs.iter().any(|slab| slab.side == index);
-            (owners.is_owned(index) && !(owners.all() && level)).then(|| {
-                let [[d0, z0], [d1, z1]] = feature.ends;
-                let ball = if level { None } else { feature.ball(section.size) };
-                ShellSlab {
-                    low: z0.min(z1) as f32,
-                    high: z0.max(z1) as f32,
-                    radius: d0.max(d1) as f32,
-                    ball: ball.map(|ball| ball.map(|part| part as f32)),
-                }
+            let [[d0, z0], [d1, z1]] = feature.ends;
+            let ball = if level { None } else { feature.ball(section.size) };
+            (!(owners.all() && level)).then(|| ShellSlab {
+                low: z0.min(z1) as f32,
+                high: z0.max(z1) as f32,
+                radius: d0.max(d1) as f32,
+                ball: ball.map(|ball| ball.map(|part| part as f32)),
             })
-        };
-        Shell { slabs: section.features.iter().enumerate().filter_map(own).collect() }
+        });
+        Shell { slabs: slabs.collect() }
     }
 
     /// Returns at least the negative distance of every point of the rings.
@@ -65,6 +62,7 @@ impl Shell {
             let out = (near - slab.radius).max(zero);
             let mut distance = (gap * gap + out * out).sqrt();
             if let Some([z, radius]) = slab.ball {
+                // The ball lies around its part of the tool, so the larger of both distances is still a lower bound.
                 let along = (low - z).max(f32x16::splat(simd, z) - high).max(zero);
                 distance = distance.max((near * near + along * along).sqrt() - radius);
             }

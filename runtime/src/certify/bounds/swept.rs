@@ -1,29 +1,46 @@
-//! Upper bounds of the depth of a tool in moving triangles, in SIMD lanes.
-//!
-//! In the tool's frame a triangle moves nearly straight from one position to another. Between them it stays in
-//! the convex hull of both positions, grown by the deviation of its paths from straight.
+//! Upper bounds of the depth of a tool in moving boxes and triangles, in SIMD lanes. A moving triangle stays in the
+//! convex hull of both positions, grown by the deviation of its paths from straight.
 
-use crate::bvh::LaneVector;
+use crate::bvh::{Boxes, LaneVector, PoseTransform};
+use crate::certify::bounds::batch::{Batch, Lanes, load};
+use crate::certify::bounds::descent::{BoundedTree, BoxBounds, Displacement, Node, above, rings};
 use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
     Clip, NearestPoint, Real, choose, direction_from_axis, max3, radial_extents, to_ring,
 };
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use crate::certify::sweep::interval::MotionInterval;
+use crate::certify::triangle::TrianglePiece;
+use crate::tool::{LANES, on_vectors};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, f64x8};
 
-/// The corners of a triangle at both ends of its motion.
-pub(crate) type Ends<V> = [LaneVector<V>; 6];
+/// The corners of triangles at both ends of their motion.
+type Ends<V> = [LaneVector<V>; 6];
+
+/// Triangles in motion: at both ends, and in the middle.
+struct MovingTriangles<V> {
+    pub(crate) ends: Ends<V>,
+    pub(crate) middle: [LaneVector<V>; 3],
+}
+
+/// The heights of a slab, grown by the deviation of paths from straight.
+#[derive(Clone, Copy)]
+struct GrownHeights<V> {
+    low: V,
+    high: V,
+}
 
 impl<R: Real> Hull<R> {
     /// Returns at least the depth of every point no farther than `grow` from the convex hulls of triangles at both
-    /// ends of their motion. `middle` holds the triangles in between. A bound of at most `threshold` need not be tight.
+    /// ends of their motion. A bound of at most `threshold` need not be tight.
     #[inline(always)]
-    pub(crate) fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
+    fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        (ends, middle): (&Ends<V>, &[LaneVector<V>; 3]),
+        moving: &MovingTriangles<V>,
         grow: V,
         threshold: R,
     ) -> V {
+        let MovingTriangles { ends, middle } = moving;
         let [a, b, c, d, e, f] = ends;
         let low = a[2].min(b[2]).min(c[2]).min(d[2].min(e[2]).min(f[2]));
         let high = max3(a[2], b[2], c[2]).max(max3(d[2], e[2], f[2]));
@@ -31,19 +48,20 @@ impl<R: Real> Hull<R> {
         let half_displacement = half_displacement_of(simd, ends);
         let near =
             slide(simd, &NearestPoint::to_axis(simd, middle).point, &half_displacement, None);
+        // Any direction gives a bound; that of the point nearest to the axis on its way gives a tight one.
         let out = outward(ends, &direction_from_axis(simd, &[near[0], near[1], zero], zero));
         let threshold = V::splat(simd, threshold);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         for slab in &self.slabs {
-            let from = V::splat(simd, slab.low) - grow;
-            let to = V::splat(simd, slab.high) + grow;
-            let here = low.simd_le(to) & high.simd_ge(from);
+            let grown = GrownHeights {
+                low: V::splat(simd, slab.low) - grow,
+                high: V::splat(simd, slab.high) + grow,
+            };
+            let here = low.simd_le(grown.high) & high.simd_ge(grown.low);
             let mut depth = slab.under_planes_of(simd, &out, &heights(ends), grow);
             let open = here & depth.simd_gt(threshold);
             if open.any_true() {
-                let closer =
-                    slab.swept(simd, (ends, middle, &half_displacement), &near, (from, to), grow);
-                depth = depth.min(closer);
+                depth = depth.min(slab.swept(simd, moving, &half_displacement, &near, grown, grow));
             }
             bound = here.select(bound.max(depth), bound);
         }
@@ -80,14 +98,17 @@ impl<R: Real> HullSlab<R> {
     fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        (ends, middle, half_displacement): (&Ends<V>, &[LaneVector<V>; 3], &LaneVector<V>),
+        moving: &MovingTriangles<V>,
+        half_displacement: &LaneVector<V>,
         near: &LaneVector<V>,
-        (from, to): (V, V),
+        grown: GrownHeights<V>,
         grow: V,
     ) -> V {
+        let MovingTriangles { ends, middle } = moving;
+        let GrownHeights { low: from, high: to } = grown;
         let zero = V::splat(simd, R::of(0.0));
         let clip = Clip::new(simd, middle, [self.low, self.high]);
-        let point = within(simd, &clip, middle, (from, to), near);
+        let point = within(simd, &clip, middle, grown, near);
         let direction = direction_from_axis(simd, &[point[0], point[1], zero], zero);
         let out = outward(ends, &direction);
         let heights = heights(ends);
@@ -118,7 +139,7 @@ impl<R: Real> HullSlab<R> {
                 half_displacement,
                 Some(centre),
             );
-            let foot = within(simd, &clip, middle, (from, to), &near);
+            let foot = within(simd, &clip, middle, grown, &near);
             let direction = direction_from_axis(simd, &foot, centre);
             let mut beyond = [zero; 6];
             for k in 0..6 {
@@ -141,13 +162,12 @@ impl<R: Real> HullSlab<R> {
             }
             depth = depth.min(farthest + grow - V::splat(simd, hole));
         }
-        for &([d, z], level) in &self.rings {
-            let ring = [V::splat(simd, d), V::splat(simd, z)];
+        for ring in &self.rings {
             let mut farthest = zero;
             for k in 0..6 {
                 let [x, y, height] = &ends[k];
                 let far = (*x * *x + *y * *y).sqrt();
-                farthest = farthest.max(to_ring(simd, [out[k], far, *height], ring, level));
+                farthest = farthest.max(to_ring(simd, [out[k], far, *height], *ring));
             }
             depth = depth.min(farthest + grow);
         }
@@ -187,6 +207,7 @@ fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
         square += half_displacement[2] * half_displacement[2];
     }
     let one = V::splat(simd, R::of(1.0));
+    // Without displacement it is 0 / tiny = 0.
     let at = -toward / square.max(V::splat(simd, R::MIN_POSITIVE_VALUE));
     let at = at.max(-one).min(one);
     [
@@ -202,12 +223,12 @@ fn within<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     clip: &Clip<V, V::Mask>,
     middle: &[LaneVector<V>; 3],
-    (from, to): (V, V),
+    grown: GrownHeights<V>,
     point: &LaneVector<V>,
 ) -> LaneVector<V> {
-    let above = point[2].simd_gt(to);
+    let above = point[2].simd_gt(grown.high);
     let end = clip.at_end(simd, middle, above);
-    choose(above | point[2].simd_lt(from), &end, point)
+    choose(above | point[2].simd_lt(grown.low), &end, point)
 }
 
 #[inline(always)]
@@ -242,9 +263,131 @@ fn min_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
             let (low, high) = (heights[i] - at, heights[j] - at);
             let across =
                 (low.simd_lt(zero) & high.simd_gt(zero)) | (low.simd_gt(zero) & high.simd_lt(zero));
+            // All pairs of corners are taken, not only the edges of the hull: a chord inside it changes no minimum.
             let value = values[i] - low * ((values[j] - values[i]) / (high - low));
             min_extent = across.select(min_extent.min(value), min_extent);
         }
     }
     min_extent
+}
+
+/// A hull and the motion of boxes past it.
+pub(crate) struct Moving<'a> {
+    pub(crate) hull: &'a Hull<f32>,
+    pub(crate) shift: Displacement,
+    pub(crate) required_clearance: f32,
+    /// The transforms at the beginning and at the end of the interval.
+    pub(crate) ends: &'a [PoseTransform; 2],
+}
+
+impl BoxBounds for Moving<'_> {
+    #[inline(always)]
+    fn of_boxes<S: Simd>(
+        &self,
+        simd: S,
+        boxes: &Boxes,
+        view: &PoseTransform,
+        threshold: f32,
+    ) -> f32x16<S> {
+        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), threshold)
+    }
+}
+
+/// Returns a bit mask of the triangles of a leaf whose bound may exceed `threshold`.
+pub(crate) fn of_leaf(
+    level: Level,
+    tree: &BoundedTree<'_, Moving<'_>>,
+    node: Node,
+    threshold: f32,
+) -> u32 {
+    on_vectors!(level, simd => of_leaf_on(simd, tree, node, threshold));
+    u32::MAX
+}
+
+#[inline(always)]
+fn of_leaf_on<S: Simd>(
+    simd: S,
+    tree: &BoundedTree<'_, Moving<'_>>,
+    node: Node,
+    threshold: f32,
+) -> u32 {
+    let BoundedTree { bvh, bounds: moving, view } = *tree;
+    let [a, b, c] = node.corners(simd, bvh, &moving.ends[0]);
+    let [d, e, f] = node.corners(simd, bvh, &moving.ends[1]);
+    let middle = node.corners(simd, bvh, view);
+    let [p, q, r] = [
+        squared_distance(&middle[0], moving.shift.axis),
+        squared_distance(&middle[1], moving.shift.axis),
+        squared_distance(&middle[2], moving.shift.axis),
+    ];
+    let far = p.max(q).max(r).sqrt();
+    let grow = moving.shift.deviation_bound(simd, far) + moving.required_clearance;
+    let triangles = MovingTriangles { ends: [a, b, c, d, e, f], middle };
+    above(moving.hull.swept(simd, &triangles, grow, threshold), threshold)
+}
+
+/// Returns the squared distances of points from an axis through the tip.
+#[inline(always)]
+fn squared_distance<S: Simd>(&[x, y, z]: &LaneVector<f32x16<S>>, [u, v, w]: [f32; 3]) -> f32x16<S> {
+    let [a, b, c] = [y * w - z * v, z * u - x * w, x * v - y * u];
+    c * c + b * b + a * a
+}
+
+/// Up to eight triangles at both ends of a motion interval and in its middle.
+#[derive(Default)]
+pub(crate) struct SweptBatch {
+    pub(crate) middle: Batch,
+    ends: [[Lanes; 3]; 6],
+    /// The deviation of their paths from straight plus the distance that they have to keep.
+    grow: Lanes,
+    pub(crate) bounds: Lanes,
+}
+
+impl SweptBatch {
+    /// Loads triangles that have to keep a distance.
+    pub(crate) fn begin(
+        &mut self,
+        interval: &MotionInterval,
+        required_clearance: f64,
+        parts: &[TrianglePiece],
+    ) {
+        self.middle.indices.clear();
+        self.middle.indices.extend(parts.iter().map(|part| part.index));
+        for (lane, part) in parts.iter().enumerate() {
+            for (k, corner) in part.piece.corners().iter().enumerate() {
+                let [first, middle, last] = interval.transformed(corner);
+                for axis in 0..3 {
+                    self.ends[k][axis][lane] = first[axis];
+                    self.middle.corners[k][axis][lane] = middle[axis];
+                    self.ends[3 + k][axis][lane] = last[axis];
+                }
+            }
+            self.grow[lane] = required_clearance
+                + interval.deviation_bound(interval.rotation_radius(&self.middle.corners(lane)));
+        }
+    }
+
+    /// Bounds the depth of each triangle during the interval. A bound of at most `threshold` need not be tight.
+    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, threshold: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, threshold));
+        // Without vector instructions nothing is known until the edges are searched.
+        self.bounds = [f64::INFINITY; LANES];
+    }
+
+    #[inline(always)]
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, threshold: f64) {
+        let [a, b, c, d, e, f] = &self.ends;
+        let ends = [
+            load(simd, a),
+            load(simd, b),
+            load(simd, c),
+            load(simd, d),
+            load(simd, e),
+            load(simd, f),
+        ];
+        let middle = self.middle.load_corners(simd);
+        let grow = f64x8::from_slice(simd, &self.grow);
+        hull.swept(simd, &MovingTriangles { ends, middle }, grow, threshold)
+            .store_slice(&mut self.bounds);
+    }
 }

@@ -1,8 +1,7 @@
 //! Flat faces of many triangles, so that a depth common to all of them is bounded once.
 //!
-//! A tool in a bore, or flat on a plate, is equally deep in many triangles, and no bounding box of them is tight
-//! enough to show it. The rectangle around a flat face is: a bound for the rectangle holds for all triangles of
-//! the face.
+//! A tool in a bore, or flat on a plate, is equally deep in many triangles, and no bounding box of them is tight enough
+//! to show it. The rectangle around a flat face is: a bound for the rectangle holds for all triangles of the face.
 
 use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
@@ -37,6 +36,20 @@ pub(crate) struct Face {
     pub(crate) corners: [Point; 4],
 }
 
+/// The plane of a face: the points no farther than `flat` from the plane through a point.
+struct FacePlane {
+    point: Point,
+    normal: Point,
+    flat: f64,
+}
+
+impl FacePlane {
+    /// Returns whether all corners of a triangle are in the plane.
+    fn contains(&self, corners: &[Point; 3]) -> bool {
+        corners.iter().all(|p| dot(self.normal, minus(*p, self.point)).abs() <= self.flat)
+    }
+}
+
 /// Returns the unit vector in a direction, or `None` for a vector of length 0.
 fn unit(a: Point) -> Option<Point> {
     let size = norm(a);
@@ -61,19 +74,22 @@ impl CoplanarFaces {
             let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !used[seed]) else {
                 continue;
             };
-            let is_coplanar = |k: u32| {
-                corners[k as usize].iter().all(|p| dot(normal, minus(*p, a)).abs() <= flat)
-            };
-            if !is_coplanar(seed as u32) {
+            let plane = FacePlane { point: a, normal, flat };
+            // The computed normal of a needle may lean by more than that.
+            if !plane.contains(&corners[seed]) {
                 continue;
             }
             face.clear();
             face.push(seed as u32);
             used[seed] = true;
             let mut next = 0;
+            // Breadth first, across edges of exactly two triangles.
             while next < face.len() {
                 for other in neighbours[face[next] as usize] {
-                    if other != NONE && !used[other as usize] && is_coplanar(other) {
+                    if other != NONE
+                        && !used[other as usize]
+                        && plane.contains(&corners[other as usize])
+                    {
                         used[other as usize] = true;
                         face.push(other);
                     }
@@ -113,8 +129,7 @@ impl CoplanarFaces {
     }
 }
 
-/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too
-/// many.
+/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too many.
 fn node_faces(some: impl Iterator<Item = u32>) -> [u32; MAX_NODE_FACES] {
     let (mut faces, mut count) = ([NONE; MAX_NODE_FACES], 0);
     for face in some {
@@ -142,6 +157,7 @@ fn neighbours(mesh: &Mesh, ids: &[TriangleId]) -> Vec<[u32; 3]> {
     edges.sort_unstable();
     let mut neighbours = vec![[NONE; 3]; ids.len()];
     for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        // Where more than two triangles meet, a face may end or branch.
         if let [(_, first, side), (_, second, other)] = group {
             neighbours[*first as usize][*side] = *second;
             neighbours[*second as usize][*other] = *first;
@@ -173,21 +189,21 @@ struct Rectangle {
 impl Rectangle {
     /// Returns the rectangle around points and the origin, all in the plane through the origin with a unit normal, that has
     /// a side along a vector; `None` if the vector has no length in the plane.
-    fn along(
+    fn along<I: Iterator<Item = Point> + Clone>(
         side: Point,
         normal: Point,
-        points: &(impl Iterator<Item = Point> + Clone),
+        points: &I,
     ) -> Option<Rectangle> {
+        // The side is an edge of a triangle, which may leave the plane by the tolerance.
         let out = dot(side, normal);
         let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
         let v = unit(cross(normal, u))?;
-        let extent = |direction: Point| {
+        let [[u0, u1], [v0, v1]] = [u, v].map(|direction| {
             let positions = points.clone().map(|p| dot(direction, p));
             positions.fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
-        };
-        let ([u0, u1], [v0, v1]) = (extent(u), extent(v));
-        let corner = |x: f64, y: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k]);
-        let corners = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
+        });
+        let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]]
+            .map(|[x, y]| [0, 1, 2].map(|k| x * u[k] + y * v[k]));
         Some(Rectangle { area: (u1 - u0) * (v1 - v0), corners })
     }
 }

@@ -1,12 +1,314 @@
-//! The triangles of a part, and the location of points relative to it.
+//! The triangles of a part in a bounding volume hierarchy, with the planes of its nodes.
+//!
+//! A flat tool end on a plate is equally deep in all triangles of the plate, and `f32` cannot tell them apart.
+//! The extent of a node's triangles along a normal, in `f64`, can.
 
 mod coplanar_faces;
-mod planarity;
-mod triangle_bvh;
 mod winding;
 
+use crate::bvh::{Bounds, Boxes, BuildItem, Frame, PoseTransform, WIDTH, levels, order};
+use crate::certify::part::coplanar_faces::CoplanarFaces;
+use crate::certify::space::{Point, dot};
+use crate::id::TriangleId;
+use crate::mesh::{self, Mesh, inverted};
+use crate::unit::Unit;
+use nalgebra::{Point3, Vector3};
+
 pub(crate) use coplanar_faces::Face;
-pub(crate) use planarity::NodeRing;
-pub use triangle_bvh::{BoxVisitor, TriangleBvh};
-pub(crate) use triangle_bvh::{Corners, flat};
 pub use winding::Location;
+
+/// A bounding volume hierarchy of a part's triangles, for queries of the depth of a tool: a 16-wide tree of boxes
+/// like that of a point cloud, whose leaves hold 16 triangles.
+///
+/// Corners are kept as given, in the part's frame and unit. Triangles without area are kept too: they act as edges.
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    pub(crate) frame: Frame,
+    /// The levels of boxes, from the root's children down to the leaves.
+    pub(crate) levels: Vec<Vec<Boxes>>,
+    /// A plane per node of each level; the last list is for the leaves.
+    planes: Vec<Vec<Plane>>,
+    pub(crate) coplanar_faces: CoplanarFaces,
+    /// The corners of the 16 triangles of each leaf.
+    pub(crate) leaves: Vec<Corners>,
+    /// The corners of each triangle, in the tree's order, in the part's frame and unit.
+    pub(crate) corners: Vec<[[f64; 3]; 3]>,
+    /// The ids of the triangles in the mesh, in the tree's order.
+    pub(crate) ids: Vec<TriangleId>,
+    unit: Unit,
+    /// True if inside and outside are defined; see [`TriangleBvh::has_inside`].
+    solid: bool,
+}
+
+/// A search of the triangles of a [`TriangleBvh`] by their boxes.
+pub trait BoxVisitor {
+    /// Returns whether the triangles in a box have to be visited, by its centre relative to [`TriangleBvh::origin`] and half of
+    /// its size, both within 1e-6 of that size.
+    fn enters(&mut self, centre: Vector3<f64>, half: Vector3<f64>) -> bool;
+
+    /// Visits a triangle by its corners, in the part's frame and unit.
+    fn triangle(&mut self, corners: [Point3<f64>; 3]);
+}
+
+/// The first, second and third corners of 16 triangles relative to the centre of their box, coordinate by
+/// coordinate. Absent triangles have NaN coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
+
+/// Returns the distance from a plane, in the part's unit, up to which a point counts as in it. It adds to the
+/// depth of a face, so any value would be correct. With `32 u` of the part's extent (`u = ε/2`), triangles of a
+/// plane whose corners were rounded once form one face. The test itself errs by less than `10 u` of a face's
+/// extent, for which [`rounding`](crate::certify::rounding) has room: a face is used for a bound only, without
+/// the `41 uM` of meridians and lines.
+pub(crate) fn flat(frame: &Frame) -> f64 {
+    16.0 * f64::EPSILON * f64::from(frame.size) * frame.scale
+}
+
+impl TriangleBvh {
+    /// Builds the tree of a mesh's triangles.
+    pub fn new(mesh: &Mesh) -> TriangleBvh {
+        let corners: Vec<[[f64; 3]; 3]> =
+            mesh.corners().map(|corners| corners.map(|p| [p.x, p.y, p.z])).collect();
+        let frame = Frame::around(corners.iter().flatten().copied());
+        let mut items: Vec<BuildItem> = corners
+            .iter()
+            .zip(0u32..)
+            .map(|(corners, index)| {
+                let bounds = Bounds::of(corners.map(|point| frame.inside(point)));
+                BuildItem { at: [0, 1, 2].map(|axis| bounds.middle(axis)), index }
+            })
+            .collect();
+        order(&mut items);
+        let corners: Vec<_> = items.iter().map(|item| corners[item.index as usize]).collect();
+        let boxes: Vec<Bounds> = corners
+            .chunks(WIDTH)
+            .map(|leaf| Bounds::of(leaf.iter().flatten().map(|corner| frame.inside(*corner))))
+            .collect();
+        let levels = levels(boxes);
+        let above = &levels[levels.len() - 1];
+        let leaves = corners.chunks(WIDTH).enumerate().map(|(leaf, triangles)| {
+            let mut corners = Corners([[[f32::NAN; WIDTH]; 3]; 3]);
+            let boxes = &above[leaf / WIDTH];
+            for (lane, triangle) in triangles.iter().enumerate() {
+                for (list, corner) in corners.0.iter_mut().zip(triangle) {
+                    let point = frame.inside(*corner);
+                    for axis in 0..3 {
+                        let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
+                        // Relative to the box as it is stored, so that only this difference is rounded.
+                        list[axis][lane] = (point[axis] - middle) as f32;
+                    }
+                }
+            }
+            corners
+        });
+        let inside: Vec<_> =
+            corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
+        let depth = levels.len() as u32;
+        // A node of this level holds the triangles of all leaves below it, which are consecutive.
+        let planes = (0..=depth).map(|level| {
+            let below = WIDTH.pow(depth + 1 - level);
+            inside.chunks(below).map(Plane::of).collect()
+        });
+        let ids: Vec<TriangleId> = items.iter().map(|item| TriangleId(item.index)).collect();
+        let survey = mesh.diagnostics();
+        let mut bvh = TriangleBvh {
+            coplanar_faces: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
+            planes: planes.collect(),
+            leaves: leaves.collect(),
+            levels,
+            corners,
+            ids,
+            frame,
+            unit: mesh.unit(),
+            solid: survey.is_solid(),
+        };
+        // The rays that decide this need the finished tree.
+        bvh.solid = bvh.solid && bvh.voids_are_voids(mesh);
+        bvh
+    }
+
+    /// Returns whether pieces that face inward are voids in the material. Next to none of their triangles is the
+    /// winding number of the surface negative, as it is inside a piece that is inside out.
+    fn voids_are_voids(&self, mesh: &Mesh) -> bool {
+        let inverted = inverted(mesh);
+        let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
+        if !inverted.is_empty() {
+            self.ids.iter().enumerate().for_each(|(point, id)| places[id.index()] = point);
+        }
+        inverted.into_iter().all(|id| {
+            let has_sides = mesh.normal(TriangleId(id)).is_some();
+            !has_sides || !self.is_negative_beside(places[id as usize])
+        })
+    }
+
+    /// Returns the lowest and the highest corner of the bounding box, in the part's unit.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        mesh::bounds(self.corners.iter().flatten().map(|corner| Point3::from(*corner)))
+    }
+
+    /// Returns the number of triangles.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Returns whether there are no triangles; a [`Mesh`] always has some.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Returns whether inside and outside are defined: the mesh is closed, consistently oriented, and not inside out.
+    pub fn has_inside(&self) -> bool {
+        self.solid
+    }
+
+    /// Returns the unit of length.
+    pub fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    /// Returns the point to which the boxes of [`TriangleBvh::visit`] are relative, in the part's frame and unit.
+    pub fn origin(&self) -> Point3<f64> {
+        Point3::from(self.frame.origin)
+    }
+
+    /// Returns the ids of the triangles in the order of the tree, in which neighbours are close.
+    pub fn triangle_ids(&self) -> &[TriangleId] {
+        &self.ids
+    }
+
+    /// Iterates over the corners of the triangles in the order of the tree, in the part's frame and unit.
+    pub fn corners(&self) -> impl Iterator<Item = [Point3<f64>; 3]> {
+        self.corners.iter().map(|corners| corners.map(Point3::from))
+    }
+
+    /// Visits the triangles in those boxes that the visitor enters, by boxes of boxes.
+    pub fn visit(&self, visitor: &mut impl BoxVisitor) {
+        let mut stack = vec![(0, 0)];
+        while let Some((level, index)) = stack.pop() {
+            for lane in 0..self.children(level, index) {
+                let child = index * WIDTH + lane;
+                let Some(boxes) = self.levels.get(level).map(|boxes| &boxes[index]) else {
+                    visitor.triangle(self.corners[child].map(Point3::from));
+                    continue;
+                };
+                let [centre, half] = [&boxes.centre, &boxes.half].map(|list| {
+                    Vector3::from_fn(|k, _| f64::from(list[k][lane]) * self.frame.scale)
+                });
+                if visitor.enters(centre, half) {
+                    stack.push((level + 1, child));
+                }
+            }
+        }
+    }
+
+    /// Returns the number of children of a node of a level; below the last level are the leaves.
+    pub(crate) fn children(&self, level: usize, node: usize) -> usize {
+        let below = match self.levels.len() - level.min(self.levels.len()) {
+            0 => self.len(),
+            1 => self.leaves.len(),
+            _ => self.levels[level + 1].len(),
+        };
+        (below - WIDTH * node).min(WIDTH)
+    }
+}
+
+/// A direction, and the extent of the corners of a node's triangles along it, in the tree's frame and unit.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    normal: Point,
+    ends: [f64; 2],
+}
+
+/// A ring about the tool's axis that contains a node: the least distance from the axis, and the range of heights,
+/// in the tool's unit.
+pub(crate) struct NodeRing {
+    pub(crate) near: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+}
+
+impl Plane {
+    /// Computes the plane of triangles along the mean of their normals, from corners in the tree's frame.
+    fn of(triangles: &[[Point; 3]]) -> Plane {
+        let mut sum = [0.0; 3];
+        for [a, b, c] in triangles {
+            let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+            sum[0] += u[1] * v[2] - u[2] * v[1];
+            sum[1] += u[2] * v[0] - u[0] * v[2];
+            sum[2] += u[0] * v[1] - u[1] * v[0];
+        }
+        let length = dot(sum, sum).sqrt();
+        // Any direction is correct.
+        let normal = if length > 0.0 { sum.map(|part| part / length) } else { [0.0, 0.0, 1.0] };
+        let heights = triangles.iter().flatten().map(|corner| dot(normal, *corner));
+        let ends = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
+            [low.min(height), high.max(height)]
+        });
+        Plane { normal, ends }
+    }
+}
+
+/// The box and the plane of a node, in the tree's frame and unit.
+struct NodeBounds {
+    centre: Point,
+    half: Point,
+    plane: Plane,
+}
+
+impl NodeBounds {
+    /// Returns the extent of the node along a direction of the tree's frame, for a position of `origin` at the frame's
+    /// origin. Its component normal to the plane is bounded tightly, the rest by the box; the box alone may be tighter.
+    #[inline]
+    fn extent(&self, direction: Point, origin: f64) -> [f64; 2] {
+        let NodeBounds { centre, half, plane: Plane { normal, ends } } = *self;
+        let part = dot(direction, normal);
+        // What the plane does not bound is left to the box.
+        let rest = [0, 1, 2].map(|k| direction[k] - part * normal[k]);
+        let wide = dot(rest.map(f64::abs), half);
+        let middle = origin + dot(rest, centre);
+        let [a, b] = ends.map(|end| part * end);
+        let flat = [middle + a.min(b) - wide, middle + a.max(b) + wide];
+        let boxed = [-1.0, 1.0].map(|side| {
+            origin + dot(direction, centre) + side * dot(direction.map(f64::abs), half)
+        });
+        [flat[0].max(boxed[0]), flat[1].min(boxed[1])]
+    }
+}
+
+/// Returns the least magnitude in a range.
+#[inline]
+fn least_magnitude([low, high]: [f64; 2]) -> f64 {
+    low.max(-high).max(0.0)
+}
+
+impl TriangleBvh {
+    /// Returns the ring about the tool's axis that contains a node, from its box and its plane. Returns `None` for
+    /// the root, which has no box.
+    pub(crate) fn ring(
+        &self,
+        level: usize,
+        index: usize,
+        view: &PoseTransform,
+    ) -> Option<NodeRing> {
+        let boxes = &self.levels[level.checked_sub(1)?][index / WIDTH];
+        let lane = index % WIDTH;
+        let centre = [0, 1, 2].map(|axis| f64::from(boxes.centre[axis][lane]));
+        let half = [0, 1, 2].map(|axis| f64::from(boxes.half[axis][lane]));
+        let node = NodeBounds { centre, half, plane: self.planes[level][index] };
+        let (rows, origin) = view.exactly();
+        let [low, high] = node.extent(rows[2], origin[2]);
+        // Neither coordinate alone is the distance from the axis; together, and along the plane's normal, both are
+        // lower bounds of it.
+        let [x, y] = [0, 1].map(|axis| least_magnitude(node.extent(rows[axis], origin[axis])));
+        // The distance toward the axis along the plane's normal.
+        let [u, v] = [0, 1].map(|axis| dot(rows[axis], node.plane.normal));
+        let length = (u * u + v * v).sqrt();
+        let inward = if length > 0.0 {
+            let direction = [0, 1, 2].map(|k| (u * rows[0][k] + v * rows[1][k]) / length);
+            least_magnitude(node.extent(direction, (u * origin[0] + v * origin[1]) / length))
+        } else {
+            0.0
+        };
+        Some(NodeRing { near: (x * x + y * y).sqrt().max(inward), low, high })
+    }
+}

@@ -1,5 +1,4 @@
-//! Location of points: the winding number of a part's surface about a point, from the triangles that a ray
-//! crosses.
+//! Location of points: the winding number of a part's surface about a point, from the triangles that a ray crosses.
 
 use super::TriangleBvh;
 use crate::bvh::WIDTH;
@@ -58,6 +57,7 @@ impl TriangleBvh {
         }
         let p = self.frame.inside([point.x, point.y, point.z]);
         let size = f64::from(self.frame.size);
+        // Outside the part's bounding box no ray is needed.
         if p.iter().any(|part| part.abs() > size) {
             return Location::Outside;
         }
@@ -79,6 +79,8 @@ impl TriangleBvh {
     /// inner side. No offset from the triangle has to be chosen, and another surface may be arbitrarily near.
     pub(super) fn is_negative_beside(&self, own: usize) -> bool {
         let corners = self.corners[own];
+        // Rounded, the middle is not exactly in the plane. The side of the ray's end decides, not that of its
+        // beginning.
         let middle = Point3::from([0, 1, 2].map(|k| {
             let [a, b, c] = corners.map(|corner| corner[k]);
             (a + b + c) / 3.0
@@ -86,7 +88,6 @@ impl TriangleBvh {
         let mut windings = (0..RAYS).filter_map(|ray| {
             let ray_direction = direction(ray);
             let others = self.winding(middle, ray_direction, Some(own)).ok()?;
-            let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
             let ([a, b, c], end) =
                 (corners.map(coord), coord(self.end(middle, ray_direction).into()));
             match orient3d(a, b, c, end) {
@@ -133,7 +134,8 @@ impl TriangleBvh {
                 let child = index * WIDTH + lane;
                 if let Some(level_boxes) = self.levels.get(level) {
                     let boxes = &level_boxes[index];
-                    let slab_range = |axis: usize| {
+                    // The ray meets the box if it is between all three pairs of sides at once.
+                    let [[a, b], [c, d], [e, f]] = [0, 1, 2].map(|axis| {
                         let from = f64::from(boxes.centre[axis][lane]) - p[axis];
                         let half = f64::from(boxes.half[axis][lane]) + margin;
                         let [a, b] = [
@@ -141,8 +143,7 @@ impl TriangleBvh {
                             (from + half) / ray_direction[axis],
                         ];
                         [a.min(b), a.max(b)]
-                    };
-                    let ([a, b], [c, d], [e, f]) = (slab_range(0), slab_range(1), slab_range(2));
+                    });
                     if a.max(c).max(e).max(0.0) <= b.min(d).min(f) {
                         stack.push((level + 1, child));
                     }
@@ -159,9 +160,12 @@ impl TriangleBvh {
     }
 }
 
+fn coord([x, y, z]: [f64; 3]) -> Coord3D<f64> {
+    Coord3D { x, y, z }
+}
+
 /// Returns the relation of a line segment to a triangle.
 fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
-    let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
     // The side of each edge on which the line passes: the same for all three if it crosses.
     let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];

@@ -4,7 +4,7 @@
 use crate::certify::bounds::descent::Displacement;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::triangle::subdivision::SubTriangle;
+use crate::certify::triangle::SubTriangle;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
@@ -16,14 +16,21 @@ pub(crate) struct MotionInterval {
     /// The tip at the beginning of the motion, relative to the part's origin, in the part's frame and unit.
     start: Vector3<f64>,
     pub(crate) poses: [Pose; 3],
-    /// At the start, the middle and the end of the interval: the displacement of the tip, and the rotation and scale
-    /// from the part's frame and unit to the tool's.
-    views: [(Vector3<f64>, Matrix3<f64>); 3],
+    /// The tool's frame at the start, the middle and the end of the interval.
+    views: [MovedFrame; 3],
     /// Bounds on the displacement of a point from the middle of the interval, and on the deviation of its path from
     /// straight.
     bounds: MotionBounds,
     /// The axis of the rotation, in the tool's frame.
     axis: Vector3<f64>,
+}
+
+/// The tool's frame at one time.
+struct MovedFrame {
+    /// The displacement of the tip since the beginning of the motion.
+    displacement: Vector3<f64>,
+    /// The rotation and scale from the part's frame and unit to the tool's.
+    back: Matrix3<f64>,
 }
 
 #[derive(Clone, Copy)]
@@ -45,13 +52,14 @@ impl MotionInterval {
     ) -> MotionInterval {
         let per_length = 1.0 / setting.length;
         let parts = [from, from / 2.0 + to / 2.0, to];
+        // The middle halves the displacement: bounds hold from there to both ends.
         let poses = parts.map(|part| motion.pose(part));
-        let view = |k: usize| {
-            (motion.displacement() * parts[k], poses[k].rotation().transpose() * per_length)
-        };
-        let views = [view(0), view(1), view(2)];
+        let views = [0, 1, 2].map(|k| MovedFrame {
+            displacement: motion.displacement() * parts[k],
+            back: poses[k].rotation().transpose() * per_length,
+        });
         let half = 0.5 * (to - from);
-        let straight = views[1].1 * motion.displacement() * half;
+        let straight = views[1].back * motion.displacement() * half;
         let (length, turn) = (straight.norm(), motion.angle() * half);
         // A rotation preserves the distance from the tip, so a point that comes that near is never farther away in
         // this interval. No point of the tool is farther from its tip than √2 of its size.
@@ -70,29 +78,27 @@ impl MotionInterval {
     /// Returns a corner of the part, given relative to the part's origin, at the start, the middle and the end.
     pub(crate) fn transformed(&self, corner: &Point) -> [Point; 3] {
         let from_start = Vector3::from(*corner) - self.start;
-        let [first, middle, last] = &self.views;
-        let transformed = |(displacement, back): &(Vector3<f64>, Matrix3<f64>)| {
-            (back * (from_start - displacement)).into()
-        };
-        [transformed(first), transformed(middle), transformed(last)]
+        self.views.each_ref().map(|view| (view.back * (from_start - view.displacement)).into())
     }
 
     /// Returns whether a piece comes near enough to be relevant.
     pub(crate) fn reaches(&self, piece: &SubTriangle, length: f64) -> bool {
         let (centre, reach) = piece.ball();
-        let [_, (displacement, _), _] = &self.views;
-        let far = (Vector3::from(centre) - self.start - displacement).norm();
+        let far = (Vector3::from(centre) - self.start - self.views[1].displacement).norm();
         far - reach <= length * self.bounds.reach
     }
 
     /// Returns the largest distance of the corners from the axis of the rotation.
     pub(crate) fn rotation_radius(&self, corners: &[Point; 3]) -> f64 {
         let [u, v, w] = [self.axis.x, self.axis.y, self.axis.z];
-        let square = |&[x, y, z]: &Point| {
-            let [a, b, c] = [w * y - v * z, u * z - w * x, v * x - u * y];
-            c * c + b * b + a * a
-        };
-        corners.iter().map(square).fold(0.0, f64::max).sqrt()
+        corners
+            .iter()
+            .map(|&[x, y, z]| {
+                let [a, b, c] = [w * y - v * z, u * z - w * x, v * x - u * y];
+                c * c + b * b + a * a
+            })
+            .fold(0.0, f64::max)
+            .sqrt()
     }
 
     /// Returns whether the tool rotates.
@@ -108,6 +114,8 @@ impl MotionInterval {
     /// is at most `radius` in the middle of the interval. [`Displacement::deviation_bound`] is the same in `f32`.
     pub(crate) fn deviation_bound(&self, radius: f64) -> f64 {
         let MotionBounds { length, turn, .. } = self.bounds;
+        // Theorem 4 of `docs/certified.md`: ½ h² (2 ω v + ω² ρ), with `turn` for h ω and `length` for h v. During the
+        // interval ρ grows by at most the length.
         turn * (length + 0.5 * turn * self.bounds.reach.min(radius + length))
     }
 
@@ -120,13 +128,17 @@ impl MotionInterval {
     /// Returns the displacement in `f32`, rounded up, with `required_clearance` added to its translation.
     pub(crate) fn shift(&self, required_clearance: f64) -> Displacement {
         let MotionBounds { straight, length, turn, reach } = self.bounds;
-        let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
         Displacement {
             axis: self.axis.map(|part| part as f32).into(),
-            straight: straight.map(|part| up(part + required_clearance)),
-            length: up(length),
-            turn: up(turn),
-            reach: up(reach),
+            straight: straight.map(|part| rounded_up(part + required_clearance)),
+            length: rounded_up(length),
+            turn: rounded_up(turn),
+            reach: rounded_up(reach),
         }
     }
+}
+
+/// Returns a length or an angle in `f32`, larger by some units of roundoff.
+fn rounded_up(value: f64) -> f32 {
+    (value * (1.0 + 1e-6)) as f32
 }

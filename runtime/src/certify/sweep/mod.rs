@@ -6,26 +6,83 @@
 //! than a fraction of the displacement.
 
 pub(crate) mod interval;
-mod moving;
-mod task;
 
 use crate::bvh::{PoseTransform, WIDTH};
-use crate::certify::bounds::descent::{Node, of_children};
-use crate::certify::bounds::swept_batch::SweptBatch;
-use crate::certify::search::MARGIN;
+use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
+use crate::certify::bounds::swept::{Moving, SweptBatch, of_leaf};
+use crate::certify::search::{DepthQuery, MARGIN, QuerySetting};
 use crate::certify::space::Point;
 use crate::certify::sweep::interval::MotionInterval;
-use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::field::Scratch;
-use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::Section;
+use crate::certify::tool_model::section::{Owners, Section};
+use crate::certify::tool_model::{Surroundings, ToolModel};
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal};
-use crate::certify::triangle::local::LocalTriangle;
-use crate::certify::triangle::subdivision::{SubTriangle, TrianglePiece};
+use crate::certify::triangle::{LocalTriangle, SubTriangle, TrianglePiece};
+use crate::motion::Motion;
 use crate::tool::LANES;
-use moving::{Moving, of_leaf};
-use task::DeepPoint;
-pub(crate) use task::SweepTask;
+
+/// The query, motion and limits of a sweep. Lengths are in the tool's unit.
+pub(crate) struct SweepTask<'a> {
+    pub(crate) setting: &'a QuerySetting<'a>,
+    pub(crate) query: &'a DepthQuery,
+    pub(crate) motion: &'a Motion,
+    /// The allowed depth of the query's owners. If negative, its magnitude is the distance that they have to keep. It
+    /// is the query's own limit or, if that is at least 0, any larger value.
+    pub(crate) limit: f64,
+    /// The rounding error bound of a point along this motion.
+    pub(crate) error: f64,
+    /// The excess over the limit that need not be reported.
+    pub(crate) tolerance: f64,
+}
+
+impl SweepTask<'_> {
+    /// Returns the depth up to which nothing needs to be examined.
+    fn threshold(&self) -> f64 {
+        self.limit + self.tolerance
+    }
+
+    /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error bound.
+    fn above(&self) -> f64 {
+        self.threshold() + self.required_clearance() - self.error
+    }
+
+    /// Returns the smallest distance that the owners have to keep.
+    fn required_clearance(&self) -> f64 {
+        (-self.threshold()).max(0.0)
+    }
+
+    /// Returns the depth of a point; negative values are distances.
+    fn depth(&self, scratch: &mut Scratch, point: Point) -> DeepPoint {
+        let (tool_model, owners) = (&self.setting.tool_model, &self.query.owners);
+        let inside = if self.limit < 0.0 {
+            Some(tool_model.distance(scratch, owners, point))
+        } else {
+            tool_model.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
+        };
+        let depth =
+            inside.unwrap_or_else(|| tool_model.distance(scratch, &Owners::default(), point));
+        DeepPoint { point, depth: depth.value, feature: depth.feature }
+    }
+
+    /// Returns whether a point exceeds the limit even after all rounding errors.
+    fn too_deep(&self, found: &DeepPoint) -> bool {
+        found.depth > self.limit + 2.0 * self.error
+    }
+}
+
+/// A point in the tool's frame and its depth.
+#[derive(Clone, Copy)]
+struct DeepPoint {
+    point: Point,
+    depth: f64,
+    feature: usize,
+}
+
+impl DeepPoint {
+    fn best(&self, index: u32) -> DeepestCandidate {
+        DeepestCandidate { point: self.point, feature: self.feature, index }
+    }
+}
 
 /// The reason a sweep ends before the whole motion is proved clear.
 pub(crate) enum SweepEnd {
@@ -77,6 +134,7 @@ impl Sweeper {
         self.pending.clear();
         self.pending.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
+        // The root alone is the first candidate.
         self.check_interval(task, [0.0, 1.0], 0)
     }
 
@@ -93,9 +151,11 @@ impl Sweeper {
         if let Some(stop) = self.examine(task, &interval, first..last) {
             return Some(stop);
         }
+        // Nothing was left undecided.
         if self.pending.len() == last {
             return None;
         }
+        // An interval that cannot be halved any more counts as a spent budget: its candidates stay undecided.
         let middle = interval.middle();
         if middle <= from || middle >= to || to - from < MIN_DURATION {
             return Some(SweepEnd::Spent { at: from });
@@ -160,18 +220,19 @@ impl Sweeper {
                         return Some(stop);
                     }
                 } else if node.size(bvh) * setting.setup.unit < small {
+                    // Its size adds little to the displacement: halving the interval gains more than opening the node.
                     self.pending.push(Undecided::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
                     let moving =
                         Moving { hull: &query.hull, shift, required_clearance, ends: &self.ends };
-                    let input = (bvh, &moving, &self.view);
+                    let tree = BoundedTree { bvh, bounds: &moving, view: &self.view };
                     let hits = if margin > MARGIN {
                         u32::MAX
                     } else if node.is_leaf(bvh) {
-                        of_leaf(setting.level, input, node, threshold)
+                        of_leaf(setting.level, &tree, node, threshold)
                     } else {
-                        of_children(setting.level, input, node, threshold, &mut bounds)
+                        of_children(setting.level, &tree, node, threshold, &mut bounds)
                     };
                     self.stack.extend(node.children(bvh, hits));
                 }
@@ -221,6 +282,7 @@ impl Sweeper {
             self.some.clear();
             return None;
         }
+        // Candidates are sampled where they are deepest in the middle of the interval.
         self.swept_batch.middle.bound(level, &query.exact, f64::NEG_INFINITY);
         for lane in 0..count {
             let index = self.swept_batch.middle.index(lane);
@@ -230,16 +292,17 @@ impl Sweeper {
             let corners = self.swept_batch.middle.corners(lane);
             let point = self.swept_batch.middle.point(lane);
             let at = interval.middle();
-            let stop = |found: DeepPoint| SweepEnd::Deeper { at, best: found.best(index) };
             let sample = task.depth(&mut self.scratch, point);
             if task.too_deep(&sample) {
-                return Some(stop(sample));
+                return Some(SweepEnd::Deeper { at, best: sample.best(index) });
             }
             let displacement = interval.displacement_bound(interval.rotation_radius(&corners));
             let steep = setting.tool_model.lipschitz();
             let undecided = sample.depth + steep * displacement > task.threshold()
                 || match self.check_triangle(task, corners, displacement) {
-                    TriangleVerdict::TooDeep(deep) => return Some(stop(deep)),
+                    TriangleVerdict::TooDeep(deep) => {
+                        return Some(SweepEnd::Deeper { at, best: deep.best(index) });
+                    }
                     TriangleVerdict::Clear => false,
                     TriangleVerdict::Undecided | TriangleVerdict::OtherOwner => true,
                 };
@@ -283,9 +346,11 @@ impl Sweeper {
         displacement: f64,
     ) -> TriangleVerdict {
         let displacement = displacement + triangle.skew + task.error;
+        // A point less deep than that does not become too deep in what is left of the interval.
         let min_depth = task.threshold() - displacement;
         self.search.begin(Goal {
             min_depth,
+            // A finer search would tell nothing that the displacement does not blur.
             tolerance: 0.25 * displacement,
             stop_depth: f64::INFINITY,
             budget: self.budget,
@@ -338,10 +403,12 @@ impl Sweeper {
             }
             self.budget -= 1;
             let (centre, reach) = piece.ball();
-            let far = displacement + reach + task.error;
-            let rectangle = piece.rectangle(displacement + task.error);
-            let place = (centre, &rectangle);
-            if tool_model.clears(&mut self.scratch, owners, place, (far, task.threshold())) {
+            let points = Surroundings {
+                centre,
+                displacement: displacement + reach + task.error,
+                rectangle: piece.rectangle(displacement + task.error),
+            };
+            if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
                 continue;
             }
             let sample = task.depth(&mut self.scratch, centre);

@@ -1,6 +1,7 @@
 //! Features: the monotone pieces of a profile, as geometry of the half plane.
 
 use crate::tool::{Circle, ProfileSegment};
+use std::f64::consts::TAU;
 
 /// A point in the half plane, `[d, z]`.
 pub(crate) type MeridianPoint = [f64; 2];
@@ -49,6 +50,29 @@ impl Feature {
         let length = norm(vector);
         let along = if length > 0.0 { vector.map(|part| part / length) } else { [0.0; 2] };
         Feature { ends, along, length, circle, surface }
+    }
+
+    /// Returns the position of a point's foot along the line from the first end.
+    #[inline]
+    pub(crate) fn position(&self, p: MeridianPoint) -> f64 {
+        dot(self.along, minus(p, self.ends[0]))
+    }
+
+    /// Returns the point of the line at a position.
+    #[inline]
+    pub(crate) fn line_point(&self, at: f64) -> MeridianPoint {
+        [0, 1].map(|k| self.ends[0][k] + at * self.along[k])
+    }
+
+    /// Returns the position at which the line reaches a height.
+    pub(crate) fn position_at_height(&self, z: f64) -> f64 {
+        (z - self.ends[0][1]) / self.along[1]
+    }
+
+    /// Returns the distance of the line from the axis at a height, also beyond its ends.
+    pub(crate) fn line_radius_at(&self, z: f64) -> f64 {
+        let slope = self.along[0] / self.along[1];
+        self.ends[0][0] + slope * (z - self.ends[0][1])
     }
 
     /// Returns the direction of travel at its beginning (0) or end (1).
@@ -100,6 +124,7 @@ impl Feature {
                 centre[0] + side * ((radius - up) * (radius + up)).max(0.0).sqrt()
             }
         };
+        // A monotone piece stays between its ends, whatever the rounding.
         radius.clamp(d0.min(d1), d0.max(d1))
     }
 
@@ -121,7 +146,7 @@ impl Feature {
         }
     }
 
-    /// Returns the gradient of [`Feature::over`].
+    /// Returns the gradient of [`Feature::signed_distance`].
     pub(crate) fn signed_gradient(&self, p: MeridianPoint) -> MeridianPoint {
         let Some(Circle { centre, convex, .. }) = self.circle else {
             return [-self.along[1], self.along[0]];
@@ -139,7 +164,7 @@ impl Feature {
         [sense * d, z]
     }
 
-    /// Returns at least [`Feature::over`] at every point in a triangle.
+    /// Returns at least [`Feature::signed_distance`] at every point in a triangle.
     #[inline]
     pub(crate) fn signed_distance_upper(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
@@ -166,33 +191,31 @@ impl Feature {
     /// nearest point may be elsewhere.
     pub(crate) fn at_ends(&self, corners: &[MeridianPoint]) -> Option<[bool; 2]> {
         let [first, last] = self.ends;
-        let middle = [0, 1].map(|k| f64::midpoint(first[k], last[k]));
-        let all = |beyond: &dyn Fn(MeridianPoint) -> f64| corners.iter().all(|p| beyond(*p) > 0.0);
-        let beyond = match &self.circle {
-            None => [
-                all(&|p| -dot(self.along, minus(p, first))),
-                all(&|p| dot(self.along, minus(p, last))),
-            ],
-            // As seen from the centre.
+        // Beyond an end of a line or, as seen from the centre, of an arc, the nearest point is an end.
+        let is_beyond = match &self.circle {
+            None => {
+                corners.iter().all(|p| -dot(self.along, minus(*p, first)) > 0.0)
+                    || corners.iter().all(|p| dot(self.along, minus(*p, last)) > 0.0)
+            }
             Some(Circle { centre, convex, .. }) => {
                 let sense = if *convex { 1.0 } else { -1.0 };
-                let out = |from: MeridianPoint, p: MeridianPoint| {
-                    cross(minus(from, *centre), minus(p, *centre))
-                };
-                [all(&|p| -sense * out(first, p)), all(&|p| sense * out(last, p))]
+                let [from, to] = self.ends.map(|end| minus(end, *centre));
+                corners.iter().all(|p| -sense * cross(from, minus(*p, *centre)) > 0.0)
+                    || corners.iter().all(|p| sense * cross(to, minus(*p, *centre)) > 0.0)
             }
         };
-        if beyond == [false, false] {
+        if !is_beyond {
             return None;
         }
-        let nearer = [
-            all(&|p| -dot(self.along, minus(p, middle))),
-            all(&|p| dot(self.along, minus(p, middle))),
-        ];
-        match nearer {
-            [true, _] => Some([true, false]),
-            [_, true] => Some([false, true]),
-            _ => Some([true, true]),
+        // The bisector of the ends tells which of them is the nearer one.
+        let middle = [0, 1].map(|k| f64::midpoint(first[k], last[k]));
+        let positions = corners.iter().map(|p| dot(self.along, minus(*p, middle)));
+        if positions.clone().all(|at| -at > 0.0) {
+            Some([true, false])
+        } else if positions.clone().all(|at| at > 0.0) {
+            Some([false, true])
+        } else {
+            Some([true, true])
         }
     }
 
@@ -200,15 +223,12 @@ impl Feature {
         triangle.iter().all(|p| self.sector(circle, *p))
     }
 
-    /// Returns whether [`Feature::over`] is the signed distance from the feature at all points of a triangle: their
+    /// Returns whether [`Feature::signed_distance`] is the signed distance from the feature at all points of a triangle: their
     /// feet are in the range `from` to `to` along the line, or on the arc.
     #[inline]
     pub(crate) fn projects_onto(&self, triangle: &Triangle, [from, to]: [f64; 2]) -> bool {
         match &self.circle {
-            None => triangle.iter().all(|p| {
-                let at = dot(self.along, minus(*p, self.ends[0]));
-                from <= at && at <= to
-            }),
+            None => triangle.iter().all(|p| (from..=to).contains(&self.position(*p))),
             Some(circle) => self.all_in_sector(circle, triangle),
         }
     }
@@ -218,13 +238,13 @@ impl Feature {
     pub(crate) fn foot(&self, p: MeridianPoint) -> MeridianPoint {
         match &self.circle {
             None => {
-                let at = dot(self.along, minus(p, self.ends[0]));
+                let at = self.position(p);
                 if at <= 0.0 {
                     self.ends[0]
                 } else if at >= self.length {
                     self.ends[1]
                 } else {
-                    [0, 1].map(|k| self.ends[0][k] + at * self.along[k])
+                    self.line_point(at)
                 }
             }
             Some(circle) if self.sector(circle, p) => {
@@ -268,7 +288,7 @@ impl Feature {
         }
     }
 
-    /// Returns the gradient of [`Feature::away`].
+    /// Returns the gradient of [`Feature::distance`].
     pub(crate) fn distance_gradient(&self, p: MeridianPoint) -> MeridianPoint {
         let vector = minus(p, self.foot(p));
         let length = norm(vector);
@@ -336,17 +356,18 @@ fn below_tangents(
     touching: impl Fn(MeridianPoint) -> MeridianPoint,
 ) -> f64 {
     let out = triangle.map(|p| minus(p, circle.centre));
-    let beneath = |out_of: MeridianPoint| {
-        let n = touching(out_of);
+    let deeper = usize::from(dot(out[1], out[1]) < dot(out[0], out[0]));
+    let [end, apex] = [out[deeper], out[2]].map(|foot| {
+        let n = touching(foot);
         let length = norm(n);
         if length > 0.0 {
             circle.radius - min3(out.map(|v| dot(n, v))) / length
         } else {
+            // The centre itself has no direction; nothing is deeper than the radius.
             circle.radius
         }
-    };
-    let deeper = usize::from(dot(out[1], out[1]) < dot(out[0], out[0]));
-    beneath(out[deeper]).min(beneath(out[2]))
+    });
+    end.min(apex)
 }
 
 /// Returns the features of a profile segment: an arc is cut where its tangent is horizontal or vertical.
@@ -354,30 +375,36 @@ pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
     let Some(circle) = piece.circle else {
         return vec![Feature::new([piece.from, piece.to], None, piece.surface.0)];
     };
-    let Circle { centre, radius, convex } = circle;
-    const FULL: f64 = std::f64::consts::TAU;
-    let angle = |p: MeridianPoint| (p[1] - centre[1]).atan2(p[0] - centre[0]);
-    let sense = if convex { 1.0 } else { -1.0 };
-    let turned = |p: MeridianPoint| (sense * (angle(p) - angle(piece.from))).rem_euclid(FULL);
+    let Circle { centre, radius, .. } = circle;
+    let turn = turn_between(&circle, piece.from, piece.to);
     // Ends this close are those of a short arc, whose angles rounding may have exchanged.
-    let turn = Some(turned(piece.to)).filter(|turn| *turn < FULL - 1e-9).unwrap_or(0.0);
-    let mut cuts: Vec<MeridianPoint> =
+    let turn = if turn < TAU - 1e-9 { turn } else { 0.0 };
+    let mut cuts: Vec<(f64, MeridianPoint)> =
         [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]]
             .into_iter()
             .map(|[d, z]| [centre[0] + d, centre[1] + z])
+            .map(|cut| (turn_between(&circle, piece.from, cut), cut))
             // Cuts at the ends do not count. An arc that exceeds a quarter by so little reaches beyond its end by
             // `radius (1 - cos 1e-9)`, 5e-19 of the radius, which is less than the rounding error of its centre and
             // radius.
-            .filter(|cut| turned(*cut) >= 1e-9 && turned(*cut) < turn - 1e-9)
+            .filter(|(at, _)| *at >= 1e-9 && *at < turn - 1e-9)
             .collect();
-    cuts.sort_by(|a, b| turned(*a).total_cmp(&turned(*b)));
-    cuts.push(piece.to);
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut from = piece.from;
     cuts.into_iter()
+        .map(|(_, cut)| cut)
+        .chain([piece.to])
         .map(|to| {
             Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface.0)
         })
         .collect()
+}
+
+/// Returns the angle from one point of an arc's circle to another in the arc's sense, from 0 to a full turn.
+fn turn_between(circle: &Circle, from: MeridianPoint, to: MeridianPoint) -> f64 {
+    let [from, to] = [from, to].map(|p| (p[1] - circle.centre[1]).atan2(p[0] - circle.centre[0]));
+    let sense = if circle.convex { 1.0 } else { -1.0 };
+    (sense * (to - from)).rem_euclid(TAU)
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Witnesses of the region of a tool that may not be inside the material: one point per connected piece.
 //!
-//! Each surface has a *limit*, the depth that the part may have in it. The restricted interior `S` consists of
-//! the points of the tool that are deeper than the limit of their nearest surface. If no triangle of the part
-//! meets `S`, each connected piece of `S` lies wholly inside the part or wholly outside, and one point of it
-//! decides which.
+//! Each surface has a *limit*, the depth that the part may have in it. The restricted interior `S` consists of the
+//! points of the tool that are deeper than the limit of their nearest surface. If no triangle of the part meets `S`,
+//! each connected piece of `S` lies wholly inside the part or wholly outside, and one point of it decides which.
 //!
 //! **Every piece is found.** Let `p` be a point of `S` at depth `t`, and `q` its nearest point on the profile.
 //! `q` is on a feature, or a reflex corner; where the profile begins or ends on the axis, a corner with its
@@ -22,9 +21,9 @@
 //! make one run. Nearer to the feature by half of the error bound the spans are connected, and no triangle is
 //! there. All pieces that are deeper than the limit by the tolerance and the error bound are therefore found.
 
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
-use crate::certify::tool_model::offset::{AXIS, Normals, levels};
+use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, minus, norm};
 use crate::certify::tool_model::section::Section;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A point of a tool's half plane that stands for a connected piece of its restricted interior.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +68,7 @@ impl Interior<'_> {
         if limit.is_infinite() || limit >= normals.longest() {
             return;
         }
+        // Between neighbouring cuts nothing comes nearer or moves away, so a middle decides for its span.
         let mut cuts = vec![0.0, normals.end()];
         normals.crossings(limit, AXIS, &mut cuts);
         for other in &self.section.features {
@@ -110,6 +110,7 @@ impl Interior<'_> {
     /// Returns the length of a normal, at least `least`: the distance at which another point of the profile is as
     /// near as its foot, or at which it reaches the axis.
     fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
+        // No normal inside the tool is longer than its diameter.
         let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
         for _ in 0..MAX_HALVINGS {
             let middle = f64::midpoint(low, high);
@@ -130,11 +131,12 @@ impl Interior<'_> {
     /// `d - l`, or as half the amount by which the features of that limit are farther away than `d`.
     fn margin(&self, p: MeridianPoint, tolerance_and_error: f64) -> f64 {
         let depth = self.section.signed(p);
-        let of = |(feature, limit): (&Feature, &f64)| {
-            (depth - limit - tolerance_and_error).max(0.5 * (feature.distance(p) - depth))
-        };
         let features = self.section.features.iter().zip(self.limits);
-        features.map(of).fold(depth, f64::min)
+        features
+            .map(|(feature, limit)| {
+                (depth - limit - tolerance_and_error).max(0.5 * (feature.distance(p) - depth))
+            })
+            .fold(depth, f64::min)
     }
 
     /// Returns whether the segment between two points is shown to stay in the interior.
@@ -151,6 +153,7 @@ impl Interior<'_> {
             if margin <= self.section.error {
                 return false;
             }
+            // Everything within the margin is in the interior, so the next step may begin there.
             at += margin;
         }
         false
@@ -158,8 +161,11 @@ impl Interior<'_> {
 
     /// Drops redundant witnesses: one of each set of connected witnesses is left, the one with the largest margin.
     fn joined(&self, mut found: Vec<CorePoint>, tolerance_and_error: f64) -> Vec<CorePoint> {
-        let margin = |witness: &CorePoint| self.margin(witness.point, tolerance_and_error);
-        found.sort_by(|one, other| margin(other).total_cmp(&margin(one)));
+        // A witness far from the limits connects to others in few steps, so it stands for its piece.
+        found.sort_by(|one, other| {
+            let [one, other] = [one, other].map(|w| self.margin(w.point, tolerance_and_error));
+            other.total_cmp(&one)
+        });
         let mut pieces: Vec<Vec<CorePoint>> = Vec::new();
         for witness in found {
             let mut rest = Vec::new();
@@ -193,10 +199,198 @@ const MAX_HALVINGS: u32 = 50;
 /// The maximum number of steps along a segment. After these it is not shown to stay inside.
 const MAX_STEPS: u32 = 256;
 
+/// The inward normals of a feature, or of the fan of a reflex corner.
+#[derive(Clone, Copy, Debug)]
+enum Normals {
+    /// The normals of a line: they start at `from + s along`, `s` up to `length`, in the direction `inward`.
+    Line { from: MeridianPoint, along: MeridianPoint, length: f64, inward: MeridianPoint },
+    /// The normals of an arc: at the angle `from + s`, `s` up to `turn`. At the distance `t` from the profile the
+    /// point is `radius + grows t` away from the centre.
+    Arc { centre: MeridianPoint, from: f64, turn: f64, radius: f64, grows: f64 },
+}
+
+/// A line or circle that contains points at a distance from a feature.
+#[derive(Clone, Copy)]
+enum Level {
+    /// The line of points whose dot product with a unit vector is `at`.
+    Line {
+        normal: MeridianPoint,
+        at: f64,
+    },
+    Circle {
+        centre: MeridianPoint,
+        radius: f64,
+    },
+}
+
+impl Normals {
+    fn of(feature: &Feature) -> Normals {
+        let [from, to] = feature.ends;
+        match feature.circle {
+            None => Normals::Line {
+                from,
+                along: feature.along,
+                length: feature.length,
+                inward: [-feature.along[1], feature.along[0]],
+            },
+            Some(circle) => {
+                let [first, last] = [from, to].map(|end| angle(minus(end, circle.centre)));
+                // A convex arc is traversed counterclockwise about its centre, a concave one clockwise.
+                let (from, to) = if circle.convex { (first, last) } else { (last, first) };
+                let grows = if circle.convex { -1.0 } else { 1.0 };
+                Normals::Arc {
+                    centre: circle.centre,
+                    from,
+                    turn: (to - from).rem_euclid(TAU),
+                    radius: circle.radius,
+                    grows,
+                }
+            }
+        }
+    }
+
+    /// Returns the fan of normals between two features that meet in a reflex corner; `None` if they do not.
+    fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
+        let [arrives, leaves] = [before.tangent_at(1), after.tangent_at(0)];
+        let turn = cross(arrives, leaves);
+        // For opposite headings rounding decides the sense of the turn. A cusp therefore gets a fan whether it points
+        // into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
+        if turn >= 0.0 && !(turn < 1e-9 && dot(arrives, leaves) < 0.0) {
+            return None;
+        }
+        let [from, to] = [leaves, arrives].map(|tangent| angle([-tangent[1], tangent[0]]));
+        Some(Normals::Arc {
+            centre: after.ends[0],
+            from,
+            turn: (to - from).rem_euclid(TAU),
+            radius: 0.0,
+            grows: 1.0,
+        })
+    }
+
+    /// Returns the fan of normals between a feature's normal at its end on the axis and the axis, if the feature
+    /// meets its mirror image in a reflex corner there.
+    fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
+        let [d, z] = feature.tangent_at(end);
+        if feature.ends[end][0] != 0.0 || z >= 0.0 {
+            return None;
+        }
+        let normal = angle([-z, d]);
+        // The direction into the tool: up at its beginning, down at its end.
+        let axis = if end == 0 { FRAC_PI_2 } else { -FRAC_PI_2 };
+        Some(Normals::Arc {
+            centre: feature.ends[end],
+            from: normal.min(axis),
+            turn: (axis - normal).abs(),
+            radius: 0.0,
+            grows: 1.0,
+        })
+    }
+
+    /// Returns the upper end of the parameter range.
+    fn end(&self) -> f64 {
+        match self {
+            Normals::Line { length, .. } => *length,
+            Normals::Arc { turn, .. } => *turn,
+        }
+    }
+
+    /// Returns the point at the distance `t` on the normal at the parameter `s`.
+    pub(super) fn point(&self, s: f64, t: f64) -> MeridianPoint {
+        match self {
+            Normals::Line { from, along, inward, .. } => {
+                [0, 1].map(|k| from[k] + s * along[k] + t * inward[k])
+            }
+            Normals::Arc { centre, from, radius, grows, .. } => {
+                let distance = radius + grows * t;
+                let (sin, cos) = (from + s).sin_cos();
+                [centre[0] + distance * cos, centre[1] + distance * sin]
+            }
+        }
+    }
+
+    /// Returns the distance at which the normals meet; infinity if they never do.
+    fn longest(&self) -> f64 {
+        match self {
+            Normals::Arc { radius, grows, .. } if *grows < 0.0 => *radius,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Appends the parameters at which the offset curve at the distance `t` crosses a line or circle.
+    fn crossings(&self, t: f64, level: Level, into: &mut Vec<f64>) {
+        let crossings = match (self, level) {
+            (Normals::Line { along, .. }, Level::Line { normal, at }) => {
+                let slope = dot(*along, normal);
+                let crossing =
+                    (slope != 0.0).then(|| (at - dot(self.point(0.0, t), normal)) / slope);
+                [crossing, None]
+            }
+            (Normals::Line { along, .. }, Level::Circle { centre, radius }) => {
+                let out = minus(self.point(0.0, t), centre);
+                let (middle, offset) = (-dot(*along, out), cross(*along, out));
+                let half = radius * radius - offset * offset;
+                if half >= 0.0 {
+                    let half = half.sqrt();
+                    [Some(middle - half), Some(middle + half)]
+                } else {
+                    [None; 2]
+                }
+            }
+            (Normals::Arc { centre, from, radius, grows, .. }, level) => {
+                let distance = radius + grows * t;
+                // In both cases the angles of the crossings from one direction have the same cosine.
+                let (vector, cosine) = match level {
+                    Level::Line { normal, at } => (normal, (at - dot(*centre, normal)) / distance),
+                    Level::Circle { centre: other, radius } => {
+                        let vector = minus(other, *centre);
+                        let centre_distance = norm(vector);
+                        let cosine = (distance * distance + centre_distance * centre_distance
+                            - radius * radius)
+                            / (2.0 * distance * centre_distance);
+                        (vector, cosine)
+                    }
+                };
+                if (-1.0..=1.0).contains(&cosine) {
+                    let (middle, half) = (angle(vector), cosine.acos());
+                    [middle - half, middle + half]
+                        .map(|crossing| Some((crossing - from).rem_euclid(TAU)))
+                } else {
+                    [None; 2]
+                }
+            }
+        };
+        let inside = crossings.into_iter().flatten().filter(|s| *s > 0.0 && *s < self.end());
+        into.extend(inside);
+    }
+}
+
+fn angle(vector: MeridianPoint) -> f64 {
+    vector[1].atan2(vector[0])
+}
+
+/// Returns the lines and circles that contain all points at the distance `t` from a feature.
+fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
+    let sides = match feature.circle {
+        None => {
+            let normal = [-feature.along[1], feature.along[0]];
+            let at = dot(feature.ends[0], normal);
+            [-t, t].map(|t| Level::Line { normal, at: at + t })
+        }
+        Some(circle) => [circle.radius + t, (circle.radius - t).abs()]
+            .map(|radius| Level::Circle { centre: circle.centre, radius }),
+    };
+    let ends = feature.ends.map(|centre| Level::Circle { centre, radius: t });
+    sides.into_iter().chain(ends)
+}
+
+/// The axis of the tool.
+const AXIS: Level = Level::Line { normal: [1.0, 0.0], at: 0.0 };
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certify::tool_model::owners::Owners;
+    use crate::certify::tool_model::section::Owners;
     use crate::id::SurfaceId;
     use crate::tool::Tool;
     use crate::tool::{Circle, ProfileSegment, ToolInfo};

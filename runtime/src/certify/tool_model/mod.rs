@@ -1,21 +1,26 @@
 //! The model of a tool: its profile, or its depth function with a bound on the function's rate of change.
 
-mod circles;
-pub(crate) mod deepest;
-mod enclosed;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
-mod offset;
 pub(crate) mod owners;
 pub(crate) mod section;
 
 use crate::certify::space::Point;
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
-use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::{Depth, Section};
+use crate::certify::tool_model::section::{Depth, Owners, Section};
 use crate::id::SurfaceId;
+use crate::tool::Tool;
+use fearless_simd::Level;
+
+/// Points of the half plane, within a distance of a point.
+pub(crate) struct Surroundings {
+    pub(crate) centre: Point,
+    pub(crate) displacement: f64,
+    /// The rectangle that holds the points.
+    pub(crate) rectangle: [MeridianPoint; 4],
+}
 
 /// A tool with its source of depth.
 pub(crate) enum ToolModel<'a> {
@@ -25,7 +30,24 @@ pub(crate) enum ToolModel<'a> {
     Field(Field<'a>),
 }
 
-impl ToolModel<'_> {
+impl<'a> ToolModel<'a> {
+    /// Creates the model of a tool; `error` is the error bound of a point. A tool whose overhangs are too many to
+    /// resolve is known by its depth alone. Returns `None` if no Lipschitz constant of that is proved either.
+    pub(crate) fn new(tool: &'a dyn Tool, level: Level, error: f64) -> Option<ToolModel<'a>> {
+        match Section::new(tool.info(), error).and_then(Section::with_circles) {
+            Some(section) => Some(ToolModel::Profile(section)),
+            None => Some(ToolModel::Field(Field::new(tool, level)?)),
+        }
+    }
+
+    /// Returns the error bound of a depth, given that of a point.
+    pub(crate) fn depth_error(&self, point_error: f64) -> f64 {
+        match self {
+            ToolModel::Profile(_) => point_error,
+            ToolModel::Field(field) => field.error + field.steep * point_error,
+        }
+    }
+
     /// Returns the Lipschitz constant of depth.
     pub(crate) fn lipschitz(&self) -> f64 {
         match self {
@@ -68,16 +90,16 @@ impl ToolModel<'_> {
         }
     }
 
-    /// Returns whether no point of a rectangle of the half plane, within `displacement` of a point, is inside,
-    /// deeper than `limit` and owned. If the limit is below 0, returns whether no such point is nearer to the
-    /// owners than that.
+    /// Returns whether none of the points is inside, deeper than `limit` and owned. If the limit is below 0, returns
+    /// whether none is nearer to the owners than that.
     pub(crate) fn clears(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,
-        (point, rectangle): (Point, &[MeridianPoint; 4]),
-        (displacement, limit): (f64, f64),
+        points: &Surroundings,
+        limit: f64,
     ) -> bool {
+        let Surroundings { centre: point, displacement, rectangle } = *points;
         let steep = self.lipschitz();
         let depth = match self {
             ToolModel::Profile(section) if limit < 0.0 => {
@@ -87,12 +109,13 @@ impl ToolModel<'_> {
             ToolModel::Profile(section) => section.signed(meridian_point(point)),
             ToolModel::Field(field) => field.depth(scratch, point).value,
         };
+        // Outside, depth is the negative of a distance, whose Lipschitz constant is 1.
         if depth + displacement < 0.0 || depth + steep * displacement <= limit {
             return true;
         }
         match self {
             ToolModel::Profile(section) => {
-                section.far_from(owners, rectangle, meridian_point(point), depth, displacement)
+                section.far_from(owners, &rectangle, meridian_point(point), depth, displacement)
             }
             ToolModel::Field(field) => field.passes(scratch, owners, point, displacement, limit),
         }

@@ -1,21 +1,21 @@
-//! The features to which a query is restricted. A feature *owns* the points to which it is the nearest. For a
-//! tool known by its depth field the features are its regions.
+//! The points that some features own, and the heights at which depth can be greatest there.
+//!
+//! Where depth is greatest inside a triangle, some convex combination of the gradients toward the nearest
+//! features is normal to the triangle, or 0. In the first case the point is on the meridian. In the second it is
+//! *critical*: the centre of an arc, midway between two points of the profile on a common normal, or equally far
+//! from three features. Without overhangs depth does not grow away from the axis, so an equally deep point lies
+//! nearer to the axis, on the meridian or on an edge. With overhangs a critical point is a circle about the axis,
+//! which a triangle crosses anywhere.
+//!
+//! Between parallel lines, or arcs about one centre, the critical points form a line of the half plane along
+//! which depth is constant. A triangle crosses its surface of revolution in curves. Closed curves meet the
+//! meridian (`docs/certified.md`). The others end on an edge, or at the height of an end of that line. At such an
+//! end a foot is an end of a feature, or a third feature is as near.
 
 use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
-use crate::certify::tool_model::section::{Section, SectionSlab};
-use crate::tool::{Region, ToolInfo, bit};
+use crate::certify::tool_model::section::{Owners, Section, SectionSlab};
+use crate::tool::{Circle, Region, ToolInfo, bit};
 use std::collections::BinaryHeap;
-
-/// A set of features, by their indices in the section's list.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Owners {
-    /// A flag per feature; `None` for all features.
-    owned_features: Option<Vec<bool>>,
-    /// The owning regions of a tool without a profile, one bit each as in [`crate::tool::EvaluationEnclosure`].
-    regions: u64,
-    /// Heights of local maxima of depth among the points that the features own.
-    pub(crate) peaks: Vec<f64>,
-}
 
 /// A rectangle of the half plane.
 #[derive(Clone, Copy)]
@@ -68,8 +68,8 @@ impl Owners {
                 // Just below and just above: at a seam each side owns only points on its side.
                 Some(peaks) => {
                     let beside = 0.25 * section.error;
-                    let owner_kinds = |peak: f64| [peak - beside, peak + beside];
-                    owners.peaks = peaks.into_iter().flat_map(owner_kinds).collect();
+                    owners.peaks =
+                        peaks.iter().flat_map(|peak| [peak - beside, peak + beside]).collect();
                 }
                 // No realistic profile is like this. The depth of the whole tool is an upper bound.
                 None => owners.owned_features = None,
@@ -82,10 +82,10 @@ impl Owners {
     /// distances and heights, the triangle meets it at the height of one of its ends, so the peaks are the heights of
     /// ends.
     pub(crate) fn near(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
-        let is_owned = |feature: &&Feature| surfaces(feature.surface);
-        let ends = section.features.iter().filter(is_owned).flat_map(|feature| feature.ends);
-        let peaks = ends.map(|end| end[1]).collect();
-        let owned_features = section.features.iter().map(|f| surfaces(f.surface)).collect();
+        let owned_features: Vec<bool> =
+            section.features.iter().map(|f| surfaces(f.surface)).collect();
+        let owned = section.features.iter().zip(&owned_features).filter(|(_, owned)| **owned);
+        let peaks = owned.flat_map(|(feature, _)| feature.ends.map(|end| end[1])).collect();
         Owners { owned_features: Some(owned_features), peaks, ..Owners::default() }
     }
 
@@ -106,28 +106,13 @@ impl Owners {
         }
     }
 
-    /// Returns whether some of these regions, a bit each, are owners.
-    pub(crate) fn own_some(&self, regions: u64) -> bool {
-        self.all() || self.regions & regions != 0
-    }
-
-    /// Returns whether all features are owners.
-    #[inline]
-    pub(crate) fn all(&self) -> bool {
-        self.owned_features.is_none()
-    }
-
-    /// Returns whether a feature is an owner.
-    #[inline]
-    pub(crate) fn is_owned(&self, feature: usize) -> bool {
-        self.owned_features.as_ref().is_none_or(|owned_features| owned_features[feature])
-    }
-
     /// Returns, per slab, the heights between which the owners can own a point deeper than `deeper`.
     pub(crate) fn zones(&self, section: &Section, deeper: f64) -> Vec<Option<[f64; 2]>> {
-        let whole = |slab: &SectionSlab| Some([slab.low, slab.high]);
-        let zone = |slab| if self.all() { whole(slab) } else { self.zone(section, slab, deeper) };
-        section.slabs.iter().map(zone).collect()
+        let slabs = section.slabs.iter();
+        if self.all() {
+            return slabs.map(|slab| Some([slab.low, slab.high])).collect();
+        }
+        slabs.map(|slab| self.zone(section, slab, deeper)).collect()
     }
 
     /// Computes the zone of a slab. Rectangles of it are halved until an owner is the nearest feature in all of one
@@ -138,6 +123,7 @@ impl Owners {
         let mut stack = vec![Rectangle::of(slab)];
         while let Some(rectangle) = stack.pop() {
             let Rectangle { low, high } = rectangle;
+            // Only the range of heights is asked for: what is inside it already cannot widen it.
             if zone.is_some_and(|[from, to]| from <= low[1] && high[1] <= to) {
                 continue;
             }
@@ -151,7 +137,7 @@ impl Owners {
                 let nearest = if self.is_owned(index) { &mut owner } else { &mut other };
                 *nearest = nearest.min(feature.distance(middle));
             }
-            // A distance has the Lipschitz constant 1.
+            // A distance has the Lipschitz constant 1, and two of them are compared.
             let uncertainty = 2.0 * reach + section.error;
             if owner > other + uncertainty || owner.min(other) + reach <= deeper {
                 continue;
@@ -210,7 +196,7 @@ impl Owners {
     ///
     /// The heights are found by halving rectangles, down to a fraction of the error bound of a point. Returns `None`
     /// if there are too many. With `others`, only those are returned near which other features own points too.
-    pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
+    fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
         let min_size = section.error / 32.0;
         // All points of an arc are equally far from its centre.
         let centres = section.features.iter().filter_map(|feature| feature.circle);
@@ -228,6 +214,7 @@ impl Owners {
                 continue;
             }
             if reach <= min_size {
+                // Neighbouring rectangles at one point count once.
                 if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     peaks.push(middle[1]);
                 }
@@ -250,10 +237,11 @@ impl Owners {
     ) -> bool {
         let away: Vec<f64> = section.features.iter().map(|f| f.distance(middle)).collect();
         let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
-        let near = |index: &usize| away[*index] <= nearest + 2.0 * reach + section.error / 64.0;
+        // Within the reach, a distance changes by at most the reach, and so does the least of all.
+        let max_distance = nearest + 2.0 * reach + section.error / 64.0;
         let mut nearby: Vec<(usize, MeridianPoint)> = Vec::new();
         let mut owner_kinds = [false; 2];
-        for index in (0..away.len()).filter(near) {
+        for index in (0..away.len()).filter(|index| away[*index] <= max_distance) {
             if section.hidden_by_neighbours(index, corners) {
                 continue;
             }
@@ -261,14 +249,17 @@ impl Owners {
             let foot = section.features[index].foot(middle);
             // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of two
             // adjacent features is nearer on either side of a line.
-            let of_corner = |feature: usize| section.features[feature].at_ends(corners).is_some();
-            let is_known = |(other, is_known): &(usize, MeridianPoint)| {
+            let is_known = nearby.iter().any(|(other, known_foot)| {
                 // Shared ends are identical to the bit.
-                let same = norm(minus(*is_known, foot)) <= section.error;
-                let owner = self.is_owned(index) == self.is_owned(*other);
-                same && (owner || (of_corner(index) && of_corner(*other)))
-            };
-            if !nearby.iter().any(is_known) {
+                let same_foot = norm(minus(*known_foot, foot)) <= section.error;
+                let same_kind = self.is_owned(index) == self.is_owned(*other);
+                let both_end = || {
+                    [index, *other].map(|f| section.features[f].at_ends(corners).is_some())
+                        == [true; 2]
+                };
+                same_foot && (same_kind || both_end())
+            });
+            if !is_known {
                 nearby.push((index, foot));
             }
         }
@@ -281,3 +272,85 @@ const ZONE_DIVISIONS: u32 = 1 << 11;
 
 /// The maximum number of rectangles examined for peaks, or for the deepest point.
 const MAX_RECTANGLES: u32 = 1 << 17;
+
+impl Section {
+    /// Computes the heights of circles about the axis on which depth can be greatest, where the profile overhangs.
+    /// Returns `None` if there are too many.
+    pub(super) fn with_circles(mut self) -> Option<Section> {
+        if self.overhangs {
+            let mut heights = Owners::default().find_peaks(&self, false)?;
+            heights.extend(
+                normal_pairs(&self.features)
+                    .into_iter()
+                    .map(|[a, b]| ([0, 1].map(|k| f64::midpoint(a[k], b[k])), norm(minus(a, b))))
+                    .filter(|(middle, distance)| self.is_critical(*middle, 0.5 * distance))
+                    .map(|(middle, _)| middle[1]),
+            );
+            heights.sort_by(f64::total_cmp);
+            heights.dedup_by(|upper, lower| *upper - *lower <= 0.25 * self.error);
+            self.circles = heights;
+        }
+        Some(self)
+    }
+
+    /// Returns whether a point midway between two points of the profile, `half` away from both, is inside and has no
+    /// nearer point of the profile.
+    fn is_critical(&self, middle: MeridianPoint, half: f64) -> bool {
+        let is_nearest = (self.unsigned_distance(middle) - half).abs() <= self.error;
+        middle[0] > 0.0 && half > self.error && is_nearest && self.contains(middle)
+    }
+}
+
+/// Returns pairs of points of features, or of the lines and circles that they lie on, that have a common normal. An end
+/// of a feature counts as having every normal.
+fn normal_pairs(features: &[Feature]) -> Vec<[MeridianPoint; 2]> {
+    let mut pairs = Vec::new();
+    let ends: Vec<MeridianPoint> = features.iter().flat_map(|feature| feature.ends).collect();
+    for (index, feature) in features.iter().enumerate() {
+        for end in &ends {
+            pairs.extend(normals(feature, *end).map(|point| [*end, point]));
+        }
+        for other in &features[..index] {
+            match (&feature.circle, &other.circle) {
+                // Parallel lines have common normals everywhere; those at their ends suffice.
+                (None, None) => {}
+                (Some(circle), None) => pairs.extend(common(other, circle)),
+                (None, Some(circle)) => pairs.extend(common(feature, circle)),
+                // The common normal of two circles passes through both centres.
+                (Some(one), Some(_)) => {
+                    for point in normals(other, one.centre) {
+                        pairs.extend(normals(feature, point).map(|own| [own, point]));
+                    }
+                }
+            }
+        }
+    }
+    for (index, end) in ends.iter().enumerate() {
+        pairs.extend(ends[..index].iter().map(|other| [*end, *other]));
+    }
+    pairs
+}
+
+/// Returns the points of a feature's line or circle whose normal passes through a point.
+fn normals(feature: &Feature, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
+    let points = match &feature.circle {
+        None => [Some(feature.line_point(feature.position(p))), None],
+        Some(Circle { centre, radius, .. }) => {
+            let offset = minus(p, *centre);
+            let distance = norm(offset);
+            [1.0, -1.0].map(|side| {
+                (distance > 0.0)
+                    .then(|| [0, 1].map(|k| centre[k] + side * radius * (offset[k] / distance)))
+            })
+        }
+    };
+    points.into_iter().flatten()
+}
+
+/// Returns the pairs of points of a line and a circle on their common normal.
+fn common(line: &Feature, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
+    let Circle { centre, radius, .. } = *circle;
+    let foot = line.line_point(line.position(centre));
+    let normal = [-line.along[1], line.along[0]];
+    [radius, -radius].map(|radius| [foot, [0, 1].map(|k| centre[k] + radius * normal[k])])
+}

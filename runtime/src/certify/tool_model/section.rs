@@ -5,11 +5,9 @@
 //! feature, its *side*. It extends to the axis, or to another feature, its *inner* side, where the profile
 //! overhangs. No feature ends between a slab's heights.
 
-use crate::certify::tool_model::circles;
 use crate::certify::tool_model::feature::{
     Feature, MeridianPoint, Triangle, cross, dot, minus, norm, quarters,
 };
-use crate::certify::tool_model::owners::Owners;
 use crate::tool::ToolInfo;
 
 /// A region between two heights.
@@ -31,7 +29,7 @@ pub(crate) struct SectionSlab {
     pub(crate) radius: f64,
     /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
     /// at most the distance from that line.
-    pub(crate) feet: [f64; 2],
+    feet: [f64; 2],
 }
 
 /// The section of a tool with a profile.
@@ -40,13 +38,21 @@ pub(crate) struct Section {
     pub(crate) features: Vec<Feature>,
     pub(crate) slabs: Vec<SectionSlab>,
     /// True if some heights have several slabs, or one that does not reach the axis.
-    overhangs: bool,
-    /// The heights of circles about the axis on which depth can be greatest in a triangle.
+    pub(super) overhangs: bool,
+    /// The heights of circles about the axis on which depth can be greatest in a triangle: none before
+    /// [`Section::with_circles`].
     pub(crate) circles: Vec<f64>,
     /// The largest distance of a point of the profile from the tip.
     pub(crate) size: f64,
     /// The error bound of heights: slabs are taken to reach farther by this.
     pub(crate) error: f64,
+}
+
+/// A corner of the profile at which the tool's interior angle is more than half a turn.
+pub(crate) struct ReflexCorner {
+    pub(crate) point: MeridianPoint,
+    /// True if a level feature ends at the corner, beyond which the tool does not continue.
+    pub(crate) ends_level: bool,
 }
 
 /// The depth of a point, and its gradient.
@@ -58,9 +64,39 @@ pub(crate) struct Depth {
     pub(crate) feature: usize,
 }
 
+/// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
+/// which it is the nearest. For a tool known by its depth field the features are its regions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Owners {
+    /// A flag per feature; `None` for all features.
+    pub(super) owned_features: Option<Vec<bool>>,
+    /// The owning regions of a tool without a profile, one bit each as in [`crate::tool::EvaluationEnclosure`].
+    pub(super) regions: u64,
+    /// Heights of local maxima of depth among the points that the features own.
+    pub(crate) peaks: Vec<f64>,
+}
+
+impl Owners {
+    /// Returns whether some of these regions, a bit each, are owners.
+    pub(crate) fn own_some(&self, regions: u64) -> bool {
+        self.all() || self.regions & regions != 0
+    }
+
+    /// Returns whether all features are owners.
+    #[inline]
+    pub(crate) fn all(&self) -> bool {
+        self.owned_features.is_none()
+    }
+
+    /// Returns whether a feature is an owner.
+    #[inline]
+    pub(crate) fn is_owned(&self, feature: usize) -> bool {
+        self.owned_features.as_ref().is_none_or(|owned_features| owned_features[feature])
+    }
+}
+
 impl Section {
-    /// Creates the section of a tool. Returns `None` if the tool has no profile, or if its overhangs are too many to
-    /// resolve.
+    /// Creates the section of a tool. Returns `None` if the tool has no profile.
     pub(crate) fn new(info: &ToolInfo, error: f64) -> Option<Section> {
         let features: Vec<Feature> = info.outline.iter().flat_map(quarters).collect();
         let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
@@ -71,14 +107,10 @@ impl Section {
             return None;
         }
         let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
-        let circles = Vec::new();
-        let mut section = Section { features, slabs, overhangs, circles, size, error };
+        let mut section = Section { features, slabs, overhangs, circles: Vec::new(), size, error };
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
-        }
-        if overhangs {
-            section.circles = circles::heights(&section)?;
         }
         Some(section)
     }
@@ -86,30 +118,27 @@ impl Section {
     /// Returns the range along a line in which its feet are outside the tool, provided that they are between the
     /// heights of a slab.
     fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
-        let at = |z: f64| (z - line.ends[0][1]) / line.along[1];
         let SectionSlab { low, high, .. } = self.slabs[slab];
-        let inside = |other: &&SectionSlab| !self.outside(line, other);
-        let below = self.slabs[..slab].iter().rev().find(inside);
-        let above = self.slabs[slab + 1..].iter().find(inside);
-        let is_adjacent =
-            |other: Option<&SectionSlab>| other.is_some_and(|o| o.low < high && low < o.high);
-        if is_adjacent(below) || is_adjacent(above) {
+        let mut below = self.slabs[..slab].iter().rev();
+        let below = below.find(|other| !self.outside(line, other));
+        let above = self.slabs[slab + 1..].iter().find(|other| !self.outside(line, other));
+        if [below, above].into_iter().flatten().any(|other| other.low < high && low < other.high) {
             // The tool continues beyond a gap: only feet on the side itself are known to be on the surface.
             return [0.0, line.length];
         }
         [
-            below.map_or(f64::NEG_INFINITY, |other| at(other.high).min(0.0)),
-            above.map_or(f64::INFINITY, |other| at(other.low).max(line.length)),
+            below.map_or(f64::NEG_INFINITY, |other| line.position_at_height(other.high).min(0.0)),
+            above
+                .map_or(f64::INFINITY, |other| line.position_at_height(other.low).max(line.length)),
         ]
     }
 
     /// Returns whether a line stays outside the tool between a slab's heights.
     fn outside(&self, line: &Feature, slab: &SectionSlab) -> bool {
-        let slope = line.along[0] / line.along[1];
-        let radius = |z: f64| line.ends[0][0] + slope * (z - line.ends[0][1]);
-        let (low, high) = (radius(slab.low), radius(slab.high));
+        let [low, high] = [slab.low, slab.high].map(|z| line.line_radius_at(z));
         match self.features[slab.side].circle {
             None => low >= slab.radii[0] && high >= slab.radii[1],
+            // An arc may bulge between its ends, so the line has to clear the slab's largest radius.
             Some(_) => low.min(high) >= slab.radius,
         }
     }
@@ -120,10 +149,8 @@ impl Section {
         let SectionSlab { low, high, hole, radii, .. } = self.slabs[slab];
         let [from, to] = self.feet(line, slab);
         let corners = [[hole, low], [hole, high], [radii[0], low], [radii[1], high]];
-        corners.into_iter().all(|p| {
-            let at = dot(line.along, minus(p, line.ends[0]));
-            from <= at && at <= to
-        })
+        // Positions along the line are linear, so the corners of the slab are the extremes.
+        corners.into_iter().all(|p| (from..=to).contains(&line.position(p)))
     }
 
     /// Returns the lowest and the highest z of the section.
@@ -131,21 +158,22 @@ impl Section {
         [self.slabs[0].low, self.slabs[self.slabs.len() - 1].high]
     }
 
-    /// Returns the reflex corners that can be the nearest to points of a slab. The flag tells if a level feature ends
-    /// at the corner, beyond which the tool does not continue. A corner only lowers bounds, so leaving out those
-    /// flatter than 1e-9 makes no result wrong. No point is nearer to such a corner than to the lines that meet there
-    /// by more than 5e-19 of its distance.
-    pub(crate) fn reflex(&self, slab: &SectionSlab) -> impl Iterator<Item = (MeridianPoint, bool)> {
-        let pairs = self.features.windows(2).filter(|pair| {
-            let [before, after] = [pair[0].tangent_at(1), pair[1].tangent_at(0)];
-            cross(before, after) < -1e-9
-        });
-        let near = |z: f64| slab.low - slab.radius <= z && z <= slab.high + slab.radius;
-        // Where the profile overhangs, the tool may be on either side of a level feature.
-        let level = |f: &Feature| !self.overhangs && f.circle.is_none() && f.along[1] == 0.0;
-        pairs
-            .map(move |pair| (pair[1].ends[0], level(&pair[0]) || level(&pair[1])))
-            .filter(move |(place, _)| near(place[1]))
+    /// Returns the reflex corners that can be the nearest to points of a slab.
+    pub(crate) fn reflex(&self, slab: &SectionSlab) -> impl Iterator<Item = ReflexCorner> {
+        // No point of the slab is deeper than its radius.
+        let [low, high] = [slab.low - slab.radius, slab.high + slab.radius];
+        self.features.windows(2).filter_map(move |pair| {
+            let turn = cross(pair[0].tangent_at(1), pair[1].tangent_at(0));
+            let point = pair[1].ends[0];
+            // A corner only lowers bounds, so leaving out those flatter than 1e-9 makes no result wrong. No point is
+            // nearer to such a corner than to the lines that meet there by more than 5e-19 of its distance.
+            (turn < -1e-9 && low <= point[1] && point[1] <= high).then(|| ReflexCorner {
+                point,
+                // Where the profile overhangs, the tool may be on either side of a level feature.
+                ends_level: !self.overhangs
+                    && pair.iter().any(|f| f.circle.is_none() && f.along[1] == 0.0),
+            })
+        })
     }
 
     /// Returns the slabs from the first that reaches a height.
@@ -155,18 +183,18 @@ impl Section {
 
     /// Returns whether a point is inside or on the surface.
     pub(crate) fn contains(&self, p: MeridianPoint) -> bool {
-        let inside = |slab: &SectionSlab| {
+        self.slabs.iter().any(|slab| {
             (slab.low..=slab.high).contains(&p[1]) && self.inner_distance(slab, p).0 >= 0.0
-        };
-        self.slabs.iter().any(inside)
+        })
     }
 
     /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
     #[inline]
     fn inner_distance(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
-        let of = |side: usize| (self.features[side].signed_distance(p), side);
-        let outer = of(slab.side);
-        slab.inner.map(of).filter(|inner| inner.0 < outer.0).unwrap_or(outer)
+        let outer = (self.features[slab.side].signed_distance(p), slab.side);
+        let Some(side) = slab.inner else { return outer };
+        let inner = (self.features[side].signed_distance(p), side);
+        if inner.0 < outer.0 { inner } else { outer }
     }
 
     /// Returns the depth of a point; for a point outside, a value below 0 or nothing.
@@ -268,9 +296,11 @@ impl Section {
             .inner
             .map_or(out, |inner| out.min(self.features[inner].signed_distance_upper(triangle)));
         if over < 0.0 {
+            // A point so little outside touches; whether an owner does is worth knowing only above the threshold.
             let other = over > threshold && self.is_apart(owners, |f| f.at_least(triangle));
             return if other { f64::NEG_INFINITY } else { over };
         }
+        // The signed distance from the side is a bound only where feet are on the surface or outside the tool.
         let mut bound = if side.projects_onto(triangle, slab.feet) { out } else { f64::INFINITY };
         for near in &slab.near {
             if bound <= threshold {
@@ -279,12 +309,14 @@ impl Section {
             bound = bound.min(self.features[*near].at_most(triangle));
         }
         if bound > threshold && !owners.all() {
+            // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
+            // distances owns no point here.
             let separation = bound + 2.0 * (self.error + slack);
-            let none = |owner: usize| {
+            let none_is_owned = self.owned(owners).all(|owner| {
                 self.hidden_by_neighbours(owner, triangle)
                     || self.features[owner].at_least(triangle) > separation
-            };
-            if self.owned(owners).all(none) {
+            });
+            if none_is_owned {
                 return f64::NEG_INFINITY;
             }
         }
@@ -322,20 +354,23 @@ impl Section {
     }
 
     /// Returns whether neighbouring features are nearer than `feature` to all points of a polygon. That is so if the
-    /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from
-    /// there.
+    /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from there.
     pub(crate) fn hidden_by_neighbours(&self, feature: usize, corners: &[MeridianPoint]) -> bool {
         let Some(ends) = self.features[feature].at_ends(corners) else { return false };
-        let nearer = |end: usize| {
-            let neighbour = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
-            neighbour.and_then(|neighbour| self.features.get(neighbour)).is_some_and(|other| {
-                let tangent = other.tangent_at(1 - end);
-                let outward = if end == 0 { tangent.map(|part| -part) } else { tangent };
-                let from = self.features[feature].ends[end];
-                corners.iter().all(|p| dot(outward, minus(*p, from)) > 0.0)
-            })
+        [0, 1].into_iter().all(|end| !ends[end] || self.neighbour_is_nearer(feature, end, corners))
+    }
+
+    /// Returns whether the neighbour that shares an end of a feature comes nearer to all points of a polygon from there.
+    fn neighbour_is_nearer(&self, feature: usize, end: usize, corners: &[MeridianPoint]) -> bool {
+        let neighbour = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
+        let Some(other) = neighbour.and_then(|index| self.features.get(index)) else {
+            return false;
         };
-        [0, 1].into_iter().all(|end| !ends[end] || nearer(end))
+        // The direction in which the neighbour leaves the shared end.
+        let tangent = other.tangent_at(1 - end);
+        let outward = if end == 0 { tangent.map(|part| -part) } else { tangent };
+        let from = self.features[feature].ends[end];
+        corners.iter().all(|p| dot(outward, minus(*p, from)) > 0.0)
     }
 
     pub(crate) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
@@ -353,7 +388,6 @@ impl Section {
 /// Returns the slabs between the heights at which features end, in upward order. Features whose ends differ in
 /// height by at most `level` have none.
 fn slabs(features: &[Feature], level: f64) -> Vec<SectionSlab> {
-    let height = |feature: &Feature, end: usize| feature.ends[end][1];
     let mut heights: Vec<f64> = features.iter().flat_map(|f| f.ends).map(|end| end[1]).collect();
     heights.sort_by(f64::total_cmp);
     heights.dedup_by(|upper, lower| *upper - *lower <= level);
@@ -361,16 +395,19 @@ fn slabs(features: &[Feature], level: f64) -> Vec<SectionSlab> {
     for pair in heights.windows(2) {
         let (low, high) = (pair[0], pair[1]);
         let middle = f64::midpoint(low, high);
-        let passes = |feature: &Feature| {
-            let [from, to] = [0, 1].map(|end| height(feature, end));
+        let passing = features.iter().enumerate().filter(|(_, feature)| {
+            let [from, to] = feature.ends.map(|end| end[1]);
             (to - from).abs() > level && from.min(to) < middle && middle < from.max(to)
-        };
-        let mut sides: Vec<usize> = (0..features.len()).filter(|k| passes(&features[*k])).collect();
-        let radius = |side: &usize| features[*side].radius_at(middle);
-        sides.sort_by(|one, other| radius(one).total_cmp(&radius(other)));
+        });
+        let mut sides: Vec<usize> = passing.map(|(index, _)| index).collect();
+        sides.sort_by(|one, other| {
+            features[*one].radius_at(middle).total_cmp(&features[*other].radius_at(middle))
+        });
+        // The tool is on the left of its profile: a feature that runs up ends it, one that runs down begins it.
         let mut inner = None;
         for side in sides {
-            if height(&features[side], 0) < height(&features[side], 1) {
+            let [from, to] = features[side].ends.map(|end| end[1]);
+            if from < to {
                 slabs.push(SectionSlab::new(features, [low, high], side, inner.take()));
             } else {
                 inner = Some(side);
@@ -387,19 +424,21 @@ impl SectionSlab {
         side: usize,
         inner: Option<usize>,
     ) -> SectionSlab {
-        let radii_of = |side: usize| [low, high].map(|z| features[side].radius_at(z));
-        let radii = radii_of(side);
+        let radii = [low, high].map(|z| features[side].radius_at(z));
         // A quarter of a circle is farthest out at its ends.
         let radius = radii[0].max(radii[1]);
-        let hole = inner.map(radii_of).map_or(0.0, |[first, last]| first.min(last));
+        let hole = inner.map_or(0.0, |inner| {
+            features[inner].radius_at(low).min(features[inner].radius_at(high))
+        });
         // Depth is at most the radial distance to the side. With an inner side, the nearer of the two is at most half
         // the gap away.
         let deepest = if inner.is_some() { 0.5 * (radius - hole) } else { radius };
-        let reaches = |f: &Feature| {
-            let [z0, z1] = f.ends.map(|end| end[1]);
+        let reaching = (0..features.len()).filter(|k| {
+            let [z0, z1] = features[*k].ends.map(|end| end[1]);
             z0.min(z1) <= high + deepest && z0.max(z1) >= low - deepest
-        };
-        let mut near: Vec<usize> = (0..features.len()).filter(|k| reaches(&features[*k])).collect();
+        });
+        let mut near: Vec<usize> = reaching.collect();
+        // The profile runs in order, so the features next to the side are likely to bound depth first.
         near.sort_by_key(|k| k.abs_diff(side));
         SectionSlab { low, high, side, inner, hole, radii, near, radius, feet: [0.0; 2] }
     }

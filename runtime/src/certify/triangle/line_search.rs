@@ -6,8 +6,7 @@
 //! greatest, until none is left.
 
 use crate::certify::tool_model::feature::{MeridianPoint, Triangle, dot};
-use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::{Depth, Section};
+use crate::certify::tool_model::section::{Depth, Owners, Section};
 
 /// A line segment, `base + t way`, with `t` in `span`. At `t`, `d² = off² + (start + t slide)²`.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +61,7 @@ impl SearchLine {
     fn end(&self, t: f64, toward: f64) -> End {
         let point = self.meridian_point(t);
         let along = self.start + t * self.slide;
+        // On the axis d has a kink; the slope is that of the side toward which the interval lies.
         let slope = if point[0] > 0.0 {
             self.slide * (along / point[0])
         } else {
@@ -78,6 +78,7 @@ impl SearchLine {
     /// Returns the spans on either side of the point nearest to the axis.
     fn halves(&self) -> impl Iterator<Item = [f64; 2]> {
         let [from, to] = self.span;
+        // A line through the axis has a kink there, over which a triangle of tangents would not hold.
         let nearest = -self.start / self.slide;
         if from < nearest && nearest < to {
             [Some([from, nearest]), Some([nearest, to])].into_iter().flatten()
@@ -129,6 +130,7 @@ fn cut(LineInterval(first, last): &LineInterval, depths: [&Depth; 2], line: &Sea
     } else {
         (depths[1].value - depths[0].value - down * length) / (up - down)
     };
+    // A cut near an end would leave almost the whole interval to be bounded again.
     let part = x / length;
     if part > 1e-3 && part < 1.0 - 1e-3 {
         first.t + length * part.clamp(0.05, 0.95)
@@ -281,16 +283,21 @@ impl DepthSearch {
         for half in line.halves() {
             let [low, high] = half.map(|t| line.height(t));
             for slab in section.from(low.min(high)) {
+                // Wider by the error, so that no point falls between two slabs.
                 let heights = [slab.low - section.error, slab.high + section.error];
                 if heights[0] > low.max(high) {
                     break;
                 }
                 if let Some([from, to]) = line.within(half, heights) {
-                    let bound = |triangle: &Triangle, stop_depth| {
-                        section.at_most(owners, slack, slab, triangle, stop_depth)
-                    };
-                    let depth = |point| section.depth(owners, slack, slab, point);
-                    self.run(line, line.interval(from, to), bound, depth, &mut found);
+                    self.run(
+                        line,
+                        line.interval(from, to),
+                        |triangle, threshold| {
+                            section.at_most(owners, slack, slab, triangle, threshold)
+                        },
+                        |point| section.depth(owners, slack, slab, point),
+                        &mut found,
+                    );
                 }
             }
         }
@@ -307,16 +314,19 @@ impl DepthSearch {
     ) -> Option<LineMaximum> {
         let mut found = None;
         for [from, to] in line.halves() {
-            let bound =
-                |triangle: &Triangle, best| section.negative_distance_bound(owners, triangle, best);
-            let depth = |point| {
-                if owners.all() && section.contains(point) {
-                    Depth { value: 0.0, gradient: [0.0; 2], feature: 0 }
-                } else {
-                    section.distance(owners, point)
-                }
-            };
-            self.run(line, line.interval(from, to), bound, depth, &mut found);
+            self.run(
+                line,
+                line.interval(from, to),
+                |triangle, threshold| section.negative_distance_bound(owners, triangle, threshold),
+                |point| {
+                    if owners.all() && section.contains(point) {
+                        Depth { value: 0.0, gradient: [0.0; 2], feature: 0 }
+                    } else {
+                        section.distance(owners, point)
+                    }
+                },
+                &mut found,
+            );
         }
         found
     }
@@ -343,10 +353,12 @@ impl DepthSearch {
             let depths = [first, last].map(|end| depth(end.point));
             self.note(first.t, &depths[0], found);
             self.note(last.t, &depths[1], found);
+            // The ends may be deep enough to rule out what lies between them.
             if bound <= self.threshold() {
                 continue;
             }
             let t = cut(&interval, [&depths[0], &depths[1]], line);
+            // No double lies between the ends.
             if t <= first.t || t >= last.t {
                 self.leave(bound);
                 continue;

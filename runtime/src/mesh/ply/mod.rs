@@ -2,25 +2,22 @@
 //! silently accepts properties named twice, surplus numbers and trailing bytes. It also refuses a
 //! comment that is not UTF-8 or a coordinate such as `.5`, and names no byte of a binary file.
 
-mod body;
 mod error;
-mod header;
+mod reader;
 #[cfg(test)]
 mod tests;
 
 use crate::id::TriangleId;
 use nalgebra::{Point3, Vector3};
 
-use self::body::{Body, Record, to_u32};
-use self::header::{Element, Header};
-use super::faces::Faces;
-use super::location::printable;
-use super::outlier::{Outlier, find_outlier};
+use self::reader::{Body, Element, Header, Record, read_header, to_u32};
+use super::faces::{Faces, Outlier, find_outlier};
+use super::location::{SourceLocation, printable};
 use super::{Mesh, is_valid_coordinate};
 use crate::unit::Unit;
 
 pub use self::error::PlyError;
-pub(super) use self::header::begins;
+pub(super) use self::reader::begins;
 
 /// Names that exporters give to the list of a face's corners.
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -46,22 +43,19 @@ pub struct OrientedPoints {
 }
 
 impl OrientedPoints {
-    /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this
-    /// function panic.
+    /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this function panic.
     ///
-    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round
-    /// it. It may have a `face`, the id of the face it lies on, and an `area`. Everything else,
-    /// including faces, is skipped.
+    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round it. It may have a
+    /// `face`, the id of the face it lies on, and an `area`. Everything else, including faces, is skipped.
     ///
     /// # Errors
     /// See [`PlyError`].
     pub fn from_ply(bytes: &[u8], name: &str) -> Result<OrientedPoints, PlyError> {
         let (header, mut body) = Body::new(bytes, name)?;
-        let file = || name.to_owned();
         let (vertex, [x, y, z]) = vertex(&header, name)?;
         let normal = ["nx", "ny", "nz"].map(|name| vertex.number(name));
         let [Some(_), Some(_), Some(_)] = normal else {
-            return Err(PlyError::NoNormals { file: file() });
+            return Err(PlyError::NoNormals { file: name.to_owned() });
         };
         let [nx, ny, nz] = normal;
         let (face, area) = (vertex.number("face"), vertex.number("area"));
@@ -80,15 +74,18 @@ impl OrientedPoints {
                 let [_, _, _, nx, ny, nz, face, area] = record.numbers;
                 let normal = Vector3::new(nx, ny, nz);
                 let norm = normal.norm();
+                // Where the square underflows, the norm is too inaccurate to divide by. NaN is not normal.
                 if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
-                    let (file, location, point) = (file(), record.location, record.index);
+                    let (file, location, point) = (name.to_owned(), record.location, record.index);
                     return Err(PlyError::Normal { file, location, point, norm });
                 }
                 points.normals.push(normal / norm);
                 if let Some(triangles) = &mut points.triangles {
                     let rule = "a whole number, 0 or more, below 2^32";
-                    let error = || invalid_value(&record, "vertex", "face", face, rule, name);
-                    triangles.push(TriangleId(to_u32(face).ok_or_else(error)?));
+                    let Some(face_id) = to_u32(face) else {
+                        return Err(invalid_value(&record, "vertex", "face", face, rule, name));
+                    };
+                    triangles.push(TriangleId(face_id));
                 }
                 if let Some(areas) = &mut points.areas {
                     if !(is_valid_coordinate(area) && area >= 0.0) {
@@ -103,7 +100,7 @@ impl OrientedPoints {
         body.end()?;
         match find_outlier(&points.points) {
             None => Ok(points),
-            Some((vertex, _, outlier)) => Err(outlier_vertex(bytes, name, vertex, outlier)),
+            Some(found) => Err(outlier_vertex(bytes, name, found.index, found.outlier)),
         }
     }
 }
@@ -112,17 +109,16 @@ impl Mesh {
     /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); errors name
     /// the file as `name`. No input makes this function panic.
     ///
-    /// A face with more than three corners is divided into a fan of triangles from its first corner, and
-    /// refused if the fan does not fill it; ids count the resulting triangles. Corners with equal
-    /// coordinates become one vertex, as in [`Mesh::read_stl`], because exporters double the vertices of
-    /// sharp edges. Other elements and properties are skipped, except triangle strips and a second list
-    /// of corners, which are refused.
+    /// A face with more than three corners is divided into a fan of triangles from its first corner, and refused if the
+    /// fan does not fill it; ids count the resulting triangles. Corners with equal coordinates become one vertex, as in
+    /// [`Mesh::read_stl`], because exporters double the vertices of sharp edges. Other elements and properties are
+    /// skipped, except triangle strips and a second list of corners, which are refused.
     ///
     /// # Errors
     /// See [`PlyError`].
     pub fn from_ply(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, PlyError> {
         let (header, mut body) = Body::new(bytes, name)?;
-        let file = || name.to_owned();
+        let file = name.to_owned();
         let (vertex, xyz) = vertex(&header, name)?;
         let face = header.element("face");
         let list = face.and_then(|face| {
@@ -130,15 +126,16 @@ impl Mesh {
             Some((face, name))
         });
         let Some((face, list)) = list else {
-            return Err(PlyError::NoFaces { file: file() });
+            return Err(PlyError::NoFaces { file });
         };
         let strips =
             header.elements.iter().find(|element| UNSUPPORTED_ELEMENTS.contains(&element.name));
+        // The file does not say which of two lists is the surface.
         let second =
             CORNER_LISTS.into_iter().find(|other| *other != list && face.list(other).is_some());
         let unread = strips.map(|strips| printable(strips.name)).or(second.map(str::to_owned));
         if let Some(unread) = unread {
-            return Err(PlyError::Unread { file: file(), unread });
+            return Err(PlyError::Unread { file, unread });
         }
         let mut vertices = Vec::new();
         let mut faces = Faces::default();
@@ -161,49 +158,52 @@ impl Mesh {
         }
         body.end()?;
         if faces.is_empty() {
-            return Err(PlyError::NoFaces { file: file() });
+            return Err(PlyError::NoFaces { file });
         }
         if let Some(location) = faces.folded(&vertices) {
-            return Err(PlyError::Folded { file: file(), location });
+            return Err(PlyError::Folded { file, location });
         }
-        let (used_vertices, corners) = faces.used_vertices(&vertices);
-        if let Some((index, _, outlier)) = find_outlier(&corners) {
-            return Err(outlier_vertex(bytes, name, used_vertices[index], outlier));
+        if let Some((vertex, outlier)) = faces.outlier(&vertices) {
+            return Err(outlier_vertex(bytes, name, vertex, outlier));
         }
         let mesh = faces.weld(&vertices, unit);
-        mesh.map_err(|source| PlyError::Mesh { file: file(), source })
+        mesh.map_err(|source| PlyError::Mesh { file, source })
     }
 }
 
-/// Returns the error for a vertex far outside the others in a valid file.
+/// Returns the error for a vertex far outside the others in a valid file, which is read once more to locate the vertex.
 fn outlier_vertex(bytes: &[u8], name: &str, vertex: usize, outlier: Outlier) -> PlyError {
-    let check = |record: Record<0>| match record.index == vertex {
-        true => Err(PlyError::Outlier {
-            file: name.to_owned(),
-            location: record.location,
-            vertex,
-            outlier,
-        }),
-        false => Ok(()),
-    };
-    let search = || {
-        let (header, mut body) = Body::new(bytes, name)?;
-        for element in &header.elements {
-            if element.name == b"vertex" {
-                body.read(element, [], None, check)?;
-            } else {
-                body.read(element, [], None, |_| Ok(()))?;
-            }
+    match location_of_vertex(bytes, name, vertex) {
+        Ok(Some(location)) => {
+            PlyError::Outlier { file: name.to_owned(), location, vertex, outlier }
         }
-        Ok(())
-    };
-    let fallback = PlyError::NoPoints { file: name.to_owned() };
-    search().err().unwrap_or(fallback)
+        Ok(None) => PlyError::NoPoints { file: name.to_owned() },
+        Err(error) => error,
+    }
+}
+
+/// Returns the location of a vertex, if the file has it.
+fn location_of_vertex(
+    bytes: &[u8],
+    name: &str,
+    vertex: usize,
+) -> Result<Option<SourceLocation>, PlyError> {
+    let (header, mut body) = Body::new(bytes, name)?;
+    let mut location = None;
+    for element in &header.elements {
+        body.read(element, [], None, |record: Record<0>| {
+            if element.name == b"vertex" && record.index == vertex {
+                location = Some(record.location);
+            }
+            Ok(())
+        })?;
+    }
+    Ok(location)
 }
 
 /// Returns whether a PLY file holds faces; if so it is a mesh, otherwise points.
 pub(super) fn has_faces(bytes: &[u8], name: &str) -> Result<bool, PlyError> {
-    let (header, _) = header::read(bytes, name)?;
+    let (header, _) = read_header(bytes, name)?;
     Ok(header.element("face").is_some_and(|face| face.count > 0))
 }
 
@@ -212,12 +212,12 @@ fn vertex<'h, 'a>(
     header: &'h Header<'a>,
     name: &str,
 ) -> Result<(&'h Element<'a>, [Option<usize>; 3]), PlyError> {
-    let vertex = header.element("vertex").filter(|vertex| vertex.count > 0);
-    let xyz = |vertex: &Element| ["x", "y", "z"].map(|name| vertex.number(name));
-    match vertex.map(|vertex| (vertex, xyz(vertex))) {
-        Some((vertex, xyz @ [Some(_), Some(_), Some(_)])) => Ok((vertex, xyz)),
-        _ => Err(PlyError::NoPoints { file: name.to_owned() }),
+    if let Some(vertex) = header.element("vertex").filter(|vertex| vertex.count > 0)
+        && let xyz @ [Some(_), Some(_), Some(_)] = ["x", "y", "z"].map(|name| vertex.number(name))
+    {
+        return Ok((vertex, xyz));
     }
+    Err(PlyError::NoPoints { file: name.to_owned() })
 }
 
 /// Returns the position of a vertex, from the first three numbers of its record.
@@ -241,8 +241,7 @@ fn corners_of(
     name: &str,
     corners: &mut Vec<u32>,
 ) -> Result<(), PlyError> {
-    let (location, face) = (record.location, record.index);
-    let file = || name.to_owned();
+    let (file, location, face) = (name.to_owned(), record.location, record.index);
     corners.clear();
     for &item in record.items {
         let Some(vertex) = to_u32(item) else {
@@ -250,12 +249,12 @@ fn corners_of(
             return Err(invalid_value(record, "face", list, item, rule, name));
         };
         if vertex as usize >= vertices {
-            return Err(PlyError::Index { file: file(), location, face, vertex, vertices });
+            return Err(PlyError::Index { file, location, face, vertex, vertices });
         }
         corners.push(vertex);
     }
     match corners.len() {
-        0..=2 => Err(PlyError::Corners { file: file(), location, face, corners: corners.len() }),
+        0..=2 => Err(PlyError::Corners { file, location, face, corners: corners.len() }),
         _ => Ok(()),
     }
 }

@@ -168,8 +168,7 @@ fn no_file_with_right_checksums_leads_out_of_a_list() {
     for round in 0..10_000 {
         let mut bytes = whole.clone();
         for _ in 0..1 + random.next_u32() % 4 {
-            // Half of the changes are in the header. They replace whole words, so that numbers become
-            // absurd.
+            // Half of the changes are in the header. They replace whole words, so that numbers become absurd.
             let within = if round % 2 == 0 { start.header as usize } else { bytes.len() };
             let at = random.next_u64() as usize % within / 4 * 4;
             let word = match random.next_u32() % 4 {

@@ -1,9 +1,24 @@
-//! Nearest-neighbour queries on points, by a 16-wide bounding volume hierarchy.
+//! Neighbours of points: nearest-neighbour queries by a 16-wide bounding volume hierarchy, and their results as many short
+//! lists in one allocation.
 
 use crate::bvh::{Bounds, BuildItem, WIDTH, order};
 use nalgebra::Point3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+
+/// A point, by its index, and its squared distance from some position.
+#[derive(Clone, Copy)]
+pub(super) struct Neighbour {
+    pub(super) squared: f64,
+    pub(super) index: u32,
+}
+
+impl Neighbour {
+    /// Compares by squared distance, then by index.
+    pub(super) fn nearer(&self, other: &Neighbour) -> Ordering {
+        self.squared.total_cmp(&other.squared).then(self.index.cmp(&other.index))
+    }
+}
 
 /// A spatial index of points.
 pub(super) struct NeighbourBvh {
@@ -15,11 +30,15 @@ pub(super) struct NeighbourBvh {
 impl NeighbourBvh {
     /// Builds the index of one or more points.
     pub(super) fn new(points: &[Point3<f64>]) -> NeighbourBvh {
-        let item = |(point, index): (&Point3<f64>, u32)| BuildItem { at: (*point).into(), index };
-        let mut items: Vec<BuildItem> = points.iter().zip(0..).map(item).collect();
+        let mut items: Vec<BuildItem> = points
+            .iter()
+            .zip(0..)
+            .map(|(point, index)| BuildItem { at: (*point).into(), index })
+            .collect();
         order(&mut items);
-        let leaf = |items: &[BuildItem]| Bounds::of(items.iter().map(|item| item.at));
-        let mut levels = vec![items.chunks(WIDTH).map(leaf).collect::<Vec<_>>()];
+        let leaves = items.chunks(WIDTH);
+        let mut levels: Vec<Vec<Bounds>> =
+            vec![leaves.map(|leaf| Bounds::of(leaf.iter().map(|item| item.at))).collect()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             let above = below.chunks(WIDTH).map(Bounds::around).collect();
             levels.push(above);
@@ -27,20 +46,19 @@ impl NeighbourBvh {
         NeighbourBvh { items, levels }
     }
 
-    /// Puts the points within a distance of a position into `found`, as squared distance and index. The
-    /// nearest come first, equally near ones by index.
-    pub(super) fn within(&self, point: [f64; 3], distance: f64, found: &mut Vec<(f64, u32)>) {
+    /// Puts the points within a distance of a position into `found`. The nearest come first, equally near ones by
+    /// index.
+    pub(super) fn within(&self, point: [f64; 3], distance: f64, found: &mut Vec<Neighbour>) {
         self.nearest_within(point, distance, usize::MAX, found);
     }
 
-    /// Like [`PointGrid::within`], but returns only the `max_count` nearest points. `max_count` must be at least
-    /// 1.
+    /// Like [`NeighbourBvh::within`], but returns only the `max_count` nearest points. `max_count` must be at least 1.
     pub(super) fn nearest_within(
         &self,
         point: [f64; 3],
         distance: f64,
         max_count: usize,
-        found: &mut Vec<(f64, u32)>,
+        found: &mut Vec<Neighbour>,
     ) {
         found.clear();
         let mut max_squared = distance * distance;
@@ -48,33 +66,37 @@ impl NeighbourBvh {
             for item in items {
                 let squared_distance = squared_distance(item.at, point);
                 if squared_distance <= max_squared {
-                    found.push((squared_distance, item.index));
+                    found.push(Neighbour { squared: squared_distance, index: item.index });
                 }
             }
+            // At twice the count, a selection costs no more than the points did that were added since the last one.
             if found.len() / 2 >= max_count {
-                max_squared = found.select_nth_unstable_by(max_count - 1, nearer).1.0;
+                let farthest = found.select_nth_unstable_by(max_count - 1, Neighbour::nearer).1;
+                max_squared = farthest.squared;
                 found.truncate(max_count);
             }
             max_squared
         });
-        found.sort_unstable_by(nearer);
+        found.sort_unstable_by(Neighbour::nearer);
         found.truncate(max_count);
     }
 
     /// Returns the point with the least sum of its squared distance and `offset`; among equals, the one
     /// with the lower index.
     pub(super) fn min_sum(&self, point: [f64; 3], offset: impl Fn(u32) -> f64) -> u32 {
-        let mut best = (f64::INFINITY, u32::MAX);
+        let mut best = Neighbour { squared: f64::INFINITY, index: u32::MAX };
         self.visit(point, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
-                let sum = (squared_distance(item.at, point) + offset(item.index), item.index);
-                if nearer(&sum, &best).is_lt() {
+                let squared = squared_distance(item.at, point) + offset(item.index);
+                let sum = Neighbour { squared, index: item.index };
+                if sum.nearer(&best).is_lt() {
                     best = sum;
                 }
             }
-            best.0
+            // Offsets are not negative, so no point farther than the least sum has a lesser one.
+            best.squared
         });
-        best.1
+        best.index
     }
 
     /// Returns the squared distance within which the points' weights add up to `min_weight`, or that of the
@@ -96,6 +118,7 @@ impl NeighbourBvh {
                     let weight = weight(item.index);
                     sum += weight;
                     nearest.push((squared_distance, weight));
+                    // Drop the farthest points that the weight does without.
                     while let Some(farthest) = nearest.peek().filter(|f| sum - f.1 >= min_weight) {
                         sum -= farthest.1;
                         nearest.pop();
@@ -118,15 +141,15 @@ impl NeighbourBvh {
         node: usize,
         visit_leaf: &mut impl FnMut(&[BuildItem]) -> f64,
     ) -> f64 {
-        let range = |list: usize| node * WIDTH..((node + 1) * WIDTH).min(list);
+        let (first, end) = (node * WIDTH, (node + 1) * WIDTH);
         if level == 0 {
-            return visit_leaf(&self.items[range(self.items.len())]);
+            return visit_leaf(&self.items[first..end.min(self.items.len())]);
         }
         let below = &self.levels[level - 1];
         let mut children = [(0.0, 0); WIDTH];
         let mut count = 0;
-        for child in range(below.len()) {
-            let squared_distance = below[child].squared_distance(point);
+        for (child, bounds) in (first..).zip(&below[first..end.min(below.len())]) {
+            let squared_distance = bounds.squared_distance(point);
             if squared_distance <= max_squared {
                 children[count] = (squared_distance, child);
                 count += 1;
@@ -134,6 +157,7 @@ impl NeighbourBvh {
         }
         children[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for (squared_distance, child) in &children[..count] {
+            // The visits before may have lowered the limit.
             if *squared_distance <= max_squared {
                 max_squared = self.visit(point, max_squared, level - 1, *child, visit_leaf);
             }
@@ -166,13 +190,50 @@ impl Ord for Squared {
     }
 }
 
-/// Compares two points by squared distance, then by index.
-pub(super) fn nearer(a: &(f64, u32), b: &(f64, u32)) -> Ordering {
-    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-}
-
 /// Returns the squared distance of two positions.
 pub(super) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     x * x + y * y + z * z
+}
+
+/// Consecutive lists of indices, in one vector.
+#[derive(Default)]
+pub(super) struct Lists {
+    items: Vec<u32>,
+    /// The end of each list in `items`.
+    ends: Vec<usize>,
+}
+
+impl Lists {
+    /// Appends to the last list.
+    pub(super) fn push(&mut self, item: u32) {
+        self.items.push(item);
+    }
+
+    /// Ends the last list and begins another.
+    pub(super) fn end(&mut self) {
+        self.ends.push(self.items.len());
+    }
+
+    /// Concatenates several collections of lists, in order.
+    pub(super) fn joined(parts: Vec<Lists>) -> Lists {
+        let [items, lists] = parts.iter().fold([0; 2], |[items, lists], part| {
+            [items + part.items.len(), lists + part.ends.len()]
+        });
+        let mut combined =
+            Lists { items: Vec::with_capacity(items), ends: Vec::with_capacity(lists) };
+        for Lists { items, ends } in parts {
+            let offset = combined.items.len();
+            combined.items.extend(items);
+            combined.ends.extend(ends.into_iter().map(|end| offset + end));
+        }
+        combined
+    }
+
+    /// Returns the list at index `index`.
+    pub(super) fn of(&self, index: u32) -> &[u32] {
+        let index = index as usize;
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        &self.items[start..self.ends[index]]
+    }
 }
