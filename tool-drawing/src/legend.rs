@@ -1,11 +1,9 @@
 //! The legend below the views, which explains their lines, areas and symbols.
 
-use super::Content;
-use super::colours;
 use super::lettering::width;
-use super::marks::head;
-use super::regions::Marks;
+use super::regions::{Marks, head};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
+use super::{Content, paint};
 use tool_dsl::model::Model;
 use tool_dsl::vector::Point;
 
@@ -54,7 +52,7 @@ pub(super) fn draw(groups: &[Vec<Entry>], sheet: &mut Sheet) {
 
 /// Returns the entries of a model's surfaces.
 pub(super) fn surfaces(model: &Model) -> Vec<Entry> {
-    let surfaces = model.surfaces.iter().zip(colours::surfaces(model));
+    let surfaces = model.surfaces.iter().zip(paint::surface_colours(model));
     surfaces
         .map(|(surface, colour)| {
             let cutting = surface.cutting;

@@ -18,15 +18,10 @@
 struct Readme;
 
 mod borders;
-mod colours;
-mod contour;
 mod curves;
 mod detail;
-mod glyphs;
 mod legend;
 pub mod lettering;
-mod map;
-mod marks;
 mod notes;
 mod paint;
 mod regions;
@@ -146,7 +141,7 @@ impl<'m> Picture<'m> {
         let size = height.max(extent.radius);
         let borders = trace(&mut curves, tool, [low, high], [unit, size]);
         let view = View::new(&borders, MAX_TOOL_EXTENT);
-        let fills = colours::areas(model.regions.len(), &borders);
+        let fills = paint::area_colours(model.regions.len(), &borders);
         Picture::of(model, content, (borders, size), view, fills)
     }
 

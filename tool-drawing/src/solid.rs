@@ -4,12 +4,10 @@
 //! (from +x), and above it the view from above (from +z).
 
 use super::borders::Border;
-use super::colours;
-use super::contour::tidy;
 use super::curves::{Curves, Plane};
 use super::legend::{self, Entry, Sign};
-use super::marks::head;
-use super::regions::name;
+use super::notes::tidy;
+use super::regions::{head, name};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines};
 use super::view::{View, is_outline};
 use super::{Content, Picture, paint, trace};
@@ -75,7 +73,7 @@ pub(super) fn sections<'m>(tool: &'m CheckedTool, content: Content) -> [Section<
     let sides = extents(&borders, proved);
     let [x, y, z] = sides.map(|side| side.high - side.low);
     let scale = MAX_EXTENT / (x + y).max(z + y);
-    let fills = colours::distinct_areas(tool.model.regions.len());
+    let fills = paint::distinct_area_colours(tool.model.regions.len());
     let mut borders = borders.into_iter();
     NORMALS.map(|normal| {
         let [u, v] = axes(normal).map(|axis| sides[axis]);

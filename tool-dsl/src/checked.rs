@@ -3,11 +3,10 @@
 use crate::bound::{self, EnvelopeSlab};
 use crate::diagnostic::{CheckKind, Diagnostic, Reported, without_error};
 use crate::expr::{self, Id};
-use crate::lint;
 use crate::model::Model;
 use crate::plan::{self, PlannedTool};
 use crate::prove::Bounds;
-use crate::validate;
+use crate::{lint, validate};
 use std::ops::Deref;
 
 /// A tool in which no error was found, with everything that is emitted about it. Only

@@ -5,10 +5,8 @@ use crate::diagnostic::{
     Diagnostic, Kind, Refusal, RegionKind, Reported, Severity, ValueKind, any_error, readable,
     without_error,
 };
-use crate::resolve;
 use crate::source::{Source, Sources, Span};
-use crate::syntax;
-use crate::validate;
+use crate::{resolve, syntax, validate};
 use std::collections::BTreeSet;
 
 /// The result of compiling a text: a tool, or the errors that prevent it.

@@ -1,8 +1,7 @@
 //! Checks of `magnitude` and `niceness` at points that samples of the inside do not reach: toward the
 //! surface, at its corners and on the axis.
 
-use super::fault::Fault;
-use super::{Linter, norm};
+use super::{Fault, Linter, norm};
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
 use crate::expr::Id;

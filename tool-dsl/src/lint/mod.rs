@@ -1,20 +1,17 @@
 //! A search for errors at many sample points of a tool's domain: regions that overlap, are never reached or
 //! give invalid values. Each diagnostic names the point where it was found.
 
-mod fault;
-mod laws;
-
-use crate::bound::Extent;
-use crate::bound::spread;
+use crate::bound::{Extent, spread};
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject, any_error};
 use crate::domain::Domain;
-use crate::expr::Id;
 use crate::expr::value::{EvaluationPoint, Evaluator};
+use crate::expr::{Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
-use fault::Fault;
+
+mod laws;
 
 /// The number of sample points.
 const SAMPLES: usize = 12_000;
@@ -434,6 +431,49 @@ fn mentions(formula: &Formula, sought: CurveIndex) -> bool {
         Formula::Atom { curve, .. } => *curve == sought,
         Formula::All(parts) | Formula::Any(parts) => {
             parts.iter().any(|part| mentions(part, sought))
+        }
+    }
+}
+
+/// The reason why a value is not a finite number.
+pub(super) enum Fault {
+    Root,
+    Quotient,
+    Size,
+}
+
+impl Fault {
+    /// Returns the first operation, from the operands up, whose result is not finite.
+    pub(super) fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
+        let is_finite = |id: &Id| evaluator.get(*id).is_finite();
+        loop {
+            let node = graph.node(id);
+            let operands: Vec<Id> = match *node {
+                Node::Select { low, high, then, other } => {
+                    let [low, high] = [low, high].map(|id| evaluator.get(id));
+                    vec![if low <= high { then } else { other }]
+                }
+                _ => node.operands().collect(),
+            };
+            match operands.iter().find(|id| !is_finite(id)) {
+                Some(operand) => id = *operand,
+                None => {
+                    return match *node {
+                        Node::Sqrt(_) => Fault::Root,
+                        Node::Div(_, by) if evaluator.get(by) == 0.0 => Fault::Quotient,
+                        _ => Fault::Size,
+                    };
+                }
+            }
+        }
+    }
+
+    /// Returns the diagnostic for an expression that has no value at a point.
+    pub(super) fn kind(&self, location: String, subject: Subject) -> CheckKind {
+        match self {
+            Fault::Root => CheckKind::RootOfNegative { location, subject },
+            Fault::Quotient => CheckKind::DivisionByZero { location, subject },
+            Fault::Size => CheckKind::NumericOverflow { location, subject },
         }
     }
 }

@@ -7,12 +7,9 @@
 //! the information that tests give about samples of the domain, with cheap curves preferred and the curves of
 //! `bsp` first.
 
-mod corners;
-mod empty;
 mod samples;
 mod section;
 mod signs;
-mod zero_set;
 
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic};
@@ -22,6 +19,8 @@ use crate::model::Model;
 use crate::number::Number;
 use signs::by_signs;
 
+/// The information, in bits, that must justify one addition.
+const BITS_PER_ADDITION: f64 = 0.01;
 /// The largest number of tests in one tree.
 pub(crate) const MAX_TESTS: usize = 20_000;
 

@@ -1,10 +1,9 @@
 //! Points of the section with known owners, and the information that curves give about them.
 
-use super::bits;
-use super::section::BITS_PER_ADDITION;
+use super::{BITS_PER_ADDITION, bits};
 use crate::formula::CurveIndex;
+use crate::geometry::cut::CurveFunction;
 use crate::geometry::outline::Point;
-use crate::geometry::shape::CurveFunction;
 
 /// The least cost, in additions, of a side on which several owners remain.
 const MIN_SIDE_COST: f64 = 8.0;

@@ -1,21 +1,21 @@
 //! The plan of a tool with a profile. Its partition is known as polygons, and splits cut them until one owner
-//! is left.
+//! is left. Points on a splitting curve go to one side, or to a tree of their own if both sides need them. Leaves
+//! return points that rounding may bring astray near a corner to one of its owners.
 
-use super::corners::{Corner, corners};
 use super::samples::{Sample, SampleSubset, Samples};
-use super::zero_set::Zeros;
-use super::{MAX_TESTS, Tree, costs};
+use super::{BITS_PER_ADDITION, MAX_TESTS, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
-use crate::geometry::cut::{Cut, Cutter, Piece};
+use crate::geometry::cut::{
+    COINCIDENCE_FRACTION, CurveFunction, Cut, Cutter, Edge, Piece, is_along,
+};
 use crate::geometry::outline::{self, Point, minus, norm};
-use crate::geometry::shape::CurveFunction;
 use crate::model::{Model, Over, Section};
-use crate::regionalise::ROUNDING;
-use crate::regionalise::cells;
 use crate::regionalise::overlay::{self, ConditionedPart};
+use crate::regionalise::{ROUNDING, cells};
 use std::cell::Cell;
+use std::cmp::Ordering;
 use std::rc::Rc;
 
 /// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
@@ -26,8 +26,6 @@ const MAX_SKIPPED_CURVES: usize = 6;
 
 pub(super) type Owners = Tree<Option<usize>>;
 
-/// The information, in bits, that must justify one addition.
-pub(super) const BITS_PER_ADDITION: f64 = 0.01;
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 
@@ -515,4 +513,214 @@ fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
     let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
     let z = model.frame.to_file(z);
     Diagnostic::new(span, CheckKind::Inseparable { d, z })
+}
+
+/// A point where pieces meet, with the owners of these pieces.
+pub(super) struct Corner {
+    at: Point,
+    owners: Vec<Option<usize>>,
+}
+
+/// Returns the points where whole pieces meet. Each piece comes with its bounding box.
+pub(super) fn corners(
+    mut points: Vec<Point>,
+    whole: &[(Rc<Piece>, [Point; 2])],
+    shapes: &[CurveFunction<'_>],
+    size: f64,
+) -> Vec<Corner> {
+    let tolerance = COINCIDENCE_FRACTION * size;
+    let are_near =
+        |p: Point, q: Point| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance;
+    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    points.dedup_by(|p, q| are_near(*p, *q));
+    let corner = |point: Point| {
+        let mut owners = Vec::new();
+        for (piece, [middle, half]) in whole {
+            let [u, v] = minus(point, *middle);
+            if u.abs() <= half[0] + tolerance
+                && v.abs() <= half[1] + tolerance
+                && !owners.contains(&piece.owner)
+                && (piece.vertices.iter().any(|p| are_near(*p, point))
+                    || piece.has_on_edge(point, shapes, size))
+            {
+                owners.push(piece.owner);
+            }
+        }
+        Corner { at: point, owners }
+    };
+    points.into_iter().map(corner).collect()
+}
+
+impl Planner<'_> {
+    /// Returns the corners that rounding may place on a side of a curve.
+    pub(super) fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
+        let is_on_side =
+            |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
+        corners.iter().copied().filter(is_on_side).collect()
+    }
+
+    /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
+    /// Rounding may bring a point near such a corner here, where its owner has no piece.
+    pub(super) fn leaf(
+        &self,
+        owner: Option<usize>,
+        pieces: &[Rc<Piece>],
+        corners: &[usize],
+    ) -> Owners {
+        let is_foreign = |at: &&usize| !self.corners[**at].owners.contains(&owner);
+        let Some(corner) = corners.iter().find(is_foreign).map(|at| &self.corners[*at]) else {
+            return Tree::Leaf(owner);
+        };
+        let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
+        if pieces.is_empty() {
+            return Tree::Leaf(*first);
+        }
+        let mut curves: Vec<(CurveIndex, i8)> = (0..self.shapes.len())
+            .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
+            .filter(|(_, side)| *side != 0)
+            .collect();
+        curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
+        let separating = curves.into_iter().find(|(curve, side)| {
+            let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
+            let is_on_other_side = |piece: &Rc<Piece>| match piece.cut(cutter) {
+                Cut::Below => *side > 0,
+                Cut::Above => *side < 0,
+                Cut::Nothing => true,
+                Cut::Both(..) => false,
+            };
+            pieces.iter().all(is_on_other_side)
+        });
+        let Some((curve, side)) = separating else { return Tree::Leaf(owner) };
+        let [corners_here, corners_beyond] =
+            [side, -side].map(|side| self.corners_on(side, curve, corners));
+        let (corners_here, corners_beyond) =
+            (self.leaf(*first, &[], &corners_here), self.leaf(owner, pieces, &corners_beyond));
+        let (below, above) =
+            if side < 0 { (corners_here, corners_beyond) } else { (corners_beyond, corners_here) };
+        Tree::split(curve, side < 0, below, above)
+    }
+}
+
+/// The side to which a curve's own points go.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Zeros {
+    Below,
+    Above,
+    Both,
+}
+
+impl Planner<'_> {
+    /// Returns the side to which the points on a curve go: the side of the solid, so that it includes its
+    /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
+    /// same side along the whole curve; otherwise the side below. Where some points belong only to the solid
+    /// below and others only to the solid above, both sides need the curve's points.
+    pub(super) fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
+        let [below, above] =
+            [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
+        // For the sides below and above: a point that belongs to the solid on this side only; a point whose first
+        // listed owner is on this side.
+        let (mut is_required, mut is_preferred) = ([false; 2], [false; 2]);
+        let mut points: Vec<Point> =
+            below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
+        points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+        // Vertices that pieces share agree except for their last bits.
+        let tolerance = 1e-12 * self.size;
+        points.dedup_by(|p, q| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance);
+        for p in points {
+            let [b, a] = [&below, &above]
+                .map(|border_points| border_points.first_at(p, COINCIDENCE_FRACTION * self.size));
+            let inside = [b, a].map(|rank| rank != usize::MAX);
+            match (inside, b.cmp(&a)) {
+                ([true, false], _) => is_required[0] = true,
+                ([false, true], _) => is_required[1] = true,
+                (_, Ordering::Less) => is_preferred[0] = true,
+                (_, Ordering::Greater) => is_preferred[1] = true,
+                _ => {}
+            }
+        }
+        match (is_required, is_preferred) {
+            ([true, true], _) => Zeros::Both,
+            ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
+            _ => Zeros::Below,
+        }
+    }
+
+    /// Returns the points and edges of some pieces that lie on a curve.
+    fn border_points(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> BorderPoints {
+        let shape = &self.shapes[curve];
+        let mut border_points = BorderPoints::default();
+        for piece in pieces {
+            let rank = piece.owner.unwrap_or(usize::MAX);
+            let is_on_curve: Vec<bool> =
+                piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
+            for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
+                border_points.points.push((*p, rank));
+                let next = (k + 1) % is_on_curve.len();
+                // The chord of a curved edge is on the curve only at its ends.
+                if is_on_curve[next] && piece.edges[k] == Edge::Straight {
+                    border_points.edges.push(([*p, piece.vertices[next]], rank));
+                }
+            }
+        }
+        border_points
+    }
+
+    /// Returns the owners of the points on a curve: at each, the first listed of those on both sides.
+    pub(super) fn zero_set_tree(
+        &mut self,
+        curve: CurveIndex,
+        halves: &Halves,
+        corners: &[usize],
+        open: &[CurveIndex],
+    ) -> Result<Owners, Diagnostic> {
+        let shape = &self.shapes[curve];
+        let touches =
+            |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
+        let [below, above] = [&halves.below, &halves.above]
+            .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
+        let [corners_below, corners_above] =
+            [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        let none = SampleSubset::default();
+        let below = self.tree(&below, &none, &corners_below, open.to_vec())?;
+        let above = self.tree(&above, &none, &corners_above, open.to_vec())?;
+        Ok(first(&below, &above))
+    }
+}
+
+/// Points and straight edges on a curve, with the rank of their owner: its index in the list of regions, or
+/// `usize::MAX` for the outside.
+#[derive(Default)]
+struct BorderPoints {
+    points: Vec<(Point, usize)>,
+    edges: Vec<([Point; 2], usize)>,
+}
+
+impl BorderPoints {
+    /// Returns the rank of the first listed owner that touches a point.
+    fn first_at(&self, p: Point, tolerance: f64) -> usize {
+        let is_near = |q: Point| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance;
+        let points = self.points.iter().filter(|(q, _)| is_near(*q)).map(|(_, rank)| *rank);
+        let edges = self
+            .edges
+            .iter()
+            .filter(|(edge, _)| is_along(p, *edge, tolerance))
+            .map(|(_, rank)| *rank);
+        points.chain(edges).min().unwrap_or(usize::MAX)
+    }
+}
+
+/// Returns a tree whose leaves are the first listed of the owners in two trees.
+fn first(a: &Owners, b: &Owners) -> Owners {
+    match a {
+        Tree::Leaf(own) => {
+            let rank = |owner: &Option<usize>| owner.unwrap_or(usize::MAX);
+            let first_listed =
+                |other: &Option<usize>| Some(if rank(other) < rank(own) { *other } else { *own });
+            b.map(&first_listed).unwrap_or(Tree::Leaf(*own))
+        }
+        Tree::Split { curve, strict, below, above } => {
+            let [low, high] = [true, false].map(|holds| b.simplified(*curve, *strict, holds));
+            Tree::split(*curve, *strict, first(below, &low), first(above, &high))
+        }
+    }
 }

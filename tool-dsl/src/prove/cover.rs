@@ -1,10 +1,8 @@
 //! The domain as boxes, each with the regions that it may have points of, according to the tests of the
 //! emitted tree.
 
-use crate::expr::interval::halves;
-use crate::expr::interval::{Cell, Encloser};
-use crate::formula::possible;
-use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO};
+use crate::expr::interval::{Cell, Encloser, halves};
+use crate::formula::{ANY_SIGN, CurveIndex, NEGATIVE, Signs, ZERO, possible};
 use crate::model::Model;
 use crate::plan::Tree;
 

@@ -1,8 +1,7 @@
 //! Directions: their angle to the steepest descent of depth, and the points where they vanish.
 
-use super::nonsmooth::angle;
 use super::root::RootForm;
-use super::slope::Slope;
+use super::slope::{Slope, angle};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};

@@ -11,9 +11,8 @@
 use super::cover::{Claim, Cover};
 use super::root::{Forms, RootForm};
 use crate::expr::Coord;
-use crate::expr::enclosed::EnclosedPolynomial;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::{ClearSide, Polynomial};
+use crate::expr::polynomial::{ClearSide, EnclosedPolynomial, Polynomial};
 use crate::formula::{Curve, CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 use crate::number::Number;

@@ -10,8 +10,7 @@
 
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
-use crate::expr::interval::halves;
-use crate::expr::interval::{Cell, Interval};
+use crate::expr::interval::{Cell, Interval, halves};
 use crate::model::Region;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

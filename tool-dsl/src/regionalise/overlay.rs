@@ -3,11 +3,9 @@
 use super::cells::Cell;
 use crate::expr::Graph;
 use crate::expr::polynomial::Polynomials;
-use crate::formula::Curve;
-use crate::formula::{ANY_SIGN, Formula, NEGATIVE, POSITIVE, Signs};
-use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
+use crate::formula::{ANY_SIGN, Curve, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::geometry::cut::{CurveFunction, Cut, Cutter, Edge, Piece};
 use crate::geometry::outline::{Point, Segment, bounding_box, minus, norm};
-use crate::geometry::shape::CurveFunction;
 
 /// Returns a cell as a polygon whose curved edges refer to their curves.
 pub(crate) fn piece(

@@ -1,23 +1,16 @@
 //! Resolves the syntax tree to the model: names, dimensions, the coordinate frame, the laws of each region.
 
-mod arguments;
-mod call;
 mod condition;
-mod cycle;
 mod derived;
-mod direction;
-mod join;
-mod law;
 mod lower;
 mod mount;
 mod outputs;
-mod over;
 mod profile;
 mod region;
 mod scope;
 
+pub(crate) use derived::{never_wins, overlapping};
 pub(crate) use mount::off_tip;
-pub(crate) use over::{never_wins, overlapping};
 
 use crate::diagnostic::{
     Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,
@@ -27,13 +20,11 @@ use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
-use arguments::Argument;
 use condition::Curves;
-use derived::FromProfile;
-use law::Laws;
+use derived::{Divider, FromProfile};
 use lower::{Constant, Lowering, in_range};
-use mount::MountedNiceness;
-use over::Divider;
+use region::{Laws, MountedNiceness};
+use scope::Argument;
 use std::collections::BTreeMap;
 
 /// Resolves a tool with the arguments of its parameters. The files that it mounts are read on the way.
@@ -49,8 +40,8 @@ pub fn resolve(
 ) -> Result<Model, Reported> {
     let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = arguments::from_outside(given, tool.domain, unit, diagnostics);
-    arguments::report_unknown_params(tool, &given, diagnostics);
+    let given = scope::arguments_from_outside(given, tool.domain, unit, diagnostics);
+    scope::report_unknown_params(tool, &given, diagnostics);
     constants(tool, &given, &mut lowering, diagnostics);
     let misplaced_item = match tool.domain {
         Domain::Space => report_items_of_axis(tool, diagnostics),
@@ -306,7 +297,7 @@ fn constants(
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
-    lowering.broken = cycle::refused(definitions(tool, |_| true), diagnostics);
+    lowering.broken = scope::report_cycles(definitions(tool, |_| true), diagnostics);
     for item in &tool.items {
         let (definition, is_param) = match item {
             Item::Let(definition) => (definition, false),
@@ -322,7 +313,7 @@ fn constants(
         let mut constant = lowering.constant(&definition.value, Role::Let);
         if is_param {
             constant = constant
-                .and_then(|default| arguments::value_of(definition, default, given, lowering.unit));
+                .and_then(|default| scope::param_value(definition, default, given, lowering.unit));
         }
         let defined = constant.and_then(|Constant { value, dimension }| {
             in_range(&value, definition.value.span)?;

@@ -113,7 +113,7 @@ fn is_parametric(ends: [&Tuple; 2], lowering: &Lowering) -> bool {
 }
 
 fn exact_point(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
-    let [d, z] = super::direction::pair(tuple, Role::Point)?;
+    let [d, z] = super::region::pair(tuple, Role::Point)?;
     let mut length = |expr: &Expr| lowering.length(expr, Role::Point);
     Ok([length(d)?, length(z)?])
 }

@@ -2,7 +2,7 @@
 //! feet of a profile.
 
 use super::super::cover::half_diagonal;
-use super::super::nonsmooth::{SLOPE_MARGIN, SLOPE_TOLERANCE};
+use super::super::slope::{SLOPE_MARGIN, SLOPE_TOLERANCE};
 use super::{BoxSize, Survey};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};

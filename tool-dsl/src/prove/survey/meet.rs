@@ -2,7 +2,7 @@
 
 use super::super::borders::{Joint, Pair, Separation};
 use super::super::cover::{Claim, half_diagonal};
-use super::super::nonsmooth::{angle, fall_rate_across};
+use super::super::slope::{angle, fall_rate_across};
 use super::super::{Border, JumpPoint, OpenProof, SMALL_BOX_FRACTION, TOLERANCE};
 use super::{BoxSize, MAX_SLOPE_UNCERTAINTY, STEEP_SLOPE, Survey, sum_rounded_up};
 use crate::diagnostic::Statement;

@@ -1,20 +1,16 @@
 //! The traversal of boxes: bounds of the quantities in each region, and of their changes from one region to
-//! the next.
-
-mod certain;
-mod conclude;
-mod descent;
-mod meet;
+//! the next; and the certificate that follows from all boxes.
 
 use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
-use super::direction::{self, DirectionFacts};
+use super::direction::{self, DirectionFacts, angle_to_descent};
 use super::foot::ProfileFeet;
-use super::nonsmooth::SLOPE_MARGIN;
+use super::jordan::Profile;
+use super::range::Ranges;
 use super::root::Forms;
 use super::rounding::RoundingErrors;
-use super::slope::Slopes;
-use super::witness::Witness;
+use super::slope::{SLOPE_MARGIN, Slopes};
+use super::witness::{TEST_OFFSET_FRACTION, Witness};
 use super::{
     Border, Certificate, JumpPoint, MAX_BOXES_IN_COMPILATION, OpenProof, RegionFacts,
     SMALL_BOX_FRACTION, TOLERANCE,
@@ -25,8 +21,10 @@ use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
 use crate::number;
 use crate::plan::PlannedTool;
-use certain::CertainFacts;
 use std::collections::BTreeMap;
+
+mod descent;
+mod meet;
 
 /// The size to which boxes on a border are divided, relative to the tool's size, in the half plane and in
 /// space.
@@ -383,5 +381,174 @@ impl<'t> Survey<'t> {
 
     fn raw_direction(&mut self, owner: usize) -> [Interval; 3] {
         self.tool.model.regions[owner].raw_direction.0.map(|part| self.slopes.get(part).value)
+    }
+}
+
+/// The largest angle, in radians, at which a direction counts as that of steepest descent. Components written
+/// with four decimals turn it by no more.
+const ANGLE_TOLERANCE: f64 = 1e-4;
+
+/// A value that is certain at a point, and the point.
+type CertainValue = (f64, [f64; 3]);
+
+/// The facts about a region that are certain at single points.
+#[derive(Clone, Default)]
+pub(super) struct CertainFacts {
+    /// The largest angle between the direction and that of steepest descent, in radians.
+    pub(super) oblique: Option<CertainValue>,
+    /// The largest rate at which niceness rises per unit of depth.
+    pub(super) rises: Option<CertainValue>,
+}
+
+fn keep_larger(known: &mut Option<CertainValue>, value: f64, point: [f64; 3]) {
+    if known.is_none_or(|(largest, _)| value > largest) {
+        *known = Some((value, point));
+    }
+}
+
+impl Survey<'_> {
+    /// Examines the centre of the current box, if it belongs to `owner` and the box may contain more than is
+    /// known: a larger angle, or a niceness that rises.
+    pub(super) fn examine_centre(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
+        let known =
+            self.certain_facts[owner].oblique.map_or(ANGLE_TOLERANCE, |(largest, _)| largest);
+        if angle <= known && !may_rise {
+            return;
+        }
+        let middle = cell.middle();
+        let point = Cell::point(middle);
+        let claims = self.cover.claims(point);
+        if !matches!(claims.as_slice(), [claim] if claim.owner == Some(owner)) {
+            return;
+        }
+        self.slopes.set(point);
+        let region = &self.tool.model.regions[owner];
+        let depth = self.slopes.get(region.depth);
+        let niceness = self.slopes.get(region.niceness);
+        let direction = self.raw_direction(owner);
+        let certain = &mut self.certain_facts[owner];
+        if let Some(angle) = angle_to_descent(direction, depth, self.directions[owner].is_parallel)
+            && angle.low > ANGLE_TOLERANCE
+        {
+            keep_larger(&mut certain.oblique, angle.low, middle);
+        }
+        let dot_product =
+            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
+        // Niceness below 0 counts as 0.
+        if dot_product.low > SLOPE_MARGIN * depth.length.high * niceness.length.high
+            && niceness.value.low > 0.0
+        {
+            let rate = dot_product.low / (depth.length.high * depth.length.high);
+            keep_larger(&mut certain.rises, rate, middle);
+        }
+        self.slopes.set(cell);
+    }
+}
+
+impl Survey<'_> {
+    /// Returns the certificate that follows from all boxes.
+    pub(super) fn certificate(mut self) -> Certificate {
+        let shares = self.witness.shares();
+        let (min_slope, missed_distance) = self.min_slope();
+        let slack = [
+            self.jump_bound(),
+            2.0 * self.overshoot,
+            sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance),
+        ];
+        let slack = slack.into_iter().fold(0.0, sum_rounded_up);
+        let slack = sum_rounded_up(slack, self.distance_to_profile(slack));
+        let mut ranges = Ranges {
+            cover: &mut self.cover,
+            slopes: &mut self.slopes,
+            whole: self.tool.extent.cell(),
+        };
+        if self.check_overlaps {
+            for (index, region) in self.tool.model.regions.iter().enumerate() {
+                if let Some(facts) = &mut self.regions[index] {
+                    facts.niceness = ranges.niceness(index, region, facts.niceness);
+                }
+            }
+        }
+        let mut regions = Vec::new();
+        for (region, direction) in self.directions.into_iter().enumerate() {
+            let facts = self.regions[region].take().unwrap_or(RegionFacts::NONE);
+            let is_distance = self.border_prover.is_distance(region);
+            let exact_length = Interval::new(1.0, 1.0);
+            regions.push(RegionFacts {
+                share: shares[region],
+                is_distance,
+                gradient_length: if is_distance { exact_length } else { facts.gradient_length },
+                direction_error: direction.angle_to_descent,
+                oblique_witness: self.certain_facts[region].oblique,
+                rising_witness: self.certain_facts[region].rises,
+                singular_cells: direction.singular,
+                turns_on_axis: direction.on_axis,
+                ..facts
+            });
+        }
+        Certificate {
+            min_slope,
+            slack,
+            regions,
+            borders: self.borders.into_values().collect(),
+            undecided: self.undecided,
+            tolerance: TOLERANCE * self.size,
+            examined_boxes: self.boxes,
+        }
+    }
+
+    /// Returns an upper bound of the amount that depth may gain by jumps along a straight path, and by
+    /// differing from an exact distance.
+    ///
+    /// Let all depths differ by less than `deviation` from distances to lines, circles or points. On a path of
+    /// length `t`, each of these distances minus `t` does not grow, inside or outside its own region. When
+    /// the path returns to a region, it has therefore not gained since it left. Only the jumps that remain
+    /// after such loops are removed count: one per pair of regions. Other depths may be steep outside their
+    /// regions, so every jump counts. A straight path crosses a conic twice.
+    ///
+    /// A straight path in space around the axis is a branch of a hyperbola in the half plane, on which `z` is linear
+    /// and `d` convex. It passes a box at most twice, since `d` is below an upper end on one interval and above a
+    /// lower end on two. It crosses a conic at most four times.
+    fn jump_bound(&self) -> f64 {
+        let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
+        let Some(feet) = &self.feet else {
+            let passes = match self.tool.model.domain {
+                Domain::HalfPlane => 2.0,
+                Domain::Space => 1.0,
+            };
+            return passes * sum_rounded_up(self.jumps, 2.0 * steps);
+        };
+        let deviation = unless_rounding(feet.max_difference, self.size);
+        let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
+        self.largest_jumps.values().copied().fold(
+            sum_rounded_up(steps, sum_rounded_up(deviation, 2.0 * pairs * deviation)),
+            sum_rounded_up,
+        )
+    }
+
+    /// Returns an upper bound of the distance from the solid's surface to its profile, given the slack of
+    /// depth.
+    fn distance_to_profile(&mut self, slack: f64) -> f64 {
+        let Some(section) = &self.tool.model.section else { return 0.0 };
+        let (deviation, ends) = self.witness.points_off_profile(&section.outline);
+        let open_proofs = deviation.into_iter().map(|point| OpenProof {
+            cell: Cell::point(point),
+            statement: Statement::EndsOnProfile,
+        });
+        self.undecided.extend(open_proofs);
+        // Nothing follows if a proof is open, or if depth is not the distance to the profile.
+        if self.feet.is_none() || !self.undecided.is_empty() {
+            return 0.0;
+        }
+        let max_distance = Profile::new(&section.outline)
+            .max_distance(slack, TEST_OFFSET_FRACTION * self.size)
+            .filter(|_| ends);
+        max_distance.unwrap_or_else(|| {
+            self.undecided.push(OpenProof {
+                cell: self.tool.extent.cell(),
+                statement: Statement::EndsOnProfile,
+            });
+            0.0
+        })
     }
 }
