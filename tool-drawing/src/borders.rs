@@ -193,10 +193,10 @@ fn border(
 
 /// A part of a border, from one welded corner to another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    pub(super) ends: [usize; 2],
-    pub(super) sides: [Side; 2],
-    pub(super) curve: Option<CurveIndex>,
+struct Edge {
+    ends: [usize; 2],
+    sides: [Side; 2],
+    curve: Option<CurveIndex>,
 }
 
 /// A side of a polygon: the polygon's index, and the side's curve.
@@ -206,7 +206,7 @@ type Half = (usize, Option<CurveIndex>);
 type Halves = HashMap<[usize; 2], [Option<Half>; 2]>;
 
 /// Returns the welded corners, and the edges between two owners.
-pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
+fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
     let mut weld = Weld { near: near.weld, points: Vec::new(), buckets: HashMap::new() };
     let mut halves = Halves::new();
     for (index, piece) in pieces.iter().enumerate() {

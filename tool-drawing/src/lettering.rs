@@ -71,17 +71,17 @@ fn short(value: f32) -> f32 {
 }
 
 /// The start point of a stroke, and its path data.
-pub(super) type Stroke = (f32, f32, &'static str);
+type Stroke = (f32, f32, &'static str);
 
 /// A glyph: its width, and its strokes.
-pub(super) type Glyph = (f32, &'static [Stroke]);
+type Glyph = (f32, &'static [Stroke]);
 
 const BOWL: &str = "c0-2.4-1.6-4-4-4s-4 1.6-4 4v2c0 2.4 1.6 4 4 4s4-1.6 4-4";
 const BELLY: &str = "c0-2.4 1.6-4 4-4s4 1.6 4 4v2c0 2.4-1.6 4-4 4s-4-1.6-4-4";
 const RING: &str = "c3 0 5 2 5 5v4c0 3-2 5-5 5s-5-2-5-5v-4c0-3 2-5 5-5z";
 
 /// Returns the glyph of a character without diacritic; `None` if the alphabet does not have it.
-pub(super) fn glyph(letter: char) -> Option<Glyph> {
+fn glyph(letter: char) -> Option<Glyph> {
     capital(letter).or_else(|| small(letter)).or_else(|| figure(letter)).or_else(|| sign(letter))
 }
 
@@ -368,7 +368,7 @@ fn sign(letter: char) -> Option<Glyph> {
 }
 
 /// Splits a character into its base character and its diacritic, which is drawn above a lower-case letter.
-pub(super) fn marked(letter: char) -> Option<(char, &'static [Stroke])> {
+fn marked(letter: char) -> Option<(char, &'static [Stroke])> {
     const DOTS: &[Stroke] = &[(2., -13.5, "v-.4m4 0v.4")];
     const ACUTE: &[Stroke] = &[(3., -12., "l3-2.5")];
     const GRAVE: &[Stroke] = &[(5., -12., "l-3-2.5")];

@@ -307,7 +307,7 @@ const LENGTH_TOLERANCE_FRACTION: f64 = 1e-7;
 
 /// The dimension of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Measure {
+enum Measure {
     /// A cylinder, by its radius.
     Cylinder(f64),
     /// An arc, by its centre and radius.
@@ -320,18 +320,18 @@ pub(super) enum Measure {
 
 /// All parts of a surface on one cylinder or one arc; or a single other stroke of it.
 #[derive(Clone, Debug)]
-pub(super) struct Face {
-    pub(super) surface: usize,
-    pub(super) measure: Measure,
+struct Face {
+    surface: usize,
+    measure: Measure,
     /// The total length.
-    pub(super) length: f64,
+    length: f64,
     /// The longest stroke.
-    pub(super) longest: Stroke,
+    longest: Stroke,
 }
 
 impl Face {
     /// Returns the dimension as text.
-    pub(super) fn figure(&self, unit: Unit) -> Option<String> {
+    fn figure(&self, unit: Unit) -> Option<String> {
         match self.measure {
             Measure::Cylinder(radius) => Some(format!("⌀{}", tidy(2.0 * radius, unit))),
             Measure::Arc(_, radius) => Some(format!("R{}", tidy(radius, unit))),
@@ -341,7 +341,7 @@ impl Face {
     }
 
     /// Returns whether the dimension is always noted. That of a cone is not, since it is often only a broken edge.
-    pub(super) fn is_telling(&self) -> bool {
+    fn is_telling(&self) -> bool {
         matches!(self.measure, Measure::Cylinder(_) | Measure::Arc(..))
     }
 }
@@ -367,7 +367,7 @@ fn trimmed(text: &str) -> String {
 }
 
 /// Returns the faces of the surface.
-pub(super) fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
+fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
     let mut faces: Vec<Face> = Vec::new();
     for border in borders.iter().filter(|border| is_outline(border)) {
         let Side::Region(region) = border.sides[0] else { continue };

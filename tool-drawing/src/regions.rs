@@ -210,22 +210,22 @@ fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
 }
 
 /// An arrow on the sheet, as tail and head.
-pub(super) type Arrow = [Point; 2];
+type Arrow = [Point; 2];
 
 /// Evaluates the directions of a tool's regions.
-pub(super) struct Directions<'m> {
+struct Directions<'m> {
     model: &'m Model,
     evaluator: Evaluator<'m>,
 }
 
 impl<'m> Directions<'m> {
-    pub(super) fn new(model: &'m Model) -> Directions<'m> {
+    fn new(model: &'m Model) -> Directions<'m> {
         let roots = model.regions.iter().flat_map(|region| region.direction);
         Directions { model, evaluator: Evaluator::new(&model.graph, roots) }
     }
 
     /// Returns the direction to the surface at a point of a region; `None` if it is undefined there.
-    pub(super) fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
+    fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
         self.evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
         let [across, _, along] = self.model.regions[region].direction;
         let direction = [across, along].map(|id| self.evaluator.get(id));
@@ -234,7 +234,7 @@ impl<'m> Directions<'m> {
 
     /// Returns the point toward or away from which all directions of a region point, if there is one; directions are
     /// undefined there. It is the common intersection of the lines along three directions.
-    pub(super) fn focus(&mut self, region: usize, shape: &Shape, view: &View) -> Option<Point> {
+    fn focus(&mut self, region: usize, shape: &Shape, view: &View) -> Option<Point> {
         let [low, high] = shape.frame();
         let (middle, _) = shape.pole(1.0);
         let probe_offsets =
@@ -270,13 +270,7 @@ impl<'m> Directions<'m> {
     }
 
     /// Returns a few arrows, placed where there is room for them.
-    pub(super) fn arrows(
-        &mut self,
-        region: usize,
-        shape: &Shape,
-        view: &View,
-        taken: &[Frame],
-    ) -> Vec<Arrow> {
+    fn arrows(&mut self, region: usize, shape: &Shape, view: &View, taken: &[Frame]) -> Vec<Arrow> {
         /// The distance between candidate positions, and the minimum distance between arrows, in sheet units.
         const STEP: f64 = 9.0;
         const MIN_ARROW_DISTANCE: f64 = 40.0;

@@ -12,7 +12,7 @@ use tool_dsl::plan::Tree;
 use tool_dsl::vector::{Point, cross, minus, norm};
 
 /// The plan's tree of owners.
-pub(super) type Owners = Tree<Option<usize>>;
+type Owners = Tree<Option<usize>>;
 
 /// A convex polygon of the section with one owner, counter-clockwise.
 pub(super) struct Piece {

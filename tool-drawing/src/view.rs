@@ -12,7 +12,7 @@ const MIN_SHORTENED_LENGTH: f64 = 0.7;
 
 /// An interval of the axis that is left out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+struct Cut {
     low: f64,
     high: f64,
 }

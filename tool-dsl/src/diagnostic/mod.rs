@@ -62,7 +62,7 @@ pub struct Diagnostic {
     /// A second location with a label of its own.
     pub secondary: Option<(Span, String)>,
     /// Evidence of the error that this one follows from. Such a diagnostic is not shown.
-    pub(crate) caused_by: Option<Reported>,
+    caused_by: Option<Reported>,
     /// The arguments of params that may have caused it, as they were written.
     pub(crate) arguments: Box<[String]>,
 }
@@ -187,7 +187,7 @@ pub fn escaped(text: &str) -> Cow<'_, str> {
 
 /// Returns the lines of a text for display, with every byte at its offset. The renderer itself replaces
 /// one-byte control characters.
-pub(super) fn harmless(text: &str) -> Cow<'_, str> {
+fn harmless(text: &str) -> Cow<'_, str> {
     let replaced = |c: &char| is_hidden(*c) && c.len_utf8() > 1;
     if !text.chars().any(|c| replaced(&c)) {
         return Cow::Borrowed(text);
@@ -201,6 +201,6 @@ pub(super) fn harmless(text: &str) -> Cow<'_, str> {
 }
 
 /// Returns the lines of a message, each escaped.
-pub(super) fn escaped_lines(text: &str) -> String {
+fn escaped_lines(text: &str) -> String {
     text.split('\n').map(escaped).collect::<Vec<_>>().join("\n")
 }

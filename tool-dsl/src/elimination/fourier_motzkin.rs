@@ -39,7 +39,7 @@ impl Exact {
 pub(super) struct Condition {
     pub(super) factors: Vec<f64>,
     pub(super) constant: f64,
-    pub(super) strict: bool,
+    strict: bool,
     origin: Origin,
 }
 

@@ -27,7 +27,7 @@ enum Operand {
 
 /// A writer of the body of one function.
 pub(super) struct Writer<'g> {
-    pub(super) graph: &'g Graph,
+    graph: &'g Graph,
     curves: &'g [Curve],
     form: Form,
     /// The number of uses of each node in this function. A node that is used once is written inline.
@@ -36,7 +36,7 @@ pub(super) struct Writer<'g> {
 
 impl<'g> Writer<'g> {
     /// Makes a writer for a function that computes some roots and tests some curves.
-    pub(super) fn new(
+    fn new(
         graph: &'g Graph,
         curves: &'g [Curve],
         form: Form,
@@ -132,7 +132,7 @@ impl<'g> Writer<'g> {
     }
 
     /// Returns the nodes that a curve's test needs.
-    pub(super) fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
+    fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
         self.sides(curve).into_iter().filter_map(|operand| match operand {
             Operand::Node(id) => Some(id),
             Operand::Constant(_) => None,
@@ -141,7 +141,7 @@ impl<'g> Writer<'g> {
 
     /// Writes the test of a curve, whose shared operands are already bound. In scalar code a constant is on
     /// the right.
-    pub(super) fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
+    fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
         let [left, right] = self.sides(curve);
         let operand = |code: &mut Tokens, side: &Operand| match side {
             Operand::Node(id) => self.value(code, *id),
@@ -190,7 +190,7 @@ impl<'g> Writer<'g> {
     }
 
     /// Writes a node as the value of a block.
-    pub(super) fn leaf(&self, code: &mut Tokens, id: Id) {
+    fn leaf(&self, code: &mut Tokens, id: Id) {
         if self.named(id) { self.value(code, id) } else { self.operation(code, id) }
     }
 

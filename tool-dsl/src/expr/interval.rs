@@ -56,7 +56,7 @@ impl Interval {
     }
 
     /// Rounds outward. A NaN end gives [`ENTIRE`].
-    pub(crate) fn out(low: f64, high: f64) -> Interval {
+    fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
             return ENTIRE;
         }

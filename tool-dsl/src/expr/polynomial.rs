@@ -427,7 +427,7 @@ impl Polynomial {
 pub(crate) struct EnclosedPolynomial(Vec<(Monomial, Interval)>);
 
 impl EnclosedPolynomial {
-    pub(super) fn new(terms: Vec<(Monomial, Interval)>) -> EnclosedPolynomial {
+    fn new(terms: Vec<(Monomial, Interval)>) -> EnclosedPolynomial {
         EnclosedPolynomial(terms)
     }
 
@@ -438,12 +438,12 @@ impl EnclosedPolynomial {
 }
 
 /// Returns the enclosures of d, x, y and z in a box.
-pub(super) fn bases(cell: &Cell) -> [Interval; 4] {
+fn bases(cell: &Cell) -> [Interval; 4] {
     [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]]
 }
 
 /// Encloses a sum of monomials with enclosed coefficients.
-pub(super) fn enclosed_sum<'t>(
+fn enclosed_sum<'t>(
     terms: impl Iterator<Item = (&'t Monomial, Interval)>,
     bases: [Interval; 4],
 ) -> Interval {

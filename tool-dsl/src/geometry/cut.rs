@@ -378,7 +378,7 @@ fn is_thin(vertices: &[Point], size: f64) -> bool {
 }
 
 /// The distance below which a point lies on a curve, relative to the section's size.
-pub(crate) const ON_CURVE_FRACTION: f64 = 1e-10;
+const ON_CURVE_FRACTION: f64 = 1e-10;
 /// The rounding error of a polynomial's value, relative to the sum of the absolute values of its terms.
 const ROUNDING: f64 = 2e-14;
 
@@ -391,9 +391,9 @@ pub(crate) enum CurveFunction<'g> {
 }
 
 /// A curve's value at a point, its gradient, and the sum of the absolute values of its terms.
-pub(crate) struct Value {
-    pub(crate) value: f64,
-    pub(crate) gradient: Point,
+struct Value {
+    value: f64,
+    gradient: Point,
     terms: f64,
 }
 
@@ -425,11 +425,11 @@ impl<'g> CurveFunction<'g> {
         CurveFunction::Conic { middle, factors }
     }
 
-    pub(crate) fn is_line(&self) -> bool {
+    fn is_line(&self) -> bool {
         matches!(self, CurveFunction::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
     }
 
-    pub(crate) fn at(&self, p: Point) -> Value {
+    fn at(&self, p: Point) -> Value {
         match self {
             CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
@@ -501,13 +501,13 @@ impl<'g> CurveFunction<'g> {
 
     /// Returns the coefficients of `v0 + slope t + bend t²`, the value along the segment between two points
     /// for t from 0 to 1. They are exact for a conic and approximate for other curves.
-    pub(crate) fn quadratic_along(&self, a: Point, b: Point) -> [f64; 3] {
+    fn quadratic_along(&self, a: Point, b: Point) -> [f64; 3] {
         let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
         [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
     }
 
     /// Returns the parameter of the zero between two points on different sides.
-    pub(crate) fn zero_between(&self, a: Point, b: Point) -> f64 {
+    fn zero_between(&self, a: Point, b: Point) -> f64 {
         if matches!(self, CurveFunction::Conic { .. }) {
             let [v0, slope, bend] = self.quadratic_along(a, b);
             let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
@@ -531,7 +531,7 @@ impl<'g> CurveFunction<'g> {
     }
 }
 
-pub(crate) fn between(a: Point, b: Point, t: f64) -> Point {
+fn between(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }
 

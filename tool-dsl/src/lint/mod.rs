@@ -436,7 +436,7 @@ fn mentions(formula: &Formula, sought: CurveIndex) -> bool {
 }
 
 /// The reason why a value is not a finite number.
-pub(super) enum Fault {
+enum Fault {
     Root,
     Quotient,
     Size,
@@ -444,7 +444,7 @@ pub(super) enum Fault {
 
 impl Fault {
     /// Returns the first operation, from the operands up, whose result is not finite.
-    pub(super) fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
+    fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
         let is_finite = |id: &Id| evaluator.get(*id).is_finite();
         loop {
             let node = graph.node(id);
@@ -469,7 +469,7 @@ impl Fault {
     }
 
     /// Returns the diagnostic for an expression that has no value at a point.
-    pub(super) fn kind(&self, location: String, subject: Subject) -> CheckKind {
+    fn kind(&self, location: String, subject: Subject) -> CheckKind {
         match self {
             Fault::Root => CheckKind::RootOfNegative { location, subject },
             Fault::Quotient => CheckKind::DivisionByZero { location, subject },

@@ -24,7 +24,7 @@ const CHORDS_PER_EDGE: [u32; 3] = [8, 40, 200];
 /// The number of curves that may be passed over because their zeros belong to both sides.
 const MAX_SKIPPED_CURVES: usize = 6;
 
-pub(super) type Owners = Tree<Option<usize>>;
+type Owners = Tree<Option<usize>>;
 
 /// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
@@ -204,11 +204,11 @@ enum OwnerAt {
 
 /// The input of a plan: pieces to separate, weighted sample points, and points to check the tree with.
 #[derive(Default)]
-pub(super) struct PlanInput {
-    pub(super) pieces: Vec<Rc<Piece>>,
+struct PlanInput {
+    pieces: Vec<Rc<Piece>>,
     samples: Vec<Sample>,
     witnesses: Vec<(Point, Option<usize>)>,
-    pub(super) corners: Vec<Point>,
+    corners: Vec<Point>,
 }
 
 impl PlanInput {
@@ -310,19 +310,19 @@ fn plan<'m>(
     Ok(tree)
 }
 
-pub(super) struct Planner<'m> {
+struct Planner<'m> {
     model: &'m Model,
-    pub(super) shapes: &'m [CurveFunction<'m>],
-    pub(super) costs: Vec<f64>,
+    shapes: &'m [CurveFunction<'m>],
+    costs: Vec<f64>,
     samples: Samples,
-    pub(super) corners: Vec<Corner>,
+    corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
     /// The pieces before any cut, each with its bounding box.
     whole_pieces: Vec<(Rc<Piece>, [Point; 2])>,
     /// For each curve that was tried, the side of each whole piece.
     sides: Vec<Vec<Option<Side>>>,
-    pub(super) size: f64,
+    size: f64,
     tests: usize,
 }
 
@@ -335,9 +335,9 @@ enum Side {
 }
 
 /// The pieces on the two sides of a curve.
-pub(super) struct Halves {
-    pub(super) below: Vec<Rc<Piece>>,
-    pub(super) above: Vec<Rc<Piece>>,
+struct Halves {
+    below: Vec<Rc<Piece>>,
+    above: Vec<Rc<Piece>>,
 }
 
 /// A curve to split by, its division of the pieces, and the side to which its own points go.
@@ -348,7 +348,7 @@ struct Choice {
 }
 
 impl Planner<'_> {
-    pub(super) fn tree(
+    fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
         samples: &SampleSubset,
@@ -516,13 +516,13 @@ fn inseparable_owners(model: &Model, [d, z]: Point) -> Diagnostic {
 }
 
 /// A point where pieces meet, with the owners of these pieces.
-pub(super) struct Corner {
+struct Corner {
     at: Point,
     owners: Vec<Option<usize>>,
 }
 
 /// Returns the points where whole pieces meet. Each piece comes with its bounding box.
-pub(super) fn corners(
+fn corners(
     mut points: Vec<Point>,
     whole: &[(Rc<Piece>, [Point; 2])],
     shapes: &[CurveFunction<'_>],
@@ -553,7 +553,7 @@ pub(super) fn corners(
 
 impl Planner<'_> {
     /// Returns the corners that rounding may place on a side of a curve.
-    pub(super) fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
+    fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
         let is_on_side =
             |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
         corners.iter().copied().filter(is_on_side).collect()
@@ -561,12 +561,7 @@ impl Planner<'_> {
 
     /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
     /// Rounding may bring a point near such a corner here, where its owner has no piece.
-    pub(super) fn leaf(
-        &self,
-        owner: Option<usize>,
-        pieces: &[Rc<Piece>],
-        corners: &[usize],
-    ) -> Owners {
+    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
         let is_foreign = |at: &&usize| !self.corners[**at].owners.contains(&owner);
         let Some(corner) = corners.iter().find(is_foreign).map(|at| &self.corners[*at]) else {
             return Tree::Leaf(owner);
@@ -603,7 +598,7 @@ impl Planner<'_> {
 
 /// The side to which a curve's own points go.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Zeros {
+enum Zeros {
     Below,
     Above,
     Both,
@@ -614,7 +609,7 @@ impl Planner<'_> {
     /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
     /// same side along the whole curve; otherwise the side below. Where some points belong only to the solid
     /// below and others only to the solid above, both sides need the curve's points.
-    pub(super) fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
+    fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
         let [below, above] =
             [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
         // For the sides below and above: a point that belongs to the solid on this side only; a point whose first
@@ -666,7 +661,7 @@ impl Planner<'_> {
     }
 
     /// Returns the owners of the points on a curve: at each, the first listed of those on both sides.
-    pub(super) fn zero_set_tree(
+    fn zero_set_tree(
         &mut self,
         curve: CurveIndex,
         halves: &Halves,

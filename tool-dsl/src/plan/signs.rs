@@ -211,7 +211,7 @@ const MAX_BOXES_IN_SPACE: usize = 400;
 const SMALLEST_BOX: f64 = 1.0 / 4096.0;
 
 /// A prover that combinations of signs are impossible.
-pub(crate) struct EmptinessProver<'m> {
+struct EmptinessProver<'m> {
     linear: Linear,
     domain: Domain,
     prover: Prover<'m>,
@@ -220,7 +220,7 @@ pub(crate) struct EmptinessProver<'m> {
 }
 
 impl<'m> EmptinessProver<'m> {
-    pub(crate) fn new(model: &'m Model, extent: &Extent) -> EmptinessProver<'m> {
+    fn new(model: &'m Model, extent: &Extent) -> EmptinessProver<'m> {
         EmptinessProver {
             linear: Linear::new(model),
             domain: model.domain,
@@ -230,7 +230,7 @@ impl<'m> EmptinessProver<'m> {
     }
 
     /// Returns whether provably no point has these signs.
-    pub(super) fn is_empty(&mut self, signs: &[Signs]) -> bool {
+    fn is_empty(&mut self, signs: &[Signs]) -> bool {
         self.linear.is_contradictory(signs).unwrap_or_else(|| self.is_excluded_by_boxes(signs))
     }
 

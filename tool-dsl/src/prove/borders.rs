@@ -73,7 +73,7 @@ type AgreementsByCurve = Vec<OnceCell<Option<Rc<Agreement>>>>;
 
 /// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
 /// sign.
-pub(super) type Curve = (Polynomial, Option<Polynomial>);
+type Curve = (Polynomial, Option<Polynomial>);
 
 pub(super) struct BorderProver<'m> {
     model: &'m Model,
@@ -399,7 +399,7 @@ fn separating_curves([a, b]: [&Claim; 2]) -> Vec<CurveIndex> {
 
 impl BorderProver<'_> {
     /// Returns the curves on which the depths of two owners agree.
-    pub(super) fn joints(&mut self, pair: Pair) -> Vec<CurveIndex> {
+    fn joints(&mut self, pair: Pair) -> Vec<CurveIndex> {
         if let Some(known) = self.joints.get(&pair) {
             return known.clone();
         }
@@ -422,7 +422,7 @@ impl BorderProver<'_> {
     }
 
     /// Returns how two owners' depths agree on a curve, if they do.
-    pub(super) fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
+    fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
         let row = &mut self.agreements[pair.0];
         row.resize(self.depths.len() + 1, Vec::new());
         let by_curve = &mut row[pair.1.map_or(0, |other| other + 1)];
@@ -441,7 +441,7 @@ impl BorderProver<'_> {
 
     /// Returns the curves on which two depths are equal, recognised by their expressions or their sums of
     /// roots. Each comes with whether it is positive where the first depth is larger.
-    pub(super) fn differences(&mut self, (own, other): Pair) -> Rc<Vec<(CurveIndex, bool)>> {
+    fn differences(&mut self, (own, other): Pair) -> Rc<Vec<(CurveIndex, bool)>> {
         let Some(other) = other else { return Rc::default() };
         if let Some(known) = self.differences.get(&[own, other]) {
             return known.clone();
@@ -469,12 +469,7 @@ impl BorderProver<'_> {
 impl BorderProver<'_> {
     /// Returns the signs that a curve can have at a claim's points in the current box. They follow from the
     /// box, from the path down the tree, and from straight curves on that path.
-    pub(super) fn sign_on(
-        &mut self,
-        claim: &Claim,
-        curve: CurveIndex,
-        cover: &mut Cover<'_>,
-    ) -> Signs {
+    fn sign_on(&mut self, claim: &Claim, curve: CurveIndex, cover: &mut Cover<'_>) -> Signs {
         let mut signs = cover.sign_at_claim(claim, curve);
         for (other, side) in &claim.signs {
             if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
@@ -491,7 +486,7 @@ impl BorderProver<'_> {
     }
 
     /// Returns a curve as a polynomial, if that has the curve's sign throughout the current box.
-    pub(super) fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
+    fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
         let (polynomial, positive) = self.curves[curve].as_ref()?;
         let has_curve_sign =
             positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
@@ -531,7 +526,7 @@ impl BorderProver<'_> {
     }
 
     /// Returns the signs that a claim's path leaves possible.
-    pub(super) fn signs(&self, claim: &Claim) -> Vec<Signs> {
+    fn signs(&self, claim: &Claim) -> Vec<Signs> {
         let mut signs = vec![ANY_SIGN; self.curves.len()];
         for (curve, known) in &claim.signs {
             signs[*curve] &= known;
@@ -607,7 +602,7 @@ const MAX_DIFFERENCE_IN_HALF_DIAGONALS: f64 = 8.0;
 
 /// The order of two depths, according to the linear curves on the paths to their claims.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum LowerByLinear {
+enum LowerByLinear {
     /// Both are 0 where the claims meet.
     Zero,
     /// For each, whether it is proved to be the smaller at its own claim's points.
@@ -615,7 +610,7 @@ pub(super) enum LowerByLinear {
 }
 
 /// The excess of one of two depths over the other, one of which is the distance from a line.
-pub(super) enum ExcessBesideLine {
+enum ExcessBesideLine {
     /// The excess itself.
     Polynomial(Polynomial),
     /// An upper bound of it everywhere.
@@ -630,7 +625,7 @@ impl BorderProver<'_> {
     /// Returns an upper bound of the difference of two claims' depths where they meet in the current box. It
     /// is found if each of two regions' depths is the smaller at its own claim's points, or if a region's
     /// depth is 0 where it meets the outside.
-    pub(super) fn lower(
+    fn lower(
         &mut self,
         pair: Pair,
         claims: [&Claim; 2],

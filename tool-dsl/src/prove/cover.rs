@@ -39,7 +39,7 @@ impl<'m> Cover<'m> {
     }
 
     /// Returns the signs that a curve can have in the current box.
-    pub(super) fn sign(&mut self, curve: CurveIndex) -> Signs {
+    fn sign(&mut self, curve: CurveIndex) -> Signs {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 

@@ -285,7 +285,7 @@ impl Certificate {
     }
 
     /// Returns the diagnostics that rest on single points, which more boxes would not change.
-    pub(super) fn certain_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
+    fn certain_diagnostics(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
         // One diagnostic per pair of regions, and one per region next to the outside.

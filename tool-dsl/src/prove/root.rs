@@ -38,7 +38,7 @@ impl RootTerm {
         self.radicand.scaled(&(&self.factor * &self.factor))
     }
 
-    pub(super) fn has_radicand_of(&self, other: &RootTerm) -> bool {
+    fn has_radicand_of(&self, other: &RootTerm) -> bool {
         let ratio = self.radicand.ratio(&other.radicand);
         ratio.is_some_and(|ratio| ratio.nearly_equals(&Number::int(1)))
     }

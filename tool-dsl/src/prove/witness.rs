@@ -102,7 +102,7 @@ impl<'t> Witness<'t> {
         ((first - second).abs() > TOLERANCE * self.size).then_some((a, [first, second]))
     }
 
-    pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
+    fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
         self.values.set(EvaluationPoint::new(x, y, z));
         let curves = &self.tool.model.curves;
         let values = RefCell::new(&mut self.values);

@@ -30,7 +30,7 @@ const SHELL_FRACTION: f64 = 0.05;
 
 impl Cell {
     /// Returns twice the area.
-    pub(crate) fn area(&self) -> f64 {
+    fn area(&self) -> f64 {
         let Some(first) = self.vertices.first() else { return 0.0 };
         let fan = self.vertices.windows(2);
         fan.map(|pair| cross(minus(pair[0], *first), minus(pair[1], *first))).sum::<f64>().abs()

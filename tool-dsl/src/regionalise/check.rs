@@ -123,7 +123,7 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
 }
 
 /// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.
-pub(crate) fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
     let candidates = match (&a.circle, &b.circle) {
         (None, None) => line_line(a, b),
         (None, Some(_)) => line_circle(a, b),

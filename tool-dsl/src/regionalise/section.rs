@@ -109,7 +109,7 @@ impl<'o> Section<'o> {
     }
 
     /// Returns the position of a corner.
-    pub(super) fn corner_at(&self, previous: Option<usize>) -> Point {
+    fn corner_at(&self, previous: Option<usize>) -> Point {
         match previous {
             Some(piece) => self.outline[piece].ends()[1],
             None => self.outline[0].ends()[0],

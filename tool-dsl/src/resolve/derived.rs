@@ -32,20 +32,20 @@ pub(super) struct FromProfile {
 }
 
 /// A part of the inside, in which one feature is nearest.
-pub(super) struct DerivedPart {
-    pub(super) feature: Feature,
-    pub(super) inside: Formula,
-    pub(super) depth: Id,
-    pub(super) direction: [Id; 3],
-    pub(super) name: String,
+struct DerivedPart {
+    feature: Feature,
+    inside: Formula,
+    depth: Id,
+    direction: [Id; 3],
+    name: String,
     /// Index of its surface.
-    pub(super) owner: usize,
-    pub(super) span: Span,
+    owner: usize,
+    span: Span,
 }
 
 impl DerivedPart {
     /// Returns the shortest direction to the feature.
-    pub(super) fn own_direction(&self) -> RawDirection {
+    fn own_direction(&self) -> RawDirection {
         RawDirection { parts: self.direction, span: self.span, source: DirectionSource::Derived }
     }
 }
@@ -155,7 +155,7 @@ fn parts(
 }
 
 /// Converts a test to a formula over curves.
-pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
+fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
     let zero = graph.int(0);
     match test {
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
@@ -210,7 +210,7 @@ fn names(
 
 impl RegionResolver<'_> {
     /// Returns the region of a part, with the laws for its surface.
-    pub(super) fn of_part(
+    fn of_part(
         mut self,
         part: &DerivedPart,
         head: RegionHead,
@@ -234,10 +234,10 @@ pub(super) enum Divider<'t> {
 }
 
 /// Conditions over the parts of a partition, and their effects.
-pub(super) struct Conditions<'t> {
-    pub(super) conditions: Vec<Formula>,
+struct Conditions<'t> {
+    conditions: Vec<Formula>,
     /// The distances from the segments of the rounded outline.
-    pub(super) distances: Vec<Id>,
+    distances: Vec<Id>,
     kinds: Vec<Kind<'t>>,
 }
 
@@ -254,7 +254,7 @@ enum Kind<'t> {
 
 impl Divider<'_> {
     /// Rejects an outline that would take minutes to divide.
-    pub(super) fn check_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
+    fn check_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
         match self {
             Divider::Smooth(length) if outline.len() > MAX_SMOOTH_SEGMENTS => Err(Diagnostic::new(
                 length.span,
@@ -265,7 +265,7 @@ impl Divider<'_> {
     }
 
     /// Returns the conditions, if there is a further division.
-    pub(super) fn conditions(
+    fn conditions(
         &self,
         (outline, inner): (&[Segment], &Partition),
         surfaces: &[Surface],
@@ -422,7 +422,7 @@ fn fans<'t>(
 
 impl Conditions<'_> {
     /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
-    pub(super) fn conditioned_parts(
+    fn conditioned_parts(
         &self,
         (outline, inner, parts): (&[Segment], &Partition, &[DerivedPart]),
         (curves, lowering): (&Curves, &Lowering),
@@ -465,7 +465,7 @@ impl Conditions<'_> {
     }
 
     /// Returns the region of a part in which a condition holds.
-    pub(super) fn region(
+    fn region(
         &self,
         part: &DerivedPart,
         condition: usize,

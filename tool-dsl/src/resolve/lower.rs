@@ -21,7 +21,7 @@ const UNITS: [&str; 5] = ["mm", "inch", "m", "deg", "rad"];
 #[derive(Clone, Debug)]
 pub(super) struct Value {
     pub(super) id: Id,
-    pub(super) dimension: Dimension,
+    dimension: Dimension,
     pub(super) span: Span,
     pub(super) used: bool,
 }
@@ -66,7 +66,7 @@ pub(super) struct Lowering {
 /// The largest intermediate constant, 2^1000, large enough for powers of lengths.
 const MAX_CONSTANT: f64 = 1.071508607186267e301;
 
-pub(super) type Lowered = Result<(Id, Dimension), Diagnostic>;
+type Lowered = Result<(Id, Dimension), Diagnostic>;
 
 impl Lowering {
     /// Defines a name.
@@ -372,17 +372,10 @@ pub(super) fn without_value(span: Span, word: &str, refused: Reported) -> Diagno
     Diagnostic::new(span, kind).caused_by(refused)
 }
 
-pub(super) static FUNCTIONS: [&str; 8] =
-    ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
+static FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
 
 impl Lowering {
-    pub(super) fn call(
-        &mut self,
-        name: &Name,
-        arguments: &[Expr],
-        span: Span,
-        may: Allowed,
-    ) -> Lowered {
+    fn call(&mut self, name: &Name, arguments: &[Expr], span: Span, may: Allowed) -> Lowered {
         let word = name.text.as_str();
         let expected_count = match word {
             "min" | "max" | "hypot" => 2..=usize::MAX,

@@ -22,9 +22,9 @@ use std::collections::{BTreeMap, BTreeSet};
 const MAX_MOUNTS: usize = 64;
 
 /// A file's solid in its tool's frame and unit, with its niceness laws.
-pub(super) struct MountedPart {
-    pub(super) outline: Vec<Segment>,
-    pub(super) surfaces: Vec<Surface>,
+struct MountedPart {
+    outline: Vec<Segment>,
+    surfaces: Vec<Surface>,
     /// The law of each surface: the index of the scope in which it is written, its expression, and whether it may rise
     /// with depth.
     niceness: Vec<Option<(usize, Expr, bool)>>,
@@ -462,11 +462,11 @@ pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
 /// Lengths below this fraction of the tool's size are rounding errors.
 const ROUNDING: f64 = 1e-12;
 /// The largest distance of a tool's end from its stated tip, in sizes of the tool.
-pub(super) const TIP_TOLERANCE_FRACTION: f64 = 1e-6;
+const TIP_TOLERANCE_FRACTION: f64 = 1e-6;
 
 /// The reason why two outlines cannot be joined at a plane.
 #[derive(Debug)]
-pub(super) enum JoinError {
+enum JoinError {
     /// The lower outline ends below the plane.
     Short,
     /// The lower outline meets the axis at the plane.
@@ -479,7 +479,7 @@ pub(super) enum JoinError {
 
 /// Returns an outline with its lengths multiplied by `scale`, then moved along the axis by `by`. Surface indices are
 /// increased by `first`.
-pub(super) fn transformed_outline(
+fn transformed_outline(
     outline: &[Segment],
     scale: &Number,
     by: &Number,
@@ -504,11 +504,7 @@ pub(super) fn transformed_outline(
 /// # Errors
 ///
 /// If `lower` does not cross the plane exactly once away from the axis, or if `upper` has no flat face there.
-pub(super) fn join(
-    lower: &[Segment],
-    upper: &[Segment],
-    plane: &Number,
-) -> Result<Vec<Segment>, JoinError> {
+fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segment>, JoinError> {
     let slack = ROUNDING * size(lower).max(size(upper));
     let mut joined = below(lower, plane, slack)?;
     let Some(last) = joined.last() else { return Err(JoinError::Short) };
@@ -547,7 +543,7 @@ pub(super) fn join(
 }
 
 /// Returns the surface that rises highest above a plane, and the height of its end, among those for which `counts` holds.
-pub(super) fn highest_above(
+fn highest_above(
     outline: &[Segment],
     plane: &Number,
     counts: impl Fn(usize) -> bool,

@@ -139,9 +139,9 @@ pub(super) struct LawValues {
 /// A niceness, its span, and whether it may rise with depth.
 #[derive(Clone, Copy)]
 pub(super) struct Niceness {
-    pub(super) value: Id,
-    pub(super) span: Span,
-    pub(super) rising: bool,
+    value: Id,
+    span: Span,
+    rising: bool,
 }
 
 /// Returns the value of a result, and reports its error.
@@ -153,11 +153,7 @@ pub(super) fn or_report<T>(
 }
 
 /// Lowers a magnitude or a niceness.
-pub(super) fn quantity(
-    lowering: &mut Lowering,
-    value: &Expr,
-    may: Allowed,
-) -> Result<Id, Diagnostic> {
+fn quantity(lowering: &mut Lowering, value: &Expr, may: Allowed) -> Result<Id, Diagnostic> {
     let (id, dimension) = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
         return Err(Diagnostic::new(value.span, RegionKind::AngleAsQuantity));
@@ -528,7 +524,7 @@ pub(super) struct MountedNiceness {
 
 impl MountedNiceness {
     /// Lowers the law at a point of the whole tool with the given depth.
-    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
+    fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
             let value = quantity(lowering, &self.value, Allowed::Depth(depth))?;
@@ -541,7 +537,7 @@ impl MountedNiceness {
 pub(super) struct Laws<'t> {
     own: &'t [&'t Law],
     /// The niceness laws that come with the surfaces of mounted files, by surface.
-    pub(super) niceness_by_surface: BTreeMap<String, MountedNiceness>,
+    niceness_by_surface: BTreeMap<String, MountedNiceness>,
 }
 
 impl<'t> Laws<'t> {
@@ -638,7 +634,7 @@ fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
     }
 }
 
-pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
+fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
     Diagnostic::new(span, RegionKind::NicenessOfNonCutting { surface: surface.name.clone() })
         .with_label(surface.span, "not marked `cutting` here")
 }

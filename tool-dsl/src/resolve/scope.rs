@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 impl Lowering {
     /// Returns the state for a text without names.
-    pub(super) fn new(domain: Domain, unit: Unit) -> Lowering {
+    fn new(domain: Domain, unit: Unit) -> Lowering {
         Lowering {
             domain,
             graph: Graph::default(),

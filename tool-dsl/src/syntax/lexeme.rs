@@ -104,7 +104,7 @@ const MAX_NAME_BYTES: usize = 100;
 /// The maximum number of items in a file.
 const MAX_ITEMS: usize = 4096;
 /// The maximum depth of nested brackets, and of nested comments.
-pub(super) const MAX_NESTING: usize = 64;
+const MAX_NESTING: usize = 64;
 /// The maximum height of an expression, in operations, both as written and between a value and a coordinate. Functions
 /// that walk an expression recurse as deep.
 pub(crate) const MAX_EXPRESSION_HEIGHT: u32 = 300;

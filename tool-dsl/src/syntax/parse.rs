@@ -62,16 +62,16 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
     Ok(Tool { unparsed: broken, ..tool })
 }
 
-pub(super) struct Reader<'a> {
+struct Reader<'a> {
     /// The offset of the parsed text among all sources.
-    pub(super) offset: usize,
-    pub(super) diagnostics: &'a mut Vec<Diagnostic>,
+    offset: usize,
+    diagnostics: &'a mut Vec<Diagnostic>,
     /// The first words of items that could not be read, and the names that they define.
-    pub(super) broken: &'a mut Vec<String>,
+    broken: &'a mut Vec<String>,
 }
 
 impl Reader<'_> {
-    pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+    fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let text = pair.as_str().trim_end();
         let start = pair.as_span().start() + self.offset;
         Span { start, end: start + text.len() }
@@ -175,11 +175,11 @@ impl Reader<'_> {
         })
     }
 
-    pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
+    fn name(&self, pair: &Pair<'_, Rule>) -> Name {
         Name { text: pair.as_str().to_owned(), span: self.span(pair) }
     }
 
-    pub(super) fn definition<'i>(
+    fn definition<'i>(
         &mut self,
         mut inner: impl Iterator<Item = Pair<'i, Rule>>,
     ) -> Option<Definition> {
@@ -254,7 +254,7 @@ impl Reader<'_> {
     }
 
     /// Parses `as NAME cutting`.
-    pub(super) fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
+    fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
         let (mut name, mut cutting) = (None, None);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -363,7 +363,7 @@ pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Diagnostic> {
 }
 
 /// Returns whether a rule is a keyword that carries no information.
-pub(super) fn is_word(rule: Rule) -> bool {
+fn is_word(rule: Rule) -> bool {
     matches!(
         rule,
         Rule::k_units
@@ -396,7 +396,7 @@ type Measured = (Expr, u32);
 
 impl Reader<'_> {
     /// Parses an expression. If it is higher than the limit it is truncated and reported.
-    pub(super) fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
+    fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
         let mut beyond = None;
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
@@ -590,7 +590,7 @@ pub fn parse_argument(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec
 }
 
 impl Reader<'_> {
-    pub(super) fn mount<'i>(
+    fn mount<'i>(
         &mut self,
         mut inner: impl Iterator<Item = Pair<'i, Rule>>,
         span: Span,
@@ -615,7 +615,7 @@ impl Reader<'_> {
     }
 
     /// Parses a path such as `cutter.ball`, whose tokens are separated by blanks in an inline tool.
-    pub(super) fn path(&self, pair: Pair<'_, Rule>) -> Name {
+    fn path(&self, pair: Pair<'_, Rule>) -> Name {
         let span = self.span(&pair);
         let names: Vec<&str> = pair.into_inner().map(|part| part.as_str()).collect();
         Name { text: names.join("."), span }

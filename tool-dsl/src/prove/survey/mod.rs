@@ -393,11 +393,11 @@ type CertainValue = (f64, [f64; 3]);
 
 /// The facts about a region that are certain at single points.
 #[derive(Clone, Default)]
-pub(super) struct CertainFacts {
+struct CertainFacts {
     /// The largest angle between the direction and that of steepest descent, in radians.
-    pub(super) oblique: Option<CertainValue>,
+    oblique: Option<CertainValue>,
     /// The largest rate at which niceness rises per unit of depth.
-    pub(super) rises: Option<CertainValue>,
+    rises: Option<CertainValue>,
 }
 
 fn keep_larger(known: &mut Option<CertainValue>, value: f64, point: [f64; 3]) {
@@ -409,7 +409,7 @@ fn keep_larger(known: &mut Option<CertainValue>, value: f64, point: [f64; 3]) {
 impl Survey<'_> {
     /// Examines the centre of the current box, if it belongs to `owner` and the box may contain more than is
     /// known: a larger angle, or a niceness that rises.
-    pub(super) fn examine_centre(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
+    fn examine_centre(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
         let known =
             self.certain_facts[owner].oblique.map_or(ANGLE_TOLERANCE, |(largest, _)| largest);
         if angle <= known && !may_rise {
@@ -447,7 +447,7 @@ impl Survey<'_> {
 
 impl Survey<'_> {
     /// Returns the certificate that follows from all boxes.
-    pub(super) fn certificate(mut self) -> Certificate {
+    fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
         let (min_slope, missed_distance) = self.min_slope();
         let slack = [
