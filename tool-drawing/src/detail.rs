@@ -58,12 +58,12 @@ impl<'m> Detail<'m> {
         let size = height.max(width);
         let unit = (height / MAX_EXTENT[1]).min(cutting.radius / 60.0);
         let mut curves = Curves::new(whole.model, &tool.extent, Plane::Meridian);
-        let borders = trace(&mut curves, tool, window(cutting.low, corner), [unit, size]);
-        let view = View::new(&borders, MAX_EXTENT);
+        let traced = trace(&mut curves, tool, window(cutting.low, corner), [unit, size]);
+        let view = View::new(&traced.borders, MAX_EXTENT);
         let factor = scale_factor(view.scale / whole.view.scale)?;
         let view = view.rescaled(factor * whole.view.scale);
         let fills = whole.fills.clone();
-        let mut picture = Picture::of(whole.model, whole.content, (borders, size), view, fills);
+        let mut picture = Picture::of(whole.model, whole.content, traced, view, fills);
         picture.part = Part::Detail(corner);
         let View { half, height, .. } = picture.view;
         // No name and no arrow lies on the break line.

@@ -27,6 +27,13 @@ pub(super) struct Corner {
     pub(super) curve: Option<CurveIndex>,
 }
 
+/// A point, and a curve's value there.
+#[derive(Clone, Copy)]
+struct Valued {
+    at: Point,
+    value: f64,
+}
+
 /// Length tolerances of the division, in the tool's unit.
 #[derive(Clone, Copy)]
 pub(super) struct Fineness {
@@ -177,10 +184,10 @@ impl Division<'_, '_> {
         let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
         let mut crossings = Vec::new();
         for k in 0..4 {
-            let (a, b) = (corners[k], corners[(k + 1) % 4]);
-            let (u, v) = (self.curves.value(curve, a), self.curves.value(curve, b));
-            if (u <= 0.0) != (v <= 0.0) {
-                crossings.push(self.crossing(curve, (a, u), (b, v)));
+            let [a, b] = [corners[k], corners[(k + 1) % 4]]
+                .map(|at| Valued { at, value: self.curves.value(curve, at) });
+            if (a.value <= 0.0) != (b.value <= 0.0) {
+                crossings.push(self.crossing(curve, a, b));
             }
         }
         match crossings.as_slice() {
@@ -200,10 +207,10 @@ impl Division<'_, '_> {
     }
 
     /// Returns the crossing of a curve with a side. The result does not depend on the order of the ends.
-    fn crossing(&mut self, curve: CurveIndex, a: (Point, f64), b: (Point, f64)) -> Point {
-        let (a, b) = if (a.0[1], a.0[0]) <= (b.0[1], b.0[0]) { (a, b) } else { (b, a) };
-        let between = |t: f64| [0, 1].map(|k| a.0[k] + t * (b.0[k] - a.0[k]));
-        let (mut low, mut high) = ((0.0, a.1), (1.0, b.1));
+    fn crossing(&mut self, curve: CurveIndex, a: Valued, b: Valued) -> Point {
+        let (a, b) = if (a.at[1], a.at[0]) <= (b.at[1], b.at[0]) { (a, b) } else { (b, a) };
+        let between = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
+        let (mut low, mut high) = ((0.0, a.value), (1.0, b.value));
         if !self.curves.straight(curve) {
             for _ in 0..16 {
                 let t = (low.0 + high.0) / 2.0;
@@ -290,6 +297,7 @@ impl Division<'_, '_> {
         }
         for (k, corner) in corners.iter().enumerate() {
             let next = (k + 1) % corners.len();
+            let [here, after] = [k, next].map(|k| Valued { at: corners[k].at, value: values[k] });
             let (value_here, value_next) = (values[k] * sign, values[next] * sign);
             // A corner on the curve at which the part ends is followed by the chord.
             match (value_here >= 0.0, value_next >= 0.0) {
@@ -298,19 +306,11 @@ impl Division<'_, '_> {
                 }
                 (true, true) => part.push(*corner),
                 (true, false) => {
-                    let at = self.crossing(
-                        curve,
-                        (corner.at, values[k]),
-                        (corners[next].at, values[next]),
-                    );
+                    let at = self.crossing(curve, here, after);
                     part.extend([*corner, Corner { at, curve: Some(curve) }]);
                 }
                 (false, true) if value_next > 0.0 => {
-                    let at = self.crossing(
-                        curve,
-                        (corner.at, values[k]),
-                        (corners[next].at, values[next]),
-                    );
+                    let at = self.crossing(curve, here, after);
                     part.push(Corner { at, curve: corner.curve });
                 }
                 (false, _) => {}

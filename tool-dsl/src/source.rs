@@ -222,15 +222,21 @@ impl Source {
         self.path.as_deref()
     }
 
-    /// Resolves a path that this text mentions: the path to show, and the path to open.
-    fn resolve_path(&self, file: &str) -> Option<(String, PathBuf)> {
+    /// Resolves a path that this text mentions.
+    fn resolve_path(&self, file: &str) -> Option<MentionedFile> {
         let near = |path: &Path| folder(path).join(file);
         let shown = match self.tokens {
             Some(_) => file.to_owned(),
             None => near(Path::new(&self.name)).display().to_string(),
         };
-        Some((shown, near(self.path.as_deref()?)))
+        Some(MentionedFile { shown, path: near(self.path.as_deref()?) })
     }
+}
+
+/// A file that a text mentions: its path to show, and the path to open.
+pub(crate) struct MentionedFile {
+    pub(crate) shown: String,
+    pub(crate) path: PathBuf,
 }
 
 /// All texts that a tool consists of: its own, then the arguments given from outside, then the mounted files.
@@ -298,9 +304,8 @@ impl Sources {
         files.filter_map(|source| source.path.as_deref())
     }
 
-    /// Resolves a path mentioned at a location: the path to show, and the path to open. Returns `None` if the
-    /// mentioning text has no file.
-    pub(crate) fn resolve_path(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
+    /// Resolves a path mentioned at a location. Returns `None` if the mentioning text has no file.
+    pub(crate) fn resolve_path(&self, by: Span, file: &str) -> Option<MentionedFile> {
         self.locate(by).0.resolve_path(file)
     }
 
@@ -336,7 +341,7 @@ impl Sources {
     pub(crate) fn read(
         &mut self,
         by: Span,
-        (shown, path): (String, PathBuf),
+        MentionedFile { shown, path }: MentionedFile,
     ) -> io::Result<&Source> {
         if let Some(files) = self.main().files.clone() {
             return self.read_from(&files, by, shown, &path);

@@ -399,6 +399,13 @@ struct Walk<'w, 'g, L, F> {
     leaf: &'w F,
 }
 
+/// The lanes of a mask on one side of a test, by the names of both; `not` is `!` where the test fails.
+struct LanesOfSide<'n> {
+    mask: &'n str,
+    not: &'n str,
+    test: &'n str,
+}
+
 impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
     /// Writes the code for the lanes of a mask, and returns the nodes named in it.
     fn below(
@@ -419,8 +426,8 @@ impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
                 code.word("let").word(&test).sign("=");
                 self.writer.test(code, *curve, *strict);
                 code.sign(";");
-                self.side(code, below, (mask, "", &test), &scope);
-                self.side(code, above, (mask, "!", &test), &scope);
+                self.side(code, below, LanesOfSide { mask, not: "", test: &test }, &scope);
+                self.side(code, above, LanesOfSide { mask, not: "!", test: &test }, &scope);
             }
         }
         scope
@@ -431,7 +438,7 @@ impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
         &mut self,
         code: &mut Tokens,
         tree: &Tree<L>,
-        (mask, not, test): (&str, &str, &str),
+        LanesOfSide { mask, not, test }: LanesOfSide<'_>,
         scope: &BTreeSet<Id>,
     ) {
         if *tree == Tree::Leaf(L::default()) {

@@ -410,16 +410,18 @@ impl<'g> CurveFunction<'g> {
         let [m, n] = middle;
         for (monomial, factor) in polynomial.terms() {
             let c = factor.to_f64();
-            match monomial {
-                [0, 0, 0, 0] => factors[0] += c,
-                [1, 0, 0, 0] => add(&mut factors, &[(0, c * m), (1, c)]),
-                [0, 0, 0, 1] => add(&mut factors, &[(0, c * n), (2, c)]),
-                [2, 0, 0, 0] => add(&mut factors, &[(0, c * m * m), (1, 2.0 * c * m), (3, c)]),
-                [0, 0, 0, 2] => add(&mut factors, &[(0, c * n * n), (2, 2.0 * c * n), (5, c)]),
-                [1, 0, 0, 1] => {
-                    add(&mut factors, &[(0, c * m * n), (1, c * n), (2, c * m), (4, c)]);
-                }
+            // The monomial in u = d - m and v = z - n, as terms that are added to the factors.
+            let terms: &[(usize, f64)] = match monomial {
+                [0, 0, 0, 0] => &[(0, c)],
+                [1, 0, 0, 0] => &[(0, c * m), (1, c)],
+                [0, 0, 0, 1] => &[(0, c * n), (2, c)],
+                [2, 0, 0, 0] => &[(0, c * m * m), (1, 2.0 * c * m), (3, c)],
+                [0, 0, 0, 2] => &[(0, c * n * n), (2, 2.0 * c * n), (5, c)],
+                [1, 0, 0, 1] => &[(0, c * m * n), (1, c * n), (2, c * m), (4, c)],
                 _ => return other(),
+            };
+            for (index, value) in terms {
+                factors[*index] += value;
             }
         }
         CurveFunction::Conic { middle, factors }
@@ -533,10 +535,4 @@ impl<'g> CurveFunction<'g> {
 
 fn between(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
-}
-
-fn add(factors: &mut [f64; 6], terms: &[(usize, f64)]) {
-    for (index, value) in terms {
-        factors[*index] += value;
-    }
 }

@@ -12,7 +12,7 @@
 mod tape;
 mod walk;
 
-pub use tape::{BLOCK_POINTS, Lanes, Tape};
+pub use tape::{BLOCK_POINTS, Block, Lanes, Tape};
 pub use walk::{PlanEvaluator, Registers, Scratch, Value};
 
 use crate::checked::CheckedTool;

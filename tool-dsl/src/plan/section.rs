@@ -283,8 +283,7 @@ fn plan<'m>(
 ) -> Result<Owners, Diagnostic> {
     let samples = Samples::new(&input.samples, shapes);
     let all = samples.all();
-    let with_bounding_box = |piece: &Rc<Piece>| (Rc::clone(piece), piece.bounding_box());
-    let whole_pieces: Vec<_> = input.pieces.iter().map(with_bounding_box).collect();
+    let whole_pieces: Vec<WholePiece> = input.pieces.iter().map(WholePiece::new).collect();
     let corners = corners(input.corners, &whole_pieces, shapes, size);
     let all_corners: Vec<usize> = (0..corners.len()).collect();
     let mut planner = Planner {
@@ -318,8 +317,7 @@ struct Planner<'m> {
     corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
-    /// The pieces before any cut, each with its bounding box.
-    whole_pieces: Vec<(Rc<Piece>, [Point; 2])>,
+    whole_pieces: Vec<WholePiece>,
     /// For each curve that was tried, the side of each whole piece.
     sides: Vec<Vec<Option<Side>>>,
     size: f64,
@@ -466,7 +464,7 @@ impl Planner<'_> {
         let sides = &mut self.sides[curve];
         sides.resize(whole_piece.len(), None);
         let side = |origin: usize| {
-            let (piece, [middle, half]) = &whole_piece[origin];
+            let WholePiece { piece, middle, half } = &whole_piece[origin];
             match shape.side_of_box(*middle, *half) {
                 -1 => return Side::Below,
                 1 => return Side::Above,
@@ -521,10 +519,24 @@ struct Corner {
     owners: Vec<Option<usize>>,
 }
 
-/// Returns the points where whole pieces meet. Each piece comes with its bounding box.
+/// A piece before any cut, with the centre and half the sides of a box that contains it.
+struct WholePiece {
+    piece: Rc<Piece>,
+    middle: Point,
+    half: Point,
+}
+
+impl WholePiece {
+    fn new(piece: &Rc<Piece>) -> WholePiece {
+        let [middle, half] = piece.bounding_box();
+        WholePiece { piece: Rc::clone(piece), middle, half }
+    }
+}
+
+/// Returns the points where whole pieces meet.
 fn corners(
     mut points: Vec<Point>,
-    whole: &[(Rc<Piece>, [Point; 2])],
+    whole: &[WholePiece],
     shapes: &[CurveFunction<'_>],
     size: f64,
 ) -> Vec<Corner> {
@@ -535,7 +547,7 @@ fn corners(
     points.dedup_by(|p, q| are_near(*p, *q));
     let corner = |point: Point| {
         let mut owners = Vec::new();
-        for (piece, [middle, half]) in whole {
+        for WholePiece { piece, middle, half } in whole {
             let [u, v] = minus(point, *middle);
             if u.abs() <= half[0] + tolerance
                 && v.abs() <= half[1] + tolerance

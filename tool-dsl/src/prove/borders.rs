@@ -28,8 +28,13 @@ const MAX_CONTACT_BOXES: u32 = 12;
 const MAX_TANGENT_JUMP: f64 = 4e-9;
 pub(super) const MAX_TANGENT_SLOPE: f64 = 1e-5;
 
-/// A region and its neighbour, or `None` for the outside, where depth is 0.
-pub(super) type Pair = (usize, Option<usize>);
+/// A region and its neighbour, or `None` for the outside, where depth is 0. Of two regions, the one listed earlier is
+/// first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Pair {
+    pub(super) own: usize,
+    pub(super) other: Option<usize>,
+}
 
 /// The continuity of depth from one owner to another.
 #[derive(Clone, Copy, PartialEq)]
@@ -363,7 +368,7 @@ impl<'m> BorderProver<'m> {
 
     /// Returns the difference of two regions' depths on a straight curve in the current box.
     fn tangency(&mut self, pair: Pair, curve: CurveIndex) -> Option<DepthDifference> {
-        let (own, Some(other)) = pair else { return None };
+        let Pair { own, other: Some(other) } = pair else { return None };
         let tangency = self.tangencies.entry((pair, curve)).or_insert_with(|| {
             let [own, other] = [&self.depths[own], &self.depths[other]];
             let (line, _) = self.curves[curve].as_ref()?;
@@ -405,7 +410,7 @@ impl BorderProver<'_> {
         }
         // The border of neighbours is among their own conditions.
         let mut atoms = Vec::new();
-        for owner in [Some(pair.0), pair.1].into_iter().flatten() {
+        for owner in [Some(pair.own), pair.other].into_iter().flatten() {
             self.model.regions[owner]
                 .inside
                 .undecided_atoms(&vec![ANY_SIGN; self.curves.len()], &mut atoms);
@@ -423,14 +428,15 @@ impl BorderProver<'_> {
 
     /// Returns how two owners' depths agree on a curve, if they do.
     fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
-        let row = &mut self.agreements[pair.0];
+        let row = &mut self.agreements[pair.own];
         row.resize(self.depths.len() + 1, Vec::new());
-        let by_curve = &mut row[pair.1.map_or(0, |other| other + 1)];
+        let by_curve = &mut row[pair.other.map_or(0, |other| other + 1)];
         by_curve.resize(self.curves.len(), OnceCell::new());
         let agreement = by_curve[curve].get_or_init(|| {
             let difference = self.depth_differences.entry(pair).or_insert_with(|| {
-                let other = pair.1.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
-                self.depths[pair.0].as_ref()?.difference(other?)
+                let other =
+                    pair.other.map_or(Some(&self.zero), |other| self.depths[other].as_ref());
+                self.depths[pair.own].as_ref()?.difference(other?)
             });
             let (polynomial, _) = self.curves[curve].as_ref()?;
             let square = self.squares[curve].as_ref();
@@ -441,7 +447,7 @@ impl BorderProver<'_> {
 
     /// Returns the curves on which two depths are equal, recognised by their expressions or their sums of
     /// roots. Each comes with whether it is positive where the first depth is larger.
-    fn differences(&mut self, (own, other): Pair) -> Rc<Vec<(CurveIndex, bool)>> {
+    fn differences(&mut self, Pair { own, other }: Pair) -> Rc<Vec<(CurveIndex, bool)>> {
         let Some(other) = other else { return Rc::default() };
         if let Some(known) = self.differences.get(&[own, other]) {
             return known.clone();
@@ -643,8 +649,8 @@ impl BorderProver<'_> {
             }
         };
         let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
-        let (own, Some(other)) = pair else {
-            let own = Some(pair.0);
+        let Pair { own, other: Some(other) } = pair else {
+            let own = Some(pair.own);
             let below = self.excess_on(claims[1], separating_curves, [own, None], cover)?;
             let above = self.excess_on(claims[0], separating_curves, [None, own], cover)?;
             return Some(below.max(above)).filter(|difference| *difference <= self.max_jump);
@@ -747,14 +753,15 @@ impl BorderProver<'_> {
         let is_swapped = less.is_none() || more.is_some_and(|more| Some(more) < less);
         let ordered = if is_swapped { [more, less] } else { [less, more] };
         let [Some(own), other] = ordered else { return false };
-        let by_difference = self.differences((own, other)).iter().any(|(curve, own_is_more)| {
-            one_side(cover.sign_at_claim(claim, *curve)) == Some(*own_is_more != is_swapped)
-        });
+        let by_difference =
+            self.differences(Pair { own, other }).iter().any(|(curve, own_is_more)| {
+                one_side(cover.sign_at_claim(claim, *curve)) == Some(*own_is_more != is_swapped)
+            });
         let one_sided = claim.signs.iter().filter(|(_, signs)| one_side(*signs).is_some());
         by_difference
             || one_sided.into_iter().any(|(curve, _)| {
                 let signs = cover.sign_at_claim(claim, *curve);
-                let agreement = self.agreement((own, other), *curve);
+                let agreement = self.agreement(Pair { own, other }, *curve);
                 let Some(order) = agreement.as_ref().and_then(|found| found.order.as_ref()) else {
                     return false;
                 };
@@ -787,7 +794,7 @@ impl BorderProver<'_> {
     /// Returns an upper bound of the difference of two depths on one of several borders in the current box.
     fn jump_on_borders(&mut self, borders: &[CurveIndex], [a, b]: [Owner; 2]) -> Option<f64> {
         let [a, b] = [a?, b?];
-        let pair = (a.min(b), Some(a.max(b)));
+        let pair = Pair { own: a.min(b), other: Some(a.max(b)) };
         let jumps = borders.iter().filter_map(|curve| match self.agreement(pair, *curve) {
             Some(agreement) => {
                 let is_certain = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
@@ -832,17 +839,23 @@ impl BorderProver<'_> {
     }
 
     /// Returns the order of two depths according to all linear curves on the paths to the claims.
-    fn lower_by_linear(&self, (own, other): Pair, signs: &[Vec<Signs>; 2]) -> LowerByLinear {
-        if self.are_zero_where_claims_meet((own, other), [&signs[0], &signs[1]]) {
+    fn lower_by_linear(&self, pair: Pair, signs: &[Vec<Signs>; 2]) -> LowerByLinear {
+        if self.are_zero_where_claims_meet(pair, [&signs[0], &signs[1]]) {
             return LowerByLinear::Zero;
         }
-        let Some(other) = other else { return LowerByLinear::Each([false; 2]) };
+        let Pair { own, other: Some(other) } = pair else {
+            return LowerByLinear::Each([false; 2]);
+        };
         let lesser =
             |k: usize, own, other| self.linear.no_deeper(&signs[k], Some(own), Some(other));
         LowerByLinear::Each([lesser(0, own, other), lesser(1, other, own)])
     }
 
-    fn are_zero_where_claims_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
+    fn are_zero_where_claims_meet(
+        &self,
+        Pair { own, other }: Pair,
+        [at_a, at_b]: [&[Signs]; 2],
+    ) -> bool {
         let common = |(a, b): (&Signs, &Signs)| closure(*a) & closure(*b);
         let common_signs: Vec<Signs> = at_a.iter().zip(at_b).map(common).collect();
         self.linear.no_deeper(&common_signs, Some(own), None)
@@ -859,7 +872,9 @@ impl BorderProver<'_> {
     ) -> bool {
         (0..self.depths.len()).any(|third| {
             let smooth = |curve: &CurveIndex| {
-                let Some(agreement) = self.agreement((other, Some(third)), *curve) else {
+                let Some(agreement) =
+                    self.agreement(Pair { own: other, other: Some(third) }, *curve)
+                else {
                     return false;
                 };
                 // A depth is not negative in its own region.

@@ -47,7 +47,7 @@ impl<'t> Witness<'t> {
 
     /// Returns a point in a box with two owners side by side and a jump of depth between them, if a few test
     /// points find one.
-    pub(super) fn find_jump(&mut self, (own, other): Pair, cell: Cell) -> Option<JumpPoint> {
+    pub(super) fn find_jump(&mut self, Pair { own, other }: Pair, cell: Cell) -> Option<JumpPoint> {
         let steps = 6;
         let at = |axis: usize, k: u32| {
             let side = cell.sides[axis];

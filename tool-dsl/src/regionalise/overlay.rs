@@ -42,45 +42,53 @@ pub(crate) fn divided(
     size: f64,
 ) -> Vec<(Piece, Vec<usize>)> {
     let mut parts = Vec::new();
-    divide(piece, (vec![ANY_SIGN; shapes.len()], 0), conditions, shapes, size, &mut parts);
+    let nothing = Decided { signs: vec![ANY_SIGN; shapes.len()], conditions: 0 };
+    divide(piece, nothing, conditions, shapes, size, &mut parts);
     parts
 }
 
-/// The signs of the curves on a whole polygon, and the number of conditions, from the first on, that they decide. Signs
-/// are only added, so decided conditions stay decided.
-type DecidedSigns = (Vec<Signs>, usize);
+/// What is known of a whole polygon.
+#[derive(Clone)]
+struct Decided {
+    /// The signs of the curves on it.
+    signs: Vec<Signs>,
+    /// The number of conditions, from the first on, that the signs decide. Signs are only added, so decided conditions
+    /// stay decided.
+    conditions: usize,
+}
 
 fn divide(
     piece: Piece,
-    (mut signs, mut decided): DecidedSigns,
+    mut decided: Decided,
     conditions: &[Formula],
     shapes: &[CurveFunction<'_>],
     size: f64,
     parts: &mut Vec<(Piece, Vec<usize>)>,
 ) {
     loop {
-        let undecided = conditions[decided..].iter().enumerate();
-        let mut undecided = undecided
-            .filter_map(|(k, condition)| Some((k, condition.first_undecided_curve(&signs)?)));
+        let undecided = conditions[decided.conditions..].iter().enumerate();
+        let mut undecided = undecided.filter_map(|(k, condition)| {
+            Some((k, condition.first_undecided_curve(&decided.signs)?))
+        });
         let Some((before, curve)) = undecided.next() else {
-            let holds = |k: &usize| conditions[*k].decide(&signs) == Some(true);
+            let holds = |k: &usize| conditions[*k].decide(&decided.signs) == Some(true);
             parts.push((piece, (0..conditions.len()).filter(holds).collect()));
             return;
         };
-        decided += before;
+        decided.conditions += before;
         match piece.cut(Cutter { shapes, curve, size }) {
             Cut::Both(below, above) => {
                 for (part, sign) in [(below, NEGATIVE), (above, POSITIVE)] {
-                    signs[curve] = sign;
+                    decided.signs[curve] = sign;
                     if let Some(part) = part {
-                        divide(part, (signs.clone(), decided), conditions, shapes, size, parts);
+                        divide(part, decided.clone(), conditions, shapes, size, parts);
                     }
                 }
                 return;
             }
             Cut::Nothing => return,
-            Cut::Above => signs[curve] = POSITIVE,
-            Cut::Below => signs[curve] = NEGATIVE,
+            Cut::Above => decided.signs[curve] = POSITIVE,
+            Cut::Below => decided.signs[curve] = NEGATIVE,
         }
     }
 }

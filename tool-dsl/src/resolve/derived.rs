@@ -4,8 +4,9 @@
 use super::condition::Curves;
 use super::lower::Lowering;
 use super::outputs;
+use super::profile::Outline;
 use super::region::{
-    LawValues, Laws, Placed, RawDirection, RegionHead, RegionResolver, first_mention, inside,
+    self, LawValues, Laws, Placed, RawDirection, RegionHead, RegionResolver, first_mention,
     or_report,
 };
 use crate::diagnostic::{
@@ -50,45 +51,53 @@ impl DerivedPart {
     }
 }
 
+/// The inside of an outline, divided into the parts of its nearest features.
+struct Inside<'a> {
+    outline: &'a Outline,
+    inner: &'a Partition,
+    parts: &'a [DerivedPart],
+}
+
 /// Derives the regions of an outline.
 pub(super) fn derived(
-    (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
+    outline: Outline,
     divider: &Divider<'_>,
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> FromProfile {
-    laws.check(&surfaces, &lowering.left_out, diagnostics);
-    if let Err(diagnostic) = divider.check_limits(&outline) {
+    laws.check(&outline.surfaces, &lowering.left_out, diagnostics);
+    if let Err(diagnostic) = divider.check_limits(&outline.segments) {
         diagnostics.push(diagnostic);
         return FromProfile::default();
     }
-    let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
-    let inner = Partition::new(outline.clone(), false);
+    let reversed: Vec<Segment> = outline.segments.iter().rev().map(Segment::reversed).collect();
+    let inner = Partition::new(outline.segments.clone(), false);
     let outer = Partition::new(reversed, true);
     let graph = &mut lowering.graph;
     let divided = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
     let (derived, beside) = match divided {
         Ok(both) => both,
         Err(Undivided([d, z])) => {
-            let at = nearest_span(&outline, [d, z]).unwrap_or(span);
+            let at = nearest_span(&outline.segments, [d, z]).unwrap_or(outline.span);
             let z = lowering.frame.to_file(z);
             let diagnostic = Diagnostic::new(at, ProfileKind::DivisionFailed { d, z });
             diagnostics.push(diagnostic);
             return FromProfile::default();
         }
     };
-    let parts = parts(&derived, &outline, &surfaces, lowering, curves);
-    let profile = (outline.as_slice(), &inner);
+    let parts = parts(&derived, &outline, lowering, curves);
+    let inside = Inside { outline: &outline, inner: &inner, parts: &parts };
     let mut regions = Vec::new();
     let before = diagnostics.len();
-    let conditions = divider.conditions(profile, &surfaces, lowering, curves, diagnostics);
+    let conditions = divider.conditions(&inside, lowering, curves, diagnostics);
     let mut over = None;
     match conditions {
         None => {
             for part in &parts {
-                let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
+                let evaluation =
+                    RegionResolver { laws, lowering, surface: &outline.surfaces[part.owner] };
                 let (name, inside) = (part.name.clone(), part.inside.clone());
                 let head = RegionHead { name, span: part.span, owner: part.owner, inside };
                 let direction = part.own_direction();
@@ -96,13 +105,17 @@ pub(super) fn derived(
             }
         }
         Some(conditions) if diagnostics.len() == before => {
-            let whole = (outline.as_slice(), &inner, parts.as_slice());
-            let divided =
-                conditions.conditioned_parts(whole, (curves, lowering), span, diagnostics);
+            let divided = conditions.conditioned_parts(&inside, curves, lowering, diagnostics);
             for ConditionedPart { part, condition } in &divided {
                 let (part, condition) = (&parts[*part], *condition);
-                let region =
-                    conditions.region(part, condition, &surfaces, laws, lowering, diagnostics);
+                let region = conditions.region(
+                    part,
+                    condition,
+                    &outline.surfaces,
+                    laws,
+                    lowering,
+                    diagnostics,
+                );
                 regions.extend(region);
             }
             let Conditions { conditions, distances, .. } = conditions;
@@ -118,19 +131,19 @@ pub(super) fn derived(
             clearance: lowering.graph.max(zero, part.depth),
         })
         .collect();
-    let section = Section { outline, inner, outer, outside, over };
+    let Outline { segments, surfaces, .. } = outline;
+    let section = Section { outline: segments, inner, outer, outside, over };
     FromProfile { surfaces, regions, section: Some(section) }
 }
 
 /// Returns the parts of the inside with their names and directions.
 fn parts(
     derived: &[Derived],
-    outline: &[Segment],
-    surfaces: &[Surface],
+    outline: &Outline,
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Vec<DerivedPart> {
-    let names = names(outline, surfaces, derived);
+    let names = names(outline, derived);
     let graph = &mut lowering.graph;
     let zero = graph.int(0);
     derived
@@ -138,8 +151,9 @@ fn parts(
         .zip(names)
         .map(|(part, (name, owner, span))| {
             let inside = formula(&part.inside, curves, graph);
-            let direction = regionalise::direction_to_surface(graph, outline, part.feature)
-                .unwrap_or([zero, zero]);
+            let direction =
+                regionalise::direction_to_surface(graph, &outline.segments, part.feature)
+                    .unwrap_or([zero, zero]);
             let direction = Domain::HalfPlane.vector(graph, &direction);
             DerivedPart {
                 feature: part.feature,
@@ -177,8 +191,7 @@ fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
 /// several. `shank/nut.1` is the fan of a reflex corner, which belongs to the adjacent surface that does not cut,
 /// otherwise to the first one.
 fn names(
-    outline: &[Segment],
-    surfaces: &[Surface],
+    Outline { segments: outline, surfaces, .. }: &Outline,
     parts: &[Derived],
 ) -> Vec<(String, usize, Span)> {
     let name = |piece: usize| {
@@ -267,8 +280,7 @@ impl Divider<'_> {
     /// Returns the conditions, if there is a further division.
     fn conditions(
         &self,
-        (outline, inner): (&[Segment], &Partition),
-        surfaces: &[Surface],
+        inside: &Inside<'_>,
         lowering: &mut Lowering,
         curves: &mut Curves,
         diagnostics: &mut Vec<Diagnostic>,
@@ -278,8 +290,11 @@ impl Divider<'_> {
             Divider::Hand(regions) => {
                 let mut conditions = Conditions::NONE;
                 for region in regions {
-                    let surface = or_report(written(region, &regions[..], surfaces), diagnostics);
-                    let condition = inside(region, lowering, curves, diagnostics);
+                    let surface = or_report(
+                        written(region, &regions[..], &inside.outline.surfaces),
+                        diagnostics,
+                    );
+                    let condition = region::inside(region, lowering, curves, diagnostics);
                     if let (Some(surface), Some(condition)) = (surface, condition) {
                         conditions.conditions.push(condition);
                         conditions.kinds.push(Kind::Hand(region, surface));
@@ -290,7 +305,7 @@ impl Divider<'_> {
                 }
                 Some(conditions)
             }
-            Divider::Smooth(length) => match fans(length, outline, inner, lowering, curves) {
+            Divider::Smooth(length) => match fans(length, inside, lowering, curves) {
                 Ok(conditions) => Some(conditions),
                 Err(diagnostic) => {
                     diagnostics.push(diagnostic);
@@ -345,8 +360,7 @@ const MAX_SMOOTH_SEGMENTS: usize = 128;
 /// Returns the cells of the outline with rounded corners, from which directions are taken.
 fn fans<'t>(
     length: &Expr,
-    outline: &[Segment],
-    inner: &Partition,
+    Inside { outline: Outline { segments: outline, .. }, inner, .. }: &Inside<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
 ) -> Result<Conditions<'t>, Diagnostic> {
@@ -424,20 +438,22 @@ impl Conditions<'_> {
     /// Returns the parts and conditions that have points in common, and reports gaps, overlaps and regions without points.
     fn conditioned_parts(
         &self,
-        (outline, inner, parts): (&[Segment], &Partition, &[DerivedPart]),
-        (curves, lowering): (&Curves, &Lowering),
-        span: Span,
+        Inside { outline, inner, parts }: &Inside<'_>,
+        curves: &Curves,
+        lowering: &Lowering,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<ConditionedPart> {
-        let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
+        let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, &outline.segments);
         let insides: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
         let Overlay { parts, uncovered, doubly_covered } =
             overlay::overlay(&inner.cells(8), &insides, &self.conditions, &shapes, size);
         let formatted =
             |[d, z]: [f64; 2]| Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = uncovered {
-            diagnostics
-                .push(Diagnostic::new(span, RegionKind::UncoveredPoint { location: formatted(p) }));
+            diagnostics.push(Diagnostic::new(
+                outline.span,
+                RegionKind::UncoveredPoint { location: formatted(p) },
+            ));
         }
         if let Some((first, second, p)) = doubly_covered
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])

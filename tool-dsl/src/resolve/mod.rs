@@ -16,13 +16,14 @@ use crate::diagnostic::{
     Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,
 };
 use crate::domain::Domain;
-use crate::geometry::outline::Segment;
-use crate::model::{Model, Surface, Unit};
+
+use crate::model::{Model, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
 use derived::{Divider, FromProfile};
-use lower::{Constant, Lowering, in_range};
+use lower::{Constant, Lowered, Lowering, in_range};
+use profile::Outline;
 use region::{Laws, MountedNiceness};
 use scope::Argument;
 use std::collections::BTreeMap;
@@ -71,12 +72,7 @@ pub fn resolve(
     let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, diagnostics);
-            outline.map(|(outline, surfaces)| Outlined {
-                outline,
-                surfaces,
-                niceness_by_surface: BTreeMap::new(),
-                span: profile.span,
-            })
+            outline.map(|outline| Outlined { outline, niceness_by_surface: BTreeMap::new() })
         }
         Shape::Mounts(mounts) => {
             mount::assemble_mounts(&mounts, tool.name.span, &mut lowering, sources, diagnostics)
@@ -84,18 +80,10 @@ pub fn resolve(
     });
     let mut without_shape = misplaced_item;
     let FromProfile { surfaces, regions, section } = match outlined {
-        Some(Ok(Outlined { outline, surfaces, niceness_by_surface, span })) => {
+        Some(Ok(Outlined { outline, niceness_by_surface })) => {
             let laws = Laws::new(&laws, niceness_by_surface);
-            let profile_parts = (outline, surfaces, span);
             let divider = divider(tool, diagnostics);
-            derived::derived(
-                profile_parts,
-                &divider,
-                &laws,
-                &mut lowering,
-                &mut curves,
-                diagnostics,
-            )
+            derived::derived(outline, &divider, &laws, &mut lowering, &mut curves, diagnostics)
         }
         Some(Err(reported)) => {
             without_shape = Some(reported);
@@ -194,14 +182,10 @@ enum Shape<'t> {
     Mounts(Vec<&'t Mount>),
 }
 
-/// A tool's outline, in its frame and unit.
+/// A tool's outline, and the niceness laws that come with the surfaces of mounted files, by surface.
 struct Outlined {
-    outline: Vec<Segment>,
-    surfaces: Vec<Surface>,
-    /// The niceness laws that come with the surfaces of mounted files, by surface.
+    outline: Outline,
     niceness_by_surface: BTreeMap<String, MountedNiceness>,
-    /// The span of the profile or, for mounts, of the tool's name.
-    span: Span,
 }
 
 /// Returns the profile or the mounts, if there are any, and reports items that conflict with them.
@@ -318,7 +302,7 @@ fn constants(
         let defined = constant.and_then(|Constant { value, dimension }| {
             in_range(&value, definition.value.span)?;
             let id = lowering.graph.number(value);
-            lowering.define(&definition.name, (id, dimension))
+            lowering.define(&definition.name, Lowered { id, dimension })
         });
         lowering.report(&definition.name, defined, diagnostics);
         if enough(diagnostics) {

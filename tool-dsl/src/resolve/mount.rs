@@ -1,9 +1,10 @@
 //! Joins several files into one profile: each outline onto the one below it at a plane, with the ring between them.
 
 use super::lower::Lowering;
+use super::profile::{self, Outline};
 use super::region::{Laws, MountedNiceness};
 use super::scope::{self, Argument};
-use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
+use super::{Outlined, Shape, constants, definitions, frame, shape, unit};
 use crate::diagnostic::{
     CheckKind, Diagnostic, FormattedNumber, MountChain, MountKind, Reported, Role,
 };
@@ -68,7 +69,8 @@ pub(super) fn assemble_mounts(
             ))
         });
     let niceness_by_surface = niceness_by_surface.collect();
-    Ok(Outlined { outline: part.outline, surfaces: part.surfaces, niceness_by_surface, span })
+    let outline = Outline { segments: part.outline, surfaces: part.surfaces, span };
+    Ok(Outlined { outline, niceness_by_surface })
 }
 
 /// The state of mounting files.
@@ -232,14 +234,14 @@ impl Mounting<'_> {
             .sources
             .resolve_path(by, written)
             .ok_or_else(|| Diagnostic::new(by, MountKind::NoFolder { file: written.to_owned() }))?;
-        if !self.sources.may_mount(&location.1) {
+        if !self.sources.may_mount(&location.path) {
             let root = self.sources.given_root().map(|root| root.display().to_string());
             return Err(Diagnostic::new(
                 by,
                 MountKind::OutsideRoot { file: written.to_owned(), root },
             ));
         }
-        let shown = location.0.clone();
+        let shown = location.shown.clone();
         let source = self.sources.read(by, location).cloned().map_err(|error| {
             Diagnostic::new(by, MountKind::Unreadable { file: shown, error: error.to_string() })
         })?;
@@ -281,7 +283,8 @@ impl Mounting<'_> {
         }
         let mut part = match shape(tree, self.diagnostics) {
             Some(Shape::Profile(profile)) => {
-                let (outline, surfaces) = profile::outline(profile, lowering, self.diagnostics)?;
+                let Outline { segments: outline, surfaces, .. } =
+                    profile::outline(profile, lowering, self.diagnostics)?;
                 self.diagnostics.extend(check_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
                 MountedPart {

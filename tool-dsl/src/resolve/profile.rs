@@ -18,12 +18,21 @@ const MAX_RADIUS_IN_CHORDS: f64 = 1e6;
 /// The largest distance of an arc's ends from its circle, in radii.
 const MAX_CIRCLE_DEVIATION_IN_RADII: f64 = 1e-9;
 
-/// Returns the outline of a profile, counter-clockwise in the tool's frame, and its surfaces.
+/// The outline of a tool's section, in the tool's frame and unit.
+pub(super) struct Outline {
+    /// Its segments, counter-clockwise.
+    pub(super) segments: Vec<Segment>,
+    pub(super) surfaces: Vec<Surface>,
+    /// The span of the profile or, for mounts, of the tool's name.
+    pub(super) span: Span,
+}
+
+/// Returns the outline of a profile.
 pub(super) fn outline(
     profile: &Profile,
     lowering: &mut Lowering,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
+) -> Result<Outline, Reported> {
     let before = diagnostics.len();
     if let Some(beyond) = profile.segments.get(MAX_SEGMENTS) {
         let diagnostic =
@@ -67,7 +76,7 @@ pub(super) fn outline(
     without_error(&diagnostics[before..])?;
     // The map to the tool's frame may reverse the orientation; the order of the segments is then reversed too.
     let to_tool = |point: &ExactPoint| [point[0].clone(), frame.to_tool(&point[1])];
-    let mut outline: Vec<Segment> = segments
+    let mut segments: Vec<Segment> = segments
         .into_iter()
         .map(|segment| {
             let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
@@ -78,9 +87,9 @@ pub(super) fn outline(
         })
         .collect();
     if frame.spindle_down {
-        outline.reverse();
+        segments.reverse();
     }
-    Ok((outline, surfaces))
+    Ok(Outline { segments, surfaces, span: profile.span })
 }
 
 fn shown([d, z]: [f64; 2]) -> String {

@@ -2,7 +2,7 @@
 //! are stated for their surfaces.
 
 use super::condition::Curves;
-use super::lower::{Allowed, Lowering};
+use super::lower::{Allowed, Lowered, Lowering};
 use super::outputs;
 use crate::diagnostic::{Diagnostic, Names, RegionKind, Role, SurfaceRemedy, enough, nearest};
 use crate::dimension::Dimension;
@@ -154,7 +154,7 @@ pub(super) fn or_report<T>(
 
 /// Lowers a magnitude or a niceness.
 fn quantity(lowering: &mut Lowering, value: &Expr, may: Allowed) -> Result<Id, Diagnostic> {
-    let (id, dimension) = lowering.lower(value, may)?;
+    let Lowered { id, dimension } = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
         return Err(Diagnostic::new(value.span, RegionKind::AngleAsQuantity));
     }
@@ -305,7 +305,7 @@ impl RegionResolver<'_> {
                 RegionKind::UndefinedDepth { region: written.name.text.clone() },
             ));
         }
-        let (id, dimension) = self.lowering.lower(value, Allowed::Coordinates)?;
+        let Lowered { id, dimension } = self.lowering.lower(value, Allowed::Coordinates)?;
         if by == Quantity::Depth && !dimension.is_length() {
             return Err(Diagnostic::new(value.span, RegionKind::DepthNotLength { dimension }));
         }
@@ -385,16 +385,16 @@ fn condition(
     let mut left = lowering.lower(&condition.first, Allowed::Coordinates)?;
     for (compare, right) in &condition.rest {
         let right = lowering.lower(right, Allowed::Coordinates)?;
-        if left.1.common(right.1).is_none_or(|d| d == Dimension::Angle) {
+        if left.dimension.common(right.dimension).is_none_or(|d| d == Dimension::Angle) {
             return Err(Diagnostic::new(
                 condition.span,
-                RegionKind::MixedComparison { left: left.1, right: right.1 },
+                RegionKind::MixedComparison { left: left.dimension, right: right.dimension },
             ));
         }
         let graph = &mut lowering.graph;
         sides.push(match compare {
-            Compare::AtMost => curves.at_most(graph, left.0, right.0),
-            Compare::AtLeast => curves.at_most(graph, right.0, left.0),
+            Compare::AtMost => curves.at_most(graph, left.id, right.id),
+            Compare::AtLeast => curves.at_most(graph, right.id, left.id),
         });
         left = right;
     }
@@ -463,7 +463,8 @@ impl RegionResolver<'_> {
         let domain = self.lowering.domain;
         let (mut parts, mut dimension) = (Vec::new(), Dimension::Dimensionless);
         for part in components(tuple, domain, Role::Direction)? {
-            let (id, of_part) = self.lowering.lower(part, Allowed::Coordinates)?;
+            let Lowered { id, dimension: of_part } =
+                self.lowering.lower(part, Allowed::Coordinates)?;
             let common_dimension = dimension.common(of_part).filter(|d| *d != Dimension::Angle);
             dimension = common_dimension.ok_or_else(|| {
                 Diagnostic::new(

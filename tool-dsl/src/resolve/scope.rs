@@ -89,7 +89,7 @@ impl Lowering {
 
     fn curve_value(&mut self, definition: &Definition) -> Result<(), Diagnostic> {
         let value = self.lower(&definition.value, Allowed::Coordinates)?;
-        if value.1 == Dimension::Angle {
+        if value.dimension == Dimension::Angle {
             let diagnostic = Diagnostic::new(definition.value.span, ValueKind::CurveOfAngle);
             return Err(diagnostic);
         }

@@ -99,7 +99,7 @@ impl Survey<'_> {
                     _ => (a, b),
                 };
                 let Some(own) = a.owner else { continue };
-                let pair = (own, b.owner);
+                let pair = Pair { own, other: b.owner };
                 let depths_differ = self.jump(pair).low > 0.0;
                 let (prover, cover) = (&mut self.border_prover, &mut self.cover);
                 let separation = prover.separation(pair, [a, b], cover, cell, depths_differ);
@@ -132,7 +132,9 @@ impl Survey<'_> {
     /// uncertainty.
     fn fall_across(&mut self, meeting: &Meeting) -> (f64, f64) {
         let regions = &self.tool.model.regions;
-        let (Joint::Kinked, (own, Some(other))) = (meeting.separation.joint, meeting.pair) else {
+        let (Joint::Kinked, Pair { own, other: Some(other) }) =
+            (meeting.separation.joint, meeting.pair)
+        else {
             return (f64::INFINITY, 0.0);
         };
         let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
@@ -146,7 +148,11 @@ impl Survey<'_> {
     }
 
     /// Returns the absolute difference of a quantity of two regions in the current box; it is 0 outside.
-    fn difference(&mut self, (own, other): Pair, quantity: impl Fn(&Region) -> Id) -> Interval {
+    fn difference(
+        &mut self,
+        Pair { own, other }: Pair,
+        quantity: impl Fn(&Region) -> Id,
+    ) -> Interval {
         let regions = &self.tool.model.regions;
         let mut value = |owner: usize| self.slopes.get(quantity(&regions[owner])).value;
         let (own, other) = (value(own), other.map_or(NOTHING, value));
@@ -154,13 +160,13 @@ impl Survey<'_> {
     }
 
     /// Returns whether a region may reach the surface in the current box.
-    fn is_on_surface(&mut self, (own, _): Pair) -> bool {
-        self.slopes.get(self.tool.model.regions[own].depth).value.low <= 0.0
+    fn is_on_surface(&mut self, pair: Pair) -> bool {
+        self.slopes.get(self.tool.model.regions[pair.own].depth).value.low <= 0.0
     }
 
     /// Encloses the angle between the directions of two regions in the current box.
-    fn turn_angle(&mut self, (own, other): Pair) -> Interval {
-        let Some(other) = other else { return NOTHING };
+    fn turn_angle(&mut self, pair: Pair) -> Interval {
+        let Pair { own, other: Some(other) } = pair else { return NOTHING };
         let regions = &self.tool.model.regions;
         let [a, b] =
             [own, other].map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
@@ -169,7 +175,7 @@ impl Survey<'_> {
 
     fn record_border(&mut self, meeting: &Meeting, cell: Cell) {
         let regions = &self.tool.model.regions;
-        let (own, other) = meeting.pair;
+        let Pair { own, other } = meeting.pair;
         let jump = match meeting.separation.joint {
             Joint::None => self.jump(meeting.pair),
             _ => Interval { low: 0.0, high: meeting.separation.difference },
@@ -192,7 +198,7 @@ impl Survey<'_> {
             self.difference(meeting.pair, |region| region.magnitude)
         };
         let border = Border {
-            sides: meeting.pair,
+            sides: (own, other),
             curve: meeting.separation.curve,
             depth_jump: jump,
             magnitude_jump,
