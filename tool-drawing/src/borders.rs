@@ -99,11 +99,11 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
 fn contract(edges: &mut [Edge], chains: &mut Vec<Vec<usize>>, points: &[Point], speck: f64) {
     let mut joint: Vec<usize> = (0..points.len()).collect();
     chains.retain(|chain| {
-        let length = |index: &usize| {
+        let lengths = chain.iter().map(|index| {
             let [from, to] = edges[*index].ends;
             norm(minus(points[to], points[from]))
-        };
-        if chain.iter().map(length).sum::<f64>() >= speck {
+        });
+        if lengths.sum::<f64>() >= speck {
             return true;
         }
         let [from, to] = ends(edges, chain).map(|end| joint[end]);
@@ -179,11 +179,12 @@ fn border(
     let (strokes, exact) = if straight && ends[0] != ends[1] {
         (vec![Stroke::line(row[0], row[row.len() - 1])], true)
     } else {
-        let foot = |p: Point| match first.curve {
-            Some(curve) => curves.foot(curve, p, near.reach),
-            None => p,
-        };
-        match round(&row, foot, near.weld) {
+        let arcs = round(
+            &row,
+            |p| first.curve.map_or(p, |curve| curves.foot(curve, p, near.reach)),
+            near.weld,
+        );
+        match arcs {
             Some(strokes) => (strokes, true),
             None => (fitted(&row, near.visible_length), false),
         }
@@ -317,8 +318,11 @@ impl Weld {
         for i in [0, -1, 1] {
             for j in [0, -1, 1] {
                 let known = self.buckets.get(&[key[0] + i, key[1] + j]);
-                let same = |index: &&usize| norm(minus(self.points[**index], p)) <= self.near;
-                if let Some(index) = known.into_iter().flatten().find(same) {
+                let same = known
+                    .into_iter()
+                    .flatten()
+                    .find(|index| norm(minus(self.points[**index], p)) <= self.near);
+                if let Some(index) = same {
                     return *index;
                 }
             }

@@ -100,8 +100,10 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
     let best = |surface: usize| -> Option<usize> {
         let of = |index: &usize| chosen[*index].surface == surface;
         let is_named = (0..chosen.len()).filter(of).any(|index| chosen[index].is_telling());
-        let longer = |a: &usize, b: &usize| chosen[*a].length.total_cmp(&chosen[*b].length);
-        (0..chosen.len()).filter(of).max_by(longer).filter(|_| !is_named)
+        (0..chosen.len())
+            .filter(of)
+            .max_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length))
+            .filter(|_| !is_named)
     };
     let only: Vec<usize> = (0..picture.model.surfaces.len()).filter_map(best).collect();
     let mut index = 0;
@@ -170,8 +172,11 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
     let mut first = 0;
     while first < rows.len() {
         // Notes close together begin at the same distance from the section.
-        let is_close = |k: &usize| heights[*k] - heights[*k - 1] < 1.3 * LINE_SPACING;
-        let end = (first + 1..rows.len()).take_while(is_close).last().unwrap_or(first) + 1;
+        let end = (first + 1..rows.len())
+            .take_while(|k| heights[*k] - heights[*k - 1] < 1.3 * LINE_SPACING)
+            .last()
+            .unwrap_or(first)
+            + 1;
         let low = heights[first].min(rows[first].1[1]) - TEXT_SIZE;
         let high = heights[end - 1].max(rows[end - 1].1[1]) + TEXT_SIZE;
         let side = widest(picture, [low, high]);
@@ -219,8 +224,8 @@ fn sheet_height(y: f64, levels: &[f64]) -> f64 {
 /// Returns the heights to note, of which the first is the tip. If there are too many, the most crowded ones are left
 /// out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
-    let described = |p: Point| picture.describes(p);
-    let mut steps = heights(picture.model, &picture.borders, picture.size, described);
+    let mut steps =
+        heights(picture.model, &picture.borders, picture.size, |p| picture.describes(p));
     let max_notes = ((picture.view.height + 80.0) / 11.5) as usize;
     while steps.len() > max_notes.max(3) {
         let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];

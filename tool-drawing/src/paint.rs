@@ -194,12 +194,11 @@ pub(super) fn distinct_area_colours(regions: usize) -> Vec<&'static str> {
 pub(super) fn surface_colours(model: &Model) -> Vec<&'static str> {
     let (mut cutting, mut other) =
         (CUTTING_STROKES.iter().cycle(), NON_CUTTING_STROKES.iter().cycle());
-    let next = |cuts: bool| if cuts { cutting.next() } else { other.next() };
     model
         .surfaces
         .iter()
         .map(|s| s.cutting)
-        .map(next)
+        .map(|cuts| if cuts { cutting.next() } else { other.next() })
         .map(|c| c.copied().unwrap_or("#000"))
         .collect()
 }

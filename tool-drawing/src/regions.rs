@@ -186,8 +186,7 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
             continue;
         }
         let p = picture.view.to_sheet(focus);
-        let near = |q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.5;
-        if !found.iter().any(near) {
+        if !found.iter().any(|q| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.5) {
             found.push(p);
         }
     }
@@ -331,11 +330,13 @@ impl<'m> Directions<'m> {
 
 /// Returns the distance of a point from the nearest box; -1 inside one.
 fn clear(p: Point, taken: &[Frame]) -> f64 {
-    let frame_distance = |frame: &Frame| {
-        let out = [0, 1].map(|k| (frame[0][k] - p[k]).max(p[k] - frame[1][k]));
-        if out[0].max(out[1]) < 0.0 { -1.0 } else { norm(out.map(|part| part.max(0.0))) }
-    };
-    taken.iter().map(frame_distance).fold(f64::INFINITY, f64::min)
+    taken
+        .iter()
+        .map(|frame| {
+            let out = [0, 1].map(|k| (frame[0][k] - p[k]).max(p[k] - frame[1][k]));
+            if out[0].max(out[1]) < 0.0 { -1.0 } else { norm(out.map(|part| part.max(0.0))) }
+        })
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Returns an arrow's head as a filled triangle.

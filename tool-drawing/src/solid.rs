@@ -173,10 +173,10 @@ impl Section<'_> {
         let Some(bounds) = bounds(borders) else { return };
         for (k, (axis, side)) in axes(self.normal).into_iter().zip(bounds).enumerate() {
             let ends = [side.low, side.high];
-            let same = |(other, known): &Dimension| {
+            let is_known = known.iter().any(|(other, known)| {
                 *other == axis && (0..2).all(|end| (known[end] - ends[end]).abs() < 1e-6 * size)
-            };
-            if known.iter().any(same) {
+            });
+            if is_known {
                 continue;
             }
             known.push((axis, ends));

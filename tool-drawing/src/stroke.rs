@@ -118,8 +118,7 @@ pub(super) fn round(
     let step = if closed { 0.2 } else { 0.25 };
     let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
     let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
-    let is_off = |p: &Point| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near;
-    if feet.iter().any(is_off) {
+    if feet.iter().any(|p| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near) {
         return None;
     }
     let arc = |from: Point, to: Point| Stroke { from, to, circle: Some((centre, radius)) };
@@ -146,11 +145,16 @@ pub(super) fn fitted(row: &[Point], tolerance: f64) -> Vec<Stroke> {
         && let Some((centre, radius)) = circle([row[0], row[last / 2], row[last]])
     {
         let stroke = Stroke { circle: Some((centre, radius)), ..line };
-        let is_off = |p: Point| (norm(minus(p, centre)) - radius).abs() > tolerance;
         let middles = row.windows(2).map(|pair| Stroke::line(pair[0], pair[1]).at(0.5));
         let less_than_half = stroke.turn().abs() < 0.9 * PI
             && norm(minus(stroke.at(0.5), row[last / 2])) < 0.5 * length + tolerance;
-        if less_than_half && !row.iter().copied().chain(middles).any(is_off) {
+        if less_than_half
+            && !row
+                .iter()
+                .copied()
+                .chain(middles)
+                .any(|p| (norm(minus(p, centre)) - radius).abs() > tolerance)
+        {
             return vec![stroke];
         }
     }

@@ -7,7 +7,7 @@ use crate::elimination::Linear;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
 use crate::expr::polynomial::Polynomial;
-use crate::formula::{ANY_SIGN, CurveIndex, Formula, Signs, possible};
+use crate::formula::{ANY_SIGN, CurveIndex, Signs, possible};
 use crate::geometry::outline;
 use crate::model::{Model, Region};
 
@@ -61,12 +61,14 @@ impl<'m> Prover<'m> {
             region.inside.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
             for choices in region.inside.disjunctions() {
-                let one = |choice: &Formula| {
-                    let mut signs = signs.clone();
-                    choice.narrow_signs(&mut signs);
-                    linear.bounding_box(&signs)
-                };
-                let hull = choices.iter().map(one).reduce(|a, b| a.hull(&b));
+                let hull = choices
+                    .iter()
+                    .map(|choice| {
+                        let mut signs = signs.clone();
+                        choice.narrow_signs(&mut signs);
+                        linear.bounding_box(&signs)
+                    })
+                    .reduce(|a, b| a.hull(&b));
                 reach = hull.map_or(reach, |hull| reach.common(&hull));
             }
             reach
@@ -238,11 +240,11 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
             let side_to_move = &mut cell.sides[*axis];
             if *high { side_to_move.high = end } else { side_to_move.low = end }
         }
-        let is_empty = |(_, axis, _): &(_, usize, _)| {
+        let is_empty = domain.coordinates().iter().any(|(_, axis, _)| {
             let side = cell.sides[*axis];
             side.low >= side.high
-        };
-        if domain.coordinates().iter().any(is_empty) {
+        });
+        if is_empty {
             return Err(Diagnostic::new(
                 model.name_span,
                 CheckKind::NoPoints { domain: domain.keyword() },
@@ -417,8 +419,9 @@ fn slab_between(
         return EnvelopeSlab { low, high, radius };
     }
     let within = extent.cell().with_side(2, Interval::new(low, high));
-    let none_beyond = |radius| prover.none_beyond(radius, widest, within);
-    EnvelopeSlab { low, high, radius: inward(widest, 0.0, RADIUS_HALVINGS, none_beyond) }
+    let radius =
+        inward(widest, 0.0, RADIUS_HALVINGS, |radius| prover.none_beyond(radius, widest, within));
+    EnvelopeSlab { low, high, radius }
 }
 
 /// Halves the slab whose halving saves most area, while that is enough, up to [`SPARE_SLABS`] slabs too many.

@@ -348,10 +348,10 @@ impl Sources {
         }
         let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let path_on_disk = real(&path);
-        let same = |source: &Source| {
+        let known = self.0.iter().position(|source| {
             source.tokens.is_none() && source.path().is_some_and(|path| real(path) == path_on_disk)
-        };
-        if let Some(known) = self.0.iter().position(same) {
+        });
+        if let Some(known) = known {
             return Ok(&self.0[known]);
         }
         let source = Source::read_as(shown, &path)?;

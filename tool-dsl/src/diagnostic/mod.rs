@@ -178,11 +178,11 @@ pub fn escaped(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
     }
-    let escape = |c: char| match is_hidden(c) {
+    let escaped = text.chars().map(|c| match is_hidden(c) {
         true => c.escape_unicode().to_string(),
         false => c.to_string(),
-    };
-    Cow::Owned(text.chars().map(escape).collect())
+    });
+    Cow::Owned(escaped.collect())
 }
 
 /// Returns the lines of a text for display, with every byte at its offset. The renderer itself replaces
@@ -192,12 +192,13 @@ fn harmless(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| replaced(&c)) {
         return Cow::Borrowed(text);
     }
-    let shown = |c: char| match c.len_utf8() {
+    // The replacements have as many bytes as what they replace.
+    let shown = text.chars().map(|c| match c.len_utf8() {
         _ if !replaced(&c) => c,
         2 => '\u{bf}',
         _ => '\u{fffd}',
-    };
-    Cow::Owned(text.chars().map(shown).collect())
+    });
+    Cow::Owned(shown.collect())
 }
 
 /// Returns the lines of a message, each escaped.

@@ -178,11 +178,13 @@ impl<'m> Variables<'m> {
     }
 
     fn roots(&self) -> Vec<(Id, usize)> {
-        let root = |(variable, index): (&Variable, &usize)| match variable {
-            Variable::Root(root) => Some((*root, *index)),
-            _ => None,
-        };
-        self.indices.iter().filter_map(root).collect()
+        self.indices
+            .iter()
+            .filter_map(|(variable, index)| match variable {
+                Variable::Root(root) => Some((*root, *index)),
+                _ => None,
+            })
+            .collect()
     }
 
     /// Returns the point from which a root is the distance, by coordinate.
@@ -286,12 +288,14 @@ fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
 
 /// Returns whether a curve compares squares of expressions that contain roots.
 pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
-    let root = |id: &Id| matches!(graph.node(*id), Node::Sqrt(_));
-    let of_root = |side: &Squared| match side {
-        Squared::Of(a) => graph.dependencies([*a]).iter().any(root),
-        Squared::Root(_) => false,
-    };
-    squares_compared(graph, value).is_some_and(|sides| sides.iter().any(of_root))
+    squares_compared(graph, value).is_some_and(|sides| {
+        sides.iter().any(|side| match side {
+            Squared::Of(a) => {
+                graph.dependencies([*a]).iter().any(|id| matches!(graph.node(*id), Node::Sqrt(_)))
+            }
+            Squared::Root(_) => false,
+        })
+    })
 }
 
 /// Returns the terms squared under a root of a sum of squares, and whether the sum has no others. An absolute

@@ -161,12 +161,11 @@ pub(super) fn without(
 ) -> Option<Vec<Condition>> {
     while !variables.is_empty() {
         // A variable bounded from one side only is eliminated by dropping its conditions.
-        let is_one_sided = |variable: &usize| {
-            let has_sign = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
-            !has_sign(1.0) || !has_sign(-1.0)
-        };
         let (free, bounded): (Vec<usize>, Vec<usize>) =
-            variables.into_iter().partition(is_one_sided);
+            variables.into_iter().partition(|variable| {
+                let has_sign = |sign| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
+                !has_sign(1.0) || !has_sign(-1.0)
+            });
         variables = bounded;
         if !free.is_empty() {
             conditions.retain(|c| free.iter().all(|variable| c.factors[*variable] == 0.0));
@@ -174,8 +173,7 @@ pub(super) fn without(
         }
         let growth = |variable: usize| {
             let count_with_sign = |sign: f64| {
-                let is_bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
-                conditions.iter().filter(is_bound).count()
+                conditions.iter().filter(|c| sign * c.factors[variable] > ROUNDING).count()
             };
             let (upper, lower) = (count_with_sign(1.0), count_with_sign(-1.0));
             (upper * lower).saturating_sub(upper + lower)
@@ -219,10 +217,10 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
     let mut tightest_conditions: Vec<Condition> = Vec::new();
     for condition in conditions {
         let condition = scaled(condition);
-        let has_same_factors = |other: &&mut Condition| {
+        let same_factors = tightest_conditions.iter_mut().find(|other| {
             other.factors.iter().zip(&condition.factors).all(|(a, b)| (a - b).abs() <= ROUNDING)
-        };
-        match tightest_conditions.iter_mut().find(has_same_factors) {
+        });
+        match same_factors {
             Some(other) => {
                 let difference = condition.constant - other.constant;
                 // If two conditions differ by rounding only, the strict one is tighter.

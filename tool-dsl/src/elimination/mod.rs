@@ -93,13 +93,15 @@ impl Linear {
                 (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
             Rc::new(Exact { factors: factors.collect(), constant: form.constant })
         };
-        let with_opposite = |form: Form| {
-            let opposite = Form::default().plus(&form, &Number::int(-1));
-            LinearForm::new([form, opposite].map(dense))
-        };
         let condition = |form: Form| Condition::from_exact(&dense(form), false);
         Linear {
-            forms: forms.into_iter().map(|form| form.map(with_opposite)).collect(),
+            forms: forms
+                .into_iter()
+                .map(|form| {
+                    let opposite = Form::default().plus(form.as_ref()?, &Number::int(-1));
+                    Some(LinearForm::new([form?, opposite].map(dense)))
+                })
+                .collect(),
             variables: count,
             axes,
             facts: facts.into_iter().map(condition).collect(),
@@ -193,8 +195,7 @@ impl Linear {
         let is_straight = |form: &Option<LinearForm>| {
             form.as_ref().is_some_and(|form| {
                 let factors = &form.sides[0].factors;
-                let is_nonlinear = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
-                !(0..self.variables).any(is_nonlinear)
+                !(0..self.variables).any(|v| factors[v] != 0.0 && !self.axes.contains(&Some(v)))
             })
         };
         let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY_SIGN);
@@ -231,8 +232,8 @@ impl Linear {
         let requested = conditions.split_off(self.facts.len());
         let mentioned: Vec<bool> = (0..self.variables)
             .map(|variable| {
-                let mentions = |condition: &Condition| condition.factors[variable] != 0.0;
-                self.axes.contains(&Some(variable)) || requested.iter().any(mentions)
+                self.axes.contains(&Some(variable))
+                    || requested.iter().any(|condition| condition.factors[variable] != 0.0)
             })
             .collect();
         let is_relevant = |condition: &Condition| {

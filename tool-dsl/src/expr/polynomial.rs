@@ -167,10 +167,10 @@ impl Polynomial {
         const POINT: [f64; 4] = [0.813, 1.377, -0.639, 2.179];
         let mut point = POINT.map(|at| Interval::new(at, at));
         let sloped = line.0.iter().filter(|(monomial, _)| monomial.iter().sum::<u8>() == 1);
-        let steep = |(_, a): &(_, &Number), (_, b): &(_, &Number)| {
-            a.to_f64().abs().total_cmp(&b.to_f64().abs())
-        };
-        let Some((leading, factor)) = sloped.max_by(steep).filter(|_| line.is_linear()) else {
+        let Some((leading, factor)) = sloped
+            .max_by(|(_, a), (_, b)| a.to_f64().abs().total_cmp(&b.to_f64().abs()))
+            .filter(|_| line.is_linear())
+        else {
             return false;
         };
         let Some(axis) = leading.iter().position(|exponent| *exponent == 1) else { return false };
@@ -388,12 +388,12 @@ impl Polynomial {
         }
         let leads = (self.0.first_key_value()?.1, other.0.first_key_value()?.1);
         let ratio = leads.0.to_f64() / leads.1.to_f64();
-        let near = |(a, b): (&Number, &Number)| {
+        // A comparison of doubles rejects most curves cheaply.
+        let are_near = self.0.values().zip(other.0.values()).all(|(a, b)| {
             let (a, b) = (a.to_f64(), b.to_f64() * ratio);
             (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
-        };
-        // A comparison of doubles rejects most curves cheaply.
-        if !self.0.values().zip(other.0.values()).all(near) {
+        });
+        if !are_near {
             return None;
         }
         let factor = leads.0.checked_div(leads.1)?;
@@ -447,11 +447,12 @@ fn enclosed_sum<'t>(
     terms: impl Iterator<Item = (&'t Monomial, Interval)>,
     bases: [Interval; 4],
 ) -> Interval {
-    let term = |(monomial, value): (&Monomial, Interval)| {
-        let powers = monomial.iter().zip(bases).filter(|(exponent, _)| **exponent > 0);
-        powers.fold(value, |product, (exponent, base)| product.times(base.power(*exponent)))
-    };
-    terms.map(term).fold(ZERO, Interval::plus)
+    terms
+        .map(|(monomial, value)| {
+            let powers = monomial.iter().zip(bases).filter(|(exponent, _)| **exponent > 0);
+            powers.fold(value, |product, (exponent, base)| product.times(base.power(*exponent)))
+        })
+        .fold(ZERO, Interval::plus)
 }
 
 #[cfg(test)]

@@ -120,12 +120,11 @@ impl<'t> Reader<'t> {
         let closing_brace = if self.at < self.tokens.len() { "}" } else { "" };
         self.at += closing_brace.len();
         let inside = &self.tokens[start..self.at];
-        let plain = |token: &Token<'_>| token.newlines == 0 && !token.is_comment();
         let one_line = head.first().is_some_and(|word| word.is("region"))
             && nodes.len() == 1
             && !closing_brace.is_empty()
             && trailing_comments.is_empty()
-            && inside.iter().all(plain);
+            && inside.iter().all(|token| token.newlines == 0 && !token.is_comment());
         Body { nodes, closing_brace, trailing_comments: self.trailing_comments(), one_line }
     }
 }

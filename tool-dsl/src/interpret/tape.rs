@@ -165,8 +165,7 @@ impl TapeWriter<'_> {
             if self.slots.contains_key(&id) {
                 continue;
             }
-            let s = |id: &Id| self.slots[id];
-            let operation = Operation::of(self.tool.model.graph.node(id), s);
+            let operation = Operation::of(self.tool.model.graph.node(id), |id| self.slots[id]);
             let slot = self.put(operation);
             self.slots.insert(id, slot);
         }

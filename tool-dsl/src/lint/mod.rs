@@ -159,8 +159,9 @@ impl<'m> Linter<'m> {
 
     fn format_point(&self, [x, y, z]: [f64; 3]) -> String {
         // A coordinate that is rounding relative to the tool's size is shown as 0.
-        let without_rounding = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
-        self.model.domain.format_point([x, y, self.model.frame.to_file(z)].map(without_rounding))
+        let point = [x, y, self.model.frame.to_file(z)]
+            .map(|v| if v.abs() < ROUNDING * self.size { 0.0 } else { v });
+        self.model.domain.format_point(point)
     }
 
     /// Reports at most one diagnostic per location and severity.
@@ -328,8 +329,11 @@ impl<'m> Linter<'m> {
 
     /// Returns the location of a region whose conditions mention a curve.
     fn reader_of(&self, curve: CurveIndex) -> Span {
-        let reads = |region: &&Region| mentions(&region.inside, curve);
-        self.model.regions.iter().find(reads).map_or(self.model.name_span, |region| region.span)
+        self.model
+            .regions
+            .iter()
+            .find(|region| mentions(&region.inside, curve))
+            .map_or(self.model.name_span, |region| region.span)
     }
 
     fn report_idle_regions(&mut self) {

@@ -249,15 +249,18 @@ fn costs(model: &Model) -> Vec<f64> {
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
     };
-    let curve = |curve: &Curve| {
-        model
-            .graph
-            .dependencies([curve.value])
-            .into_iter()
-            .map(|id| cost(model.graph.node(id)))
-            .sum()
-    };
-    model.curves.iter().map(curve).collect()
+    model
+        .curves
+        .iter()
+        .map(|curve| {
+            model
+                .graph
+                .dependencies([curve.value])
+                .into_iter()
+                .map(|id| cost(model.graph.node(id)))
+                .sum()
+        })
+        .collect()
 }
 
 /// Returns the information content of a part of a whole in bits, multiplied by the part's weight.

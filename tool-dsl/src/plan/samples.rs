@@ -45,14 +45,15 @@ impl Samples {
         let runs: Vec<&[Sample]> =
             all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
         let below = |shape: &CurveFunction<'_>| {
-            let bits = |run: &&[Sample]| {
-                let mut bits = 0;
-                for (k, sample) in run.iter().enumerate() {
-                    bits |= u64::from(shape.below(sample.point)) << k;
-                }
-                bits
-            };
-            runs.iter().map(bits).collect()
+            runs.iter()
+                .map(|run| {
+                    let mut bits = 0;
+                    for (k, sample) in run.iter().enumerate() {
+                        bits |= u64::from(shape.below(sample.point)) << k;
+                    }
+                    bits
+                })
+                .collect()
         };
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
@@ -68,12 +69,12 @@ impl Samples {
     }
 
     pub(super) fn all(&self) -> SampleSubset {
-        let whole = |(word, weights): (usize, &Vec<f64>)| WordPart {
+        let words = self.weights.iter().enumerate().map(|(word, weights)| WordPart {
             word,
             bits: u64::MAX >> (64 - weights.len()),
             weight: weights.iter().sum(),
-        };
-        SampleSubset(self.weights.iter().enumerate().map(whole).collect())
+        });
+        SampleSubset(words.collect())
     }
 
     /// Returns the samples below a curve, and those above.

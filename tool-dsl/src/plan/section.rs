@@ -152,12 +152,11 @@ impl Polygons<'_> {
         let inside = model.regions.iter().map(|region| &region.inside).collect();
         let owners = plan(model, shapes, size, input, inside)?;
         // A sliver between a curve and its chord may have been given to the wrong owner.
-        let part_of = |region: usize| match &section.over {
-            Some(over) => over.regions[region].part,
-            None => region,
-        };
-        let part_at = |p, _| self.leaf_at(&owners, p).map(part_of);
-        match section.inner.wrongly_assigned_point(part_at) {
+        let wrong = section.inner.wrongly_assigned_point(|p, _| {
+            let region = self.leaf_at(&owners, p)?;
+            Some(section.over.as_ref().map_or(region, |over| over.regions[region].part))
+        });
+        match wrong {
             Some(p) => Err(inseparable_owners(model, p)),
             None => Ok(owners),
         }
@@ -574,8 +573,8 @@ impl Planner<'_> {
     /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
     /// Rounding may bring a point near such a corner here, where its owner has no piece.
     fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
-        let is_foreign = |at: &&usize| !self.corners[**at].owners.contains(&owner);
-        let Some(corner) = corners.iter().find(is_foreign).map(|at| &self.corners[*at]) else {
+        let foreign = corners.iter().find(|at| !self.corners[**at].owners.contains(&owner));
+        let Some(corner) = foreign.map(|at| &self.corners[*at]) else {
             return Tree::Leaf(owner);
         };
         let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
@@ -589,13 +588,12 @@ impl Planner<'_> {
         curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
         let separating = curves.into_iter().find(|(curve, side)| {
             let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
-            let is_on_other_side = |piece: &Rc<Piece>| match piece.cut(cutter) {
+            pieces.iter().all(|piece| match piece.cut(cutter) {
                 Cut::Below => *side > 0,
                 Cut::Above => *side < 0,
                 Cut::Nothing => true,
                 Cut::Both(..) => false,
-            };
-            pieces.iter().all(is_on_other_side)
+            })
         });
         let Some((curve, side)) = separating else { return Tree::Leaf(owner) };
         let [corners_here, corners_beyond] =

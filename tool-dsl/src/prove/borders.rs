@@ -796,10 +796,11 @@ impl BorderProver<'_> {
         let [a, b] = [a?, b?];
         let pair = Pair { own: a.min(b), other: Some(a.max(b)) };
         let jumps = borders.iter().filter_map(|curve| match self.agreement(pair, *curve) {
-            Some(agreement) => {
-                let is_certain = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
-                agreement.branch.as_ref().is_none_or(is_certain).then_some(0.0)
-            }
+            Some(agreement) => agreement
+                .branch
+                .as_ref()
+                .is_none_or(|branch| branch.over(&self.cell).low > 0.0)
+                .then_some(0.0),
             None => Some(self.tangency(pair, *curve)?.jump),
         });
         jumps.reduce(f64::min)
@@ -856,8 +857,8 @@ impl BorderProver<'_> {
         Pair { own, other }: Pair,
         [at_a, at_b]: [&[Signs]; 2],
     ) -> bool {
-        let common = |(a, b): (&Signs, &Signs)| closure(*a) & closure(*b);
-        let common_signs: Vec<Signs> = at_a.iter().zip(at_b).map(common).collect();
+        let common_signs: Vec<Signs> =
+            at_a.iter().zip(at_b).map(|(a, b)| closure(*a) & closure(*b)).collect();
         self.linear.no_deeper(&common_signs, Some(own), None)
             && self.linear.no_deeper(&common_signs, other, None)
     }
@@ -880,8 +881,10 @@ impl BorderProver<'_> {
                 // A depth is not negative in its own region.
                 let depth = self.depths[other].as_ref().and_then(RootForm::polynomial);
                 let ratio = |branch: &Polynomial| branch.ratio(depth?);
-                let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
-                agreement.smooth && agreement.branch.as_ref().is_none_or(own)
+                agreement.smooth
+                    && agreement.branch.as_ref().is_none_or(|branch| {
+                        ratio(branch).is_some_and(|ratio| !ratio.is_negative())
+                    })
             };
             third != own
                 && third != other

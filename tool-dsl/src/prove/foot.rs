@@ -13,7 +13,7 @@ use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::{ClearSide, EnclosedPolynomial, Polynomial};
-use crate::formula::{Curve, CurveIndex, one_side};
+use crate::formula::{CurveIndex, one_side};
 use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 use crate::number::Number;
 use crate::plan::PlannedTool;
@@ -84,8 +84,7 @@ impl ProfileFeet {
             (difference <= DISTANCE_TOLERANCE_FRACTION * size).then_some(ends)
         });
         let ends: Vec<Ends> = ends.collect::<Option<_>>()?;
-        let curve = |curve: &Curve| forms.polynomial(curve.value);
-        let curves = model.curves.iter().map(curve).collect();
+        let curves = model.curves.iter().map(|curve| forms.polynomial(curve.value)).collect();
         let bounds = ends.iter().map(|ends| vec![Vec::new(); ends.len()]).collect();
         Some(ProfileFeet { ends, curves, max_difference, bounds })
     }

@@ -214,9 +214,9 @@ impl Bounds {
     /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding_error = rounding::bound_over_tool(tool);
-        let is_written = |region: &Region| region.source == DirectionSource::Written;
         let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
-        if tool.model.is_exact() && !tool.model.regions.iter().any(is_written) {
+        let mut sources = tool.model.regions.iter().map(|region| region.source);
+        if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
@@ -250,8 +250,8 @@ impl Certificate {
 
     /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
     pub fn is_continuous(&self) -> bool {
-        let joined = |border: &Border| border.depth_jump.high <= self.tolerance;
-        self.undecided.is_empty() && self.borders.iter().all(joined)
+        self.undecided.is_empty()
+            && self.borders.iter().all(|border| border.depth_jump.high <= self.tolerance)
     }
 
     /// Returns `L`, if it is proved: depth is at most `L` times the distance to the surface, and changes by
@@ -290,10 +290,10 @@ impl Certificate {
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
         // One diagnostic per pair of regions, and one per region next to the outside.
         for diagnostic in self.borders.iter().filter_map(|border| jump(model, border)) {
-            let same = |other: &Diagnostic| {
+            let is_known = diagnostics.iter().any(|other| {
                 other.span == diagnostic.span && other.secondary == diagnostic.secondary
-            };
-            if !diagnostics.iter().any(same) {
+            });
+            if !is_known {
                 diagnostics.push(diagnostic);
             }
         }

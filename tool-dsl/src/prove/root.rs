@@ -394,8 +394,11 @@ impl RootSum {
     }
 
     fn scaled(self, by: &Number) -> RootSum {
-        let scaled = |root: RootTerm| RootTerm { factor: &root.factor * by, ..root };
-        let roots = self.roots.into_iter().map(scaled).collect();
+        let roots = self
+            .roots
+            .into_iter()
+            .map(|root| RootTerm { factor: &root.factor * by, ..root })
+            .collect();
         RootSum { polynomial: self.polynomial.scaled(by), roots }
     }
 

@@ -131,13 +131,15 @@ impl<'g> RoundingErrors<'g> {
                 if let Some(parts) = self.graph.squares_of(*a) {
                     // As part of a length, x² + y² contributes like its root, but without the root's own
                     // rounding.
-                    let axis = || {
-                        let value = cell.radius();
-                        // Two roundings below the root count as one of it.
-                        Rounded { value, error: value.abs().high }
-                    };
-                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
-                    let parts: Vec<Rounded> = parts.iter().map(part).collect();
+                    let parts = parts.iter().map(|part| match part {
+                        Some(part) => v(part),
+                        None => {
+                            let value = cell.radius();
+                            // Two roundings below the root count as one of it.
+                            Rounded { value, error: value.abs().high }
+                        }
+                    });
+                    let parts: Vec<Rounded> = parts.collect();
                     let sum =
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();

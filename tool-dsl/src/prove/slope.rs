@@ -99,11 +99,14 @@ impl Slope {
         if other.is_constant() {
             return other.times(self);
         }
-        let part = |k: usize| {
-            self.partials[k].times(other.value).plus(other.partials[k].times(self.value))
-        };
         let kinks = nonlinear(self.kinks, other.kinks);
-        Slope::new(self.value.times(other.value), [0, 1, 2].map(part), kinks)
+        Slope::new(
+            self.value.times(other.value),
+            [0, 1, 2].map(|k| {
+                self.partials[k].times(other.value).plus(other.partials[k].times(self.value))
+            }),
+            kinks,
+        )
     }
 
     fn square(self) -> Slope {
@@ -123,11 +126,14 @@ impl Slope {
             return Slope { value: self.value.times(reciprocal), ..self.scaled(reciprocal) };
         }
         let value = self.value.times(reciprocal);
-        let part = |k: usize| {
-            let down = value.times(other.partials[k]);
-            self.partials[k].plus(down.negated()).times(reciprocal)
-        };
-        Slope::new(value, [0, 1, 2].map(part), nonlinear(self.kinks, other.kinks))
+        Slope::new(
+            value,
+            [0, 1, 2].map(|k| {
+                let down = value.times(other.partials[k]);
+                self.partials[k].plus(down.negated()).times(reciprocal)
+            }),
+            nonlinear(self.kinks, other.kinks),
+        )
     }
 
     fn sqrt(self) -> Slope {
@@ -302,10 +308,10 @@ impl<'g> Slopes<'g> {
                 }
             }
             Node::Sqrt(a) => match self.graph.squares_of(*a) {
-                Some(partials) => {
-                    let axis = || self.coordinate(Coord::D, cell);
-                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
-                    norm(&partials.iter().map(part).collect::<Vec<_>>())
+                Some(parts) => {
+                    let radius = || self.coordinate(Coord::D, cell);
+                    let parts = parts.iter().map(|part| part.as_ref().map_or_else(radius, v));
+                    norm(&parts.collect::<Vec<_>>())
                 }
                 None => v(a).sqrt(),
             },
@@ -408,11 +414,13 @@ fn shortest_along(direction: [f64; 3], slopes: [Slope; 2]) -> f64 {
     let direction = direction.map(|part| Interval::new(part, part));
     let squares = direction.map(Interval::square);
     let per_length = squares.into_iter().fold(ZERO, Interval::plus).sqrt().reciprocal();
-    let component = |slope: Slope| {
-        let parts = [0, 1, 2].map(|k| slope.partials[k].times(direction[k]));
-        parts.into_iter().fold(ZERO, Interval::plus).times(per_length).low
-    };
-    slopes.map(component).into_iter().fold(f64::INFINITY, f64::min)
+    slopes
+        .map(|slope| {
+            let parts = [0, 1, 2].map(|k| slope.partials[k].times(direction[k]));
+            parts.into_iter().fold(ZERO, Interval::plus).times(per_length).low
+        })
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

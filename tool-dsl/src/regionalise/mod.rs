@@ -330,14 +330,13 @@ impl Section<'_> {
             return if end == 1 { mirrored_turn >= 0.0 } else { mirrored_turn <= 0.0 };
         };
         let [low, high] = [&self.outline[piece.min(next)], &self.outline[piece.max(next)]];
-        let is_bisector = |bound: &Bound| match bound.border {
-            Border::Nearer { other, .. } => {
-                bound.unless.is_empty() && self.features[other] == Feature::Piece(next)
-            }
-            _ => false,
-        };
         turn(low.tangent(true), high.tangent(false)) > 0.0
             && self.outline[next].circle.is_none()
-            && neighbours.iter().any(is_bisector)
+            && neighbours.iter().any(|bound| match bound.border {
+                Border::Nearer { other, .. } => {
+                    bound.unless.is_empty() && self.features[other] == Feature::Piece(next)
+                }
+                _ => false,
+            })
     }
 }

@@ -21,12 +21,16 @@ pub(crate) fn piece(
         if k < count && !cell.straight[k] {
             curved_edges.push(k);
         } else if !curved_edges.is_empty() {
-            let is_on_curve = |shape: &CurveFunction<'_>| {
-                curved_edges.iter().all(|k| {
-                    [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
+            let edge = shapes
+                .iter()
+                .position(|shape| {
+                    curved_edges.iter().all(|k| {
+                        [*k, (*k + 1) % count]
+                            .iter()
+                            .all(|v| shape.side(cell.vertices[*v], size) == 0)
+                    })
                 })
-            };
-            let edge = shapes.iter().position(is_on_curve).map_or(Edge::Chord, Edge::Along);
+                .map_or(Edge::Chord, Edge::Along);
             curved_edges.drain(..).for_each(|k| edges[k] = edge);
         }
     }
@@ -71,8 +75,9 @@ fn divide(
             Some((k, condition.first_undecided_curve(&decided.signs)?))
         });
         let Some((before, curve)) = undecided.next() else {
-            let holds = |k: &usize| conditions[*k].decide(&decided.signs) == Some(true);
-            parts.push((piece, (0..conditions.len()).filter(holds).collect()));
+            let all = 0..conditions.len();
+            let holding = all.filter(|k| conditions[*k].decide(&decided.signs) == Some(true));
+            parts.push((piece, holding.collect()));
             return;
         };
         decided.conditions += before;
@@ -168,6 +173,7 @@ pub(crate) fn shapes<'g>(
     let [low, high] = bounding_box(outline);
     let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
     let mut polynomials = Polynomials::default();
-    let shape = |curve: &Curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials);
-    (curves.iter().map(shape).collect(), norm(minus(high, low)))
+    let shapes =
+        curves.iter().map(|curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials));
+    (shapes.collect(), norm(minus(high, low)))
 }

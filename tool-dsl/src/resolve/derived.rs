@@ -401,15 +401,11 @@ fn fans<'t>(
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
     let (graph, frame) = (&mut lowering.graph, &lowering.frame);
-    let undivided = |Undivided([d, z]): Undivided| {
-        Diagnostic::new(
-            span,
-            RegionKind::SmoothDivisionFailed {
-                location: Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]),
-            },
-        )
-    };
-    let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
+    let parts = Partition::new(rounded.clone(), false).parts(graph);
+    let parts = parts.map_err(|Undivided([d, z])| {
+        let location = Domain::HalfPlane.format_point([d, 0.0, frame.to_file(z)]);
+        Diagnostic::new(span, RegionKind::SmoothDivisionFailed { location })
+    })?;
     let mut conditions = Conditions::NONE;
     for part in &parts {
         let Feature::Piece(piece) = part.feature else { continue };

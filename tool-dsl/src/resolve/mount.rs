@@ -140,8 +140,9 @@ impl Mounting<'_> {
             (last, height) = (mount, at);
         }
         assembly.drop_unused_surfaces();
-        let shown = |[d, z]: [f64; 2]| format!("({}, {})", FormattedNumber(d), FormattedNumber(z));
-        self.diagnostics.extend(check(&assembly.outline, shown));
+        self.diagnostics.extend(check(&assembly.outline, |[d, z]| {
+            format!("({}, {})", FormattedNumber(d), FormattedNumber(z))
+        }));
         Reported::among(&self.diagnostics[previous_count..]).map_or(Ok(assembly), Err)
     }
 
@@ -360,8 +361,8 @@ impl MountedPart {
         if part.surfaces.iter().any(|surface| surface.cutting) {
             return None;
         }
-        let cuts = |surface: usize| self.surfaces[surface].cutting;
-        let (surface, end) = highest_above(&self.outline, at, cuts)?;
+        let (surface, end) =
+            highest_above(&self.outline, at, |surface| self.surfaces[surface].cutting)?;
         let kind = MountKind::ClampedEdge {
             name: mount.name.text.clone(),
             z: FormattedNumber(at.to_f64()),
@@ -516,12 +517,14 @@ fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segm
         return Err(JoinError::Point);
     }
     let (height, off_tip) = (plane.to_f64(), TIP_TOLERANCE_FRACTION * size(upper));
-    let flat = |segment: &&Segment| {
-        let [[inner, a], [outer, b]] = segment.ends();
-        let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
-        segment.circle.is_none() && level && inner < outer
-    };
-    let faces = upper.iter().take_while(flat).count();
+    let faces = upper
+        .iter()
+        .take_while(|segment| {
+            let [[inner, a], [outer, b]] = segment.ends();
+            let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
+            segment.circle.is_none() && level && inner < outer
+        })
+        .count();
     let (face, rest) = upper.split_at(faces);
     let (Some(rim), Some((wall, rest))) = (face.last(), rest.split_first()) else {
         return Err(JoinError::NoFace(Box::new(upper.first().unwrap_or(last).clone())));

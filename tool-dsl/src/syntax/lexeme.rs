@@ -124,8 +124,11 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
             SyntaxKind::NameTooLong { letters: pair.as_str().len(), limit: MAX_NAME_BYTES },
         ));
     }
-    let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
-    let beyond = pairs.flatten().find(is_root)?.into_inner().nth(MAX_ITEMS)?;
+    let beyond = pairs
+        .flatten()
+        .find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid))?
+        .into_inner()
+        .nth(MAX_ITEMS)?;
     Some(Diagnostic::new(span(&beyond, 1), SyntaxKind::TooManyItems { limit: MAX_ITEMS }))
 }
 

@@ -52,9 +52,13 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
             Grammar::parse(Rule::file, text).map_err(|error| refuse::syntax(text, 0, &error))
         })
         .and_then(|pairs| too_much(pairs.clone()).map_or(Ok(pairs), Err));
-    let is_root = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let pair = pairs
-        .and_then(|pairs| pairs.flatten().find(is_root).ok_or_else(|| refuse::nothing(text)))
+        .and_then(|pairs| {
+            pairs
+                .flatten()
+                .find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid))
+                .ok_or_else(|| refuse::nothing(text))
+        })
         .map_err(|diagnostic| Reported::push(diagnostics, diagnostic.offset_by(source.base)))?;
     let mut broken = Vec::new();
     let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };

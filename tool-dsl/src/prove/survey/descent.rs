@@ -137,11 +137,14 @@ impl Survey<'_> {
         let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
         let low = depths.map(|id| self.slopes.get(id).value.low).fold(f64::INFINITY, f64::min);
         self.slopes.set(Cell::point(middle));
-        let slope = |owner: &usize| {
-            let slope = self.slopes.get(regions[*owner].depth);
-            slope.partials.map(Interval::middle)
-        };
-        let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
+        let slopes: Vec<[f64; 3]> = owners
+            .iter()
+            .flatten()
+            .map(|owner| {
+                let slope = self.slopes.get(regions[*owner].depth);
+                slope.partials.map(Interval::middle)
+            })
+            .collect();
         let half_diagonal_of_box = half_diagonal(&cell);
         let mut best = Descent { steepest: 0.0, step: None };
         let extra_directions = (0..EXTRA_DIRECTIONS).map(|k| {
@@ -186,8 +189,9 @@ impl Survey<'_> {
         }
         let claims = self.cover.claims(Cell::point(point));
         self.slopes.set(Cell::point(point));
-        let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
-        Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
+        let owners = claims.iter().filter_map(|claim| claim.owner);
+        let depths = owners.map(|owner| self.tool.model.regions[owner].depth);
+        Some(depths.map(|depth| self.slopes.get(depth).value.high).fold(0.0, f64::max))
     }
 
     /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which

@@ -66,11 +66,11 @@ impl Survey<'_> {
         // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         if is_plane && !box_size.is_last() {
-            let is_vague = |meeting: &Meeting| {
+            let any_vague = meetings.iter().any(|meeting| {
                 let turn_angle = self.turn_angle(meeting.pair);
                 turn_angle.high - turn_angle.low > TURN_ACCURACY && self.is_on_surface(meeting.pair)
-            };
-            if meetings.iter().any(is_vague) {
+            });
+            if any_vague {
                 return false;
             }
         }
@@ -191,8 +191,8 @@ impl Survey<'_> {
             let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
-        let magnitude_is_depth = |owner: &usize| regions[*owner].magnitude == regions[*owner].depth;
-        let magnitude_jump = if [Some(own), other].iter().flatten().all(magnitude_is_depth) {
+        let mut sides = [Some(own), other].into_iter().flatten();
+        let magnitude_jump = if sides.all(|side| regions[side].magnitude == regions[side].depth) {
             jump
         } else {
             self.difference(meeting.pair, |region| region.magnitude)

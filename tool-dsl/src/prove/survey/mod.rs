@@ -159,10 +159,15 @@ impl<'t> Survey<'t> {
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
         let border_prover =
             BorderProver::new(model, whole, &mut forms, feet.is_some(), point_box_fraction);
-        let direction_facts = |(index, region)| {
-            DirectionFacts::new(direction::is_parallel(model, region, border_prover.depth(index)))
-        };
-        let directions = model.regions.iter().enumerate().map(direction_facts).collect();
+        let directions = model
+            .regions
+            .iter()
+            .enumerate()
+            .map(|(index, region)| {
+                let depth = border_prover.depth(index);
+                DirectionFacts::new(direction::is_parallel(model, region, depth))
+            })
+            .collect();
         Survey {
             tool,
             cover: Cover::new(model, &tool.plan.owner),

@@ -309,12 +309,12 @@ struct Lines(Vec<(usize, Option<usize>)>);
 impl Lines {
     fn of(text: &str) -> Lines {
         let mut start = 0;
-        let line = |line: &str| {
+        let lines = text.split_inclusive('\n').map(|line| {
             let from = start;
             start += line.len();
             (from, line.find(|c: char| !c.is_ascii_whitespace()))
-        };
-        Lines(text.split_inclusive('\n').map(line).collect())
+        });
+        Lines(lines.collect())
     }
 
     /// Returns the indentation of the line at a position, and whether the position is the line's first character that
@@ -347,8 +347,8 @@ impl Brackets {
             match kind {
                 Kind::Mark(c @ ('(' | '{')) => open_brackets.push((at, c)),
                 Kind::Mark(c @ (')' | '}')) => {
-                    let fits = |(_, other): &(usize, char)| (*other == '(') == (c == ')');
-                    match open_brackets.last().copied().filter(fits) {
+                    let last = open_brackets.last().copied();
+                    match last.filter(|(_, other)| (*other == '(') == (c == ')')) {
                         Some((begun, _)) => {
                             // A closing brace indented less than its block belongs to the enclosing block.
                             let indents = lines.indent(at).zip(lines.indent(begun));
