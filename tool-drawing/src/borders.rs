@@ -227,13 +227,12 @@ fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
             continue;
         }
         let on_axis = ends.iter().all(|end| points[*end][0] == 0.0);
-        let side = |half: Option<Half>| match half.map(|(piece, _)| owners[piece]) {
+        let [left, right] = pair.map(|half| match half.map(|(piece, _)| owners[piece]) {
             Some(Some(region)) => Side::Region(region),
             Some(None) => Side::Outside,
             None if on_axis => Side::Axis,
             None => Side::Beyond,
-        };
-        let (left, right) = (side(pair[0]), side(pair[1]));
+        });
         let inside = matches!(left, Side::Region(_)) || matches!(right, Side::Region(_));
         if inside {
             let curve = pair.iter().find_map(|half| half.and_then(|(_, curve)| curve));
@@ -382,16 +381,16 @@ fn without_specks(
             neighbours.entry(own).or_default().push((other, *length));
         }
     }
-    let largest = |owner: Option<usize>, roots: &[usize]| {
-        (0..pieces.len())
-            .filter(|k| roots[*k] == *k && pieces[*k].owner == owner)
-            .max_by(|a, b| areas[*a].total_cmp(&areas[*b]))
-    };
     let specks: Vec<usize> = (0..pieces.len())
         .filter(|k| {
             roots[*k] == *k && rims[*k] > 0.0 && areas[*k] < 0.1 * visible_length * rims[*k]
         })
-        .filter(|k| largest(pieces[*k].owner, &roots) != Some(*k))
+        .filter(|k| {
+            let largest = (0..pieces.len())
+                .filter(|other| roots[*other] == *other && pieces[*other].owner == pieces[*k].owner)
+                .max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
+            largest != Some(*k)
+        })
         .collect();
     for speck in specks {
         let near = neighbours.get(&speck).map_or(&[][..], Vec::as_slice);

@@ -119,8 +119,11 @@ fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
         }
         Sign::Break => {
             let wave = |shift: f64| -> Vec<Point> {
-                let turn = |k: i32| (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
-                (0..=8).map(|k| [x + f64::from(k) * 3.0, y + shift + 2.5 * turn(k)]).collect()
+                let points = (0..=8).map(|k| {
+                    let turn = (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
+                    [x + f64::from(k) * 3.0, y + shift + 2.5 * turn]
+                });
+                points.collect()
             };
             sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines([wave(-2.5), wave(2.5)]));
         }

@@ -158,7 +158,7 @@ impl<'m> Picture<'m> {
         view: View,
         fills: Vec<&'static str>,
     ) -> Picture<'m> {
-        let shape = |region| {
+        let shapes = (0..model.regions.len()).map(|region| {
             let mut shape = Shape::new(&borders, &view, |side| side == Side::Region(region));
             let half = view.half + 1.0;
             for y in view.seams() {
@@ -167,8 +167,8 @@ impl<'m> Picture<'m> {
                 );
             }
             shape
-        };
-        let shapes = (0..model.regions.len()).map(shape).collect();
+        });
+        let shapes = shapes.collect();
         Picture { model, content, part: Part::Whole, borders, view, shapes, fills, size }
     }
 

@@ -97,15 +97,14 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
         }
     }
     // The longest face of each surface that has no cylinder and no arc.
-    let best = |surface: usize| -> Option<usize> {
-        let of = |index: &usize| chosen[*index].surface == surface;
-        let is_named = (0..chosen.len()).filter(of).any(|index| chosen[index].is_telling());
-        (0..chosen.len())
-            .filter(of)
+    let only = (0..picture.model.surfaces.len()).filter_map(|surface| {
+        let of_surface = || (0..chosen.len()).filter(|index| chosen[*index].surface == surface);
+        let is_named = of_surface().any(|index| chosen[index].is_telling());
+        of_surface()
             .max_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length))
             .filter(|_| !is_named)
-    };
-    let only: Vec<usize> = (0..picture.model.surfaces.len()).filter_map(best).collect();
+    });
+    let only: Vec<usize> = only.collect();
     let mut index = 0;
     chosen.retain(|face| {
         index += 1;

@@ -166,17 +166,16 @@ pub(super) fn area_colours(regions: usize, borders: &[Border]) -> Vec<&'static s
     let mut chosen: Vec<usize> = Vec::new();
     let mut used = [0; REGION_FILLS.len()];
     for region in 0..regions {
-        let is_neighbour_colour = |colour: usize| {
-            borders.iter().any(|border| match border.sides {
-                [Side::Region(a), Side::Region(b)] => {
-                    let other = if a == region { b } else { a };
-                    (a == region || b == region) && chosen.get(other) == Some(&colour)
-                }
-                _ => false,
+        let neighbour_colours: Vec<usize> = borders
+            .iter()
+            .filter_map(|border| match border.sides {
+                [Side::Region(a), Side::Region(b)] if a == region => chosen.get(b).copied(),
+                [Side::Region(a), Side::Region(b)] if b == region => chosen.get(a).copied(),
+                _ => None,
             })
-        };
+            .collect();
         let colour = (0..REGION_FILLS.len())
-            .filter(|colour| !is_neighbour_colour(*colour))
+            .filter(|colour| !neighbour_colours.contains(colour))
             .min_by_key(|colour| used[*colour])
             .unwrap_or(region % REGION_FILLS.len());
         used[colour] += 1;

@@ -308,18 +308,18 @@ impl<'m> Directions<'m> {
             let Some(best) = best.filter(|best| score(&candidates[*best]) > 0.0) else { break };
             let (_, p) = candidates.swap_remove(best);
             let Some([d, z]) = self.at(region, view.point(p)) else { continue };
-            let fits = |length: &f64| {
+            // Short arrows are used only for a region without any other.
+            let lengths =
+                if arrows.is_empty() { &[18.0, 14.0, 10.0, 7.0][..] } else { &[18.0, 14.0] };
+            let fitting = lengths.iter().find_map(|length| {
                 let half = [d * length / 2.0, -z * length / 2.0];
                 let ends = [[p[0] - half[0], p[1] - half[1]], [p[0] + half[0], p[1] + half[1]]];
                 let clear = ends
                     .iter()
                     .all(|end| shape.clearance(*end, 1.0) > 2.0 && clear(*end, taken) > 1.0);
                 clear.then_some(ends)
-            };
-            // Short arrows are used only for a region without any other.
-            let lengths =
-                if arrows.is_empty() { &[18.0, 14.0, 10.0, 7.0][..] } else { &[18.0, 14.0] };
-            if let Some(arrow) = lengths.iter().find_map(fits) {
+            });
+            if let Some(arrow) = fitting {
                 arrows.push(arrow);
                 middles.push(p);
             }

@@ -342,8 +342,11 @@ fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
     let count = corners.len() as f64;
     let at = [0, 1].map(|k| corners.iter().map(|corner| corner.at[k]).sum::<f64>() / count);
     let middle = Corner { at, curve: None };
-    let next = |k: usize| Corner { curve: None, ..corners[(k + 1) % corners.len()] };
-    (0..corners.len()).map(|k| vec![middle, corners[k], next(k)]).collect()
+    let triangles = (0..corners.len()).map(|k| {
+        let next = Corner { curve: None, ..corners[(k + 1) % corners.len()] };
+        vec![middle, corners[k], next]
+    });
+    triangles.collect()
 }
 
 /// Inserts the corners of each polygon into the sides of the others on which they lie.

@@ -242,9 +242,8 @@ impl Section<'_> {
 /// Returns the legend's entries of the regions that appear in a section.
 fn regions(sections: &[Section<'_>; 3]) -> Vec<Entry> {
     let [Section { picture, .. }, ..] = sections;
-    let appears = |region: usize| sections.iter().any(|s| !s.picture.shapes[region].is_empty());
     (0..picture.shapes.len())
-        .filter(|region| appears(*region))
+        .filter(|region| sections.iter().any(|s| !s.picture.shapes[*region].is_empty()))
         .map(|region| {
             let colour = picture.fills[region];
             (Sign::Region { colour }, picture.model.regions[region].name.clone())

@@ -66,9 +66,9 @@ impl Stroke {
         if let Some((centre, radius)) = self.circle {
             for (k, end) in [(0, centre[1] - radius), (1, centre[1] + radius)] {
                 let top = minus([centre[0], end], centre);
-                let (a, b) = (minus(self.from, centre), minus(self.to, centre));
-                let within = |a: Point, b: Point| cross(a, top) >= 0.0 && cross(top, b) >= 0.0;
-                if if self.left() { within(a, b) } else { within(b, a) } {
+                let ends = [minus(self.from, centre), minus(self.to, centre)];
+                let [a, b] = if self.left() { ends } else { [ends[1], ends[0]] };
+                if cross(a, top) >= 0.0 && cross(top, b) >= 0.0 {
                     span[k] = end;
                 }
             }
@@ -109,14 +109,13 @@ pub(super) fn round(
 ) -> Option<Vec<Stroke>> {
     let last = row.len() - 1;
     let closed = row[0] == row[last];
-    let at = |share: f64| {
-        let position = (share * last as f64).min(last as f64);
-        let k = (position.floor() as usize).min(last - 1);
-        Stroke::line(row[k], row[k + 1]).at(position - k as f64)
-    };
     // The last point of a closed circle equals the first, so it gives no information.
     let step = if closed { 0.2 } else { 0.25 };
-    let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
+    let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|steps| {
+        let position = (steps * step * last as f64).min(last as f64);
+        let k = (position.floor() as usize).min(last - 1);
+        foot(Stroke::line(row[k], row[k + 1]).at(position - k as f64))
+    });
     let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
     if feet.iter().any(|p| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near) {
         return None;

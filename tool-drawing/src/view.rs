@@ -131,11 +131,11 @@ fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
 
 /// Returns the mirror image of a stroke.
 pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
-    let turned = |[x, y]: Point| [-x, y];
+    let Stroke { from, to, circle } = *stroke;
     Stroke {
-        from: turned(stroke.from),
-        to: turned(stroke.to),
-        circle: stroke.circle.map(|(centre, radius)| (turned(centre), radius)),
+        from: [-from[0], from[1]],
+        to: [-to[0], to[1]],
+        circle: circle.map(|([x, y], radius)| ([-x, y], radius)),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY_SIGN, CurveIndex, Signs, possible};
 use crate::geometry::outline;
-use crate::model::{Model, Region};
+use crate::model::Model;
 
 /// The exponent of the power of two that bounds the extent of a solid.
 const MAX_EXTENT_EXPONENT: i32 = 280;
@@ -56,7 +56,7 @@ impl<'m> Prover<'m> {
     /// would find slowly.
     fn of_regions(model: &'m Model) -> Prover<'m> {
         let linear = Linear::new(model);
-        let reach = |region: &Region| {
+        let reaches = model.regions.iter().map(|region| {
             let mut signs = vec![ANY_SIGN; model.curves.len()];
             region.inside.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
@@ -72,8 +72,8 @@ impl<'m> Prover<'m> {
                 reach = hull.map_or(reach, |hull| reach.common(&hull));
             }
             reach
-        };
-        Prover { reaches: model.regions.iter().map(reach).collect(), ..Prover::new(model) }
+        });
+        Prover { reaches: reaches.collect(), ..Prover::new(model) }
     }
 
     /// Selects a box.
@@ -231,11 +231,13 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
             let side = cell.sides[*axis];
             let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
             let end = if *high {
-                let beyond = |v| cell.with_side(*axis, Interval::new(v, side.high));
-                inward(side.high, opposite.low, 52, |v| prover.empty(beyond(v)))
+                inward(side.high, opposite.low, 52, |v| {
+                    prover.empty(cell.with_side(*axis, Interval::new(v, side.high)))
+                })
             } else {
-                let beyond = |v| cell.with_side(*axis, Interval::new(side.low, v));
-                inward(side.low, opposite.high, 52, |v| prover.empty(beyond(v)))
+                inward(side.low, opposite.high, 52, |v| {
+                    prover.empty(cell.with_side(*axis, Interval::new(side.low, v)))
+                })
             };
             let side_to_move = &mut cell.sides[*axis];
             if *high { side_to_move.high = end } else { side_to_move.low = end }

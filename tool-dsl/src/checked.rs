@@ -70,8 +70,11 @@ pub(crate) fn check(
     let file_curves: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
     let planned =
         plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
-    let guarantees = || validate::planned(&file_curves, &planned);
-    debug_assert_eq!(guarantees(), Ok(()), "`plan` keeps its guarantees");
+    debug_assert_eq!(
+        validate::planned(&file_curves, &planned),
+        Ok(()),
+        "`plan` keeps its guarantees"
+    );
     let (bounds, found) = Bounds::of(&planned);
     diagnostics.extend(found);
     without_error(diagnostics)?;

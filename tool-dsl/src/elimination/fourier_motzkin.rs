@@ -77,8 +77,9 @@ impl Condition {
         }
     }
 
-    pub(super) fn with_strict(self, strict: bool) -> Condition {
-        Condition { strict, ..self }
+    /// Returns the condition with `<` in place of `≤`.
+    pub(super) fn strictly(&self) -> Condition {
+        Condition { strict: true, ..self.clone() }
     }
 
     /// Returns the coefficient of the `wanted` variable, the constant, and the rounding error of the
@@ -163,25 +164,27 @@ pub(super) fn without(
         // A variable bounded from one side only is eliminated by dropping its conditions.
         let (free, bounded): (Vec<usize>, Vec<usize>) =
             variables.into_iter().partition(|variable| {
-                let has_sign = |sign| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
-                !has_sign(1.0) || !has_sign(-1.0)
+                !conditions.iter().any(|c| c.factors[*variable] > 0.0)
+                    || !conditions.iter().any(|c| c.factors[*variable] < 0.0)
             });
         variables = bounded;
         if !free.is_empty() {
             conditions.retain(|c| free.iter().all(|variable| c.factors[*variable] == 0.0));
             continue;
         }
-        let growth = |variable: usize| {
-            let count_with_sign = |sign: f64| {
-                conditions.iter().filter(|c| sign * c.factors[variable] > ROUNDING).count()
-            };
-            let (upper, lower) = (count_with_sign(1.0), count_with_sign(-1.0));
-            (upper * lower).saturating_sub(upper + lower)
-        };
-        let index = (0..variables.len()).min_by_key(|index| growth(variables[*index]))?;
+        let index =
+            (0..variables.len()).min_by_key(|index| growth(&conditions, variables[*index]))?;
         conditions = eliminate(conditions, variables.swap_remove(index))?;
     }
     Some(conditions)
+}
+
+/// Returns the number of conditions that the elimination of a variable adds: each upper bound is combined with each
+/// lower one, and all of these are dropped.
+fn growth(conditions: &[Condition], variable: usize) -> usize {
+    let upper = conditions.iter().filter(|c| c.factors[variable] > ROUNDING).count();
+    let lower = conditions.iter().filter(|c| c.factors[variable] < -ROUNDING).count();
+    (upper * lower).saturating_sub(upper + lower)
 }
 
 /// Eliminates one variable. Returns `None` if there are too many conditions.

@@ -88,18 +88,13 @@ impl Linear {
             facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
         }
         let count = variables.count();
-        let dense = |form: Form| {
-            let factors =
-                (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
-            Rc::new(Exact { factors: factors.collect(), constant: form.constant })
-        };
-        let condition = |form: Form| Condition::from_exact(&dense(form), false);
+        let condition = |form: Form| Condition::from_exact(&dense(form, count), false);
         Linear {
             forms: forms
                 .into_iter()
                 .map(|form| {
                     let opposite = Form::default().plus(form.as_ref()?, &Number::int(-1));
-                    Some(LinearForm::new([form?, opposite].map(dense)))
+                    Some(LinearForm::new([form?, opposite].map(|form| dense(form, count))))
                 })
                 .collect(),
             variables: count,
@@ -163,18 +158,12 @@ impl Linear {
             let Some(LinearForm { sides: [form, opposite], is_lost: false, .. }) = form else {
                 continue;
             };
-            let mut add = |form: &Condition, strict: bool| {
-                conditions.push(form.clone().with_strict(strict));
-            };
             match *sign {
-                NEGATIVE => add(form, true),
-                POSITIVE => add(opposite, true),
-                ZERO => {
-                    add(form, false);
-                    add(opposite, false);
-                }
-                s if s == NEGATIVE | ZERO => add(form, false),
-                s if s == POSITIVE | ZERO => add(opposite, false),
+                NEGATIVE => conditions.push(form.strictly()),
+                POSITIVE => conditions.push(opposite.strictly()),
+                ZERO => conditions.extend([form.clone(), opposite.clone()]),
+                s if s == NEGATIVE | ZERO => conditions.push(form.clone()),
+                s if s == POSITIVE | ZERO => conditions.push(opposite.clone()),
                 _ => {}
             }
         }
@@ -192,14 +181,16 @@ impl Linear {
         if rest.iter().any(Condition::is_false) {
             return Some(true);
         }
-        let is_straight = |form: &Option<LinearForm>| {
-            form.as_ref().is_some_and(|form| {
-                let factors = &form.sides[0].factors;
-                !(0..self.variables).any(|v| factors[v] != 0.0 && !self.axes.contains(&Some(v)))
-            })
-        };
         let mut constrained = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY_SIGN);
-        constrained.all(|(form, _)| is_straight(form)).then_some(false)
+        let are_straight =
+            constrained.all(|(form, _)| form.as_ref().is_some_and(|form| self.is_straight(form)));
+        are_straight.then_some(false)
+    }
+
+    /// Returns whether a form is linear in the coordinates themselves.
+    fn is_straight(&self, form: &LinearForm) -> bool {
+        let factors = &form.sides[0].factors;
+        !(0..self.variables).any(|v| factors[v] != 0.0 && !self.axes.contains(&Some(v)))
     }
 
     /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
@@ -279,6 +270,12 @@ impl Linear {
     fn without_variables(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
         without(rescaled(conditions).0, (0..self.variables).collect())
     }
+}
+
+/// Returns a linear form with a factor for each variable.
+fn dense(form: Form, variables: usize) -> Rc<Exact> {
+    let factors = (0..variables).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
+    Rc::new(Exact { factors: factors.collect(), constant: form.constant })
 }
 
 #[cfg(test)]

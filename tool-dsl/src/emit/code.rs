@@ -116,18 +116,21 @@ impl<'g> Writer<'g> {
     /// exactly, so nothing is lost by not adding.
     fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
         let value = self.curves[curve].value;
-        let operand = |id: Id| match self.graph.constant(id) {
+        match *self.graph.node(value) {
+            Node::Sub(a, b) => [self.operand(a), self.operand(b)],
+            Node::Neg(a) => [Operand::Constant(0.0), self.operand(a)],
+            Node::Add(a, b) => match self.graph.constant(b) {
+                Some(shift) => [self.operand(a), Operand::Constant(-shift.to_f64())],
+                None => [self.operand(value), Operand::Constant(0.0)],
+            },
+            _ => [self.operand(value), Operand::Constant(0.0)],
+        }
+    }
+
+    fn operand(&self, id: Id) -> Operand {
+        match self.graph.constant(id) {
             Some(constant) => Operand::Constant(constant.to_f64()),
             None => Operand::Node(id),
-        };
-        match *self.graph.node(value) {
-            Node::Sub(a, b) => [operand(a), operand(b)],
-            Node::Neg(a) => [Operand::Constant(0.0), operand(a)],
-            Node::Add(a, b) => match self.graph.constant(b) {
-                Some(shift) => [operand(a), Operand::Constant(-shift.to_f64())],
-                None => [operand(value), Operand::Constant(0.0)],
-            },
-            _ => [operand(value), Operand::Constant(0.0)],
         }
     }
 
@@ -143,28 +146,32 @@ impl<'g> Writer<'g> {
     /// the right.
     fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
         let [left, right] = self.sides(curve);
-        let operand = |code: &mut Tokens, side: &Operand| match side {
-            Operand::Node(id) => self.value(code, *id),
-            Operand::Constant(value) => self.constant(code, *value),
-        };
         if self.form == Form::Lanes {
             code.lane(if strict { "lt" } else { "le" }, |code| {
-                operand(code, &left);
+                self.side(code, &left);
                 code.sign(",");
-                operand(code, &right);
+                self.side(code, &right);
             });
             return;
         }
         let mirrored = matches!(left, Operand::Constant(_));
         let (first, second) = if mirrored { (right, left) } else { (left, right) };
-        operand(code, &first);
+        self.side(code, &first);
         code.sign(match (mirrored, strict) {
             (false, false) => "<=",
             (false, true) => "<",
             (true, false) => ">=",
             (true, true) => ">",
         });
-        operand(code, &second);
+        self.side(code, &second);
+    }
+
+    /// Writes one side of a comparison.
+    fn side(&self, code: &mut Tokens, side: &Operand) {
+        match side {
+            Operand::Node(id) => self.value(code, *id),
+            Operand::Constant(value) => self.constant(code, *value),
+        }
     }
 
     /// Writes a constant as an operand of its own.
@@ -200,17 +207,24 @@ impl<'g> Writer<'g> {
         !free && self.use_counts.get(&id).is_some_and(|count| *count > 1)
     }
 
+    fn known(&self, id: &Id) -> Option<f64> {
+        self.graph.constant(*id).map(Number::to_f64)
+    }
+
+    /// Writes two operands with a sign between them.
+    fn two(&self, code: &mut Tokens, a: &Id, sign: &str, b: &Id) {
+        self.value(code, *a);
+        code.sign(sign);
+        self.value(code, *b);
+    }
+
+    /// Writes the call of a function of lanes with two arguments.
+    fn call(&self, code: &mut Tokens, name: &str, a: &Id, b: &Id) {
+        code.lane(name, |code| self.two(code, a, ",", b));
+    }
+
     /// Writes a node's operation, even if the node has a name.
     fn operation(&self, code: &mut Tokens, id: Id) {
-        let two = |code: &mut Tokens, a: &Id, sign: &str, b: &Id| {
-            self.value(code, *a);
-            code.sign(sign);
-            self.value(code, *b);
-        };
-        let call = |code: &mut Tokens, name: &str, a: &Id, b: &Id| {
-            code.lane(name, |code| two(code, a, ",", b));
-        };
-        let known = |id: &Id| self.graph.constant(*id).map(Number::to_f64);
         match self.graph.node(id) {
             Node::Const(value) => self.constant(code, value.to_f64()),
             Node::Coord(coord) => {
@@ -228,27 +242,27 @@ impl<'g> Writer<'g> {
                 code.sign("-");
                 self.value(code, *a);
             }
-            Node::Add(a, b) => match known(b) {
+            Node::Add(a, b) => match self.known(b) {
                 Some(shift) => {
                     self.value(code, *a);
                     code.sign(if shift < 0.0 { "-" } else { "+" }).number(shift.abs());
                 }
-                None => two(code, a, "+", b),
+                None => self.two(code, a, "+", b),
             },
-            Node::Sub(a, b) => two(code, a, "-", b),
+            Node::Sub(a, b) => self.two(code, a, "-", b),
             // The graph has a product's constant on the left. It is written on the right, since the trait `Lane`
             // has `Self * f64` but not `f64 * Self`.
-            Node::Mul(a, b) => match known(a) {
+            Node::Mul(a, b) => match self.known(a) {
                 Some(factor) => {
                     self.value(code, *b);
                     code.sign("*").number(factor);
                 }
-                None => two(code, a, "*", b),
+                None => self.two(code, a, "*", b),
             },
-            Node::Div(a, b) => two(code, a, "/", b),
-            Node::Quotient(a, b) => call(code, "quotient", a, b),
-            Node::Min(a, b) => call(code, "min", a, b),
-            Node::Max(a, b) => call(code, "max", a, b),
+            Node::Div(a, b) => self.two(code, a, "/", b),
+            Node::Quotient(a, b) => self.call(code, "quotient", a, b),
+            Node::Min(a, b) => self.call(code, "min", a, b),
+            Node::Max(a, b) => self.call(code, "max", a, b),
             Node::Abs(a) => {
                 self.value(code, *a);
                 code.sign(".").word("abs").paren(|_| {});
@@ -260,15 +274,15 @@ impl<'g> Writer<'g> {
             Node::Select { low, high, then, other } => match self.form {
                 Form::Scalar => {
                     code.word("if");
-                    two(code, low, "<=", high);
+                    self.two(code, low, "<=", high);
                     code.brace(|code| self.value(code, *then));
                     code.word("else").brace(|code| self.value(code, *other));
                 }
                 Form::Lanes => {
                     code.lane("select", |code| {
-                        call(code, "le", low, high);
+                        self.call(code, "le", low, high);
                         code.sign(",");
-                        two(code, then, ",", other);
+                        self.two(code, then, ",", other);
                     });
                 }
             },

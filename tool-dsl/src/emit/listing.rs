@@ -81,19 +81,20 @@ pub fn regions(tool: &CheckedTool) -> String {
 }
 
 fn condition(formula: &Formula) -> String {
-    let all = |parts: &[Formula], word: &str| {
-        let parts: Vec<String> = parts.iter().map(condition).collect();
-        format!("({})", parts.join(word))
-    };
     match formula {
         Formula::Const(value) => value.to_string(),
         Formula::Atom { curve, below, strict } => {
             let sign = if *below { "<" } else { ">" };
             format!("c{curve} {sign}{} 0", if *strict { "" } else { "=" })
         }
-        Formula::All(parts) => all(parts, " and "),
-        Formula::Any(parts) => all(parts, " or "),
+        Formula::All(parts) => joined(parts, " and "),
+        Formula::Any(parts) => joined(parts, " or "),
     }
+}
+
+fn joined(parts: &[Formula], word: &str) -> String {
+    let parts: Vec<String> = parts.iter().map(condition).collect();
+    format!("({})", parts.join(word))
 }
 
 fn expression(tool: &CheckedTool, id: Id) -> String {

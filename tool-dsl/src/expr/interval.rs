@@ -86,8 +86,6 @@ impl Interval {
             (MINUS_ONE, value) | (value, MINUS_ONE) => return value.negated(),
             _ => {}
         }
-        // 0 · ∞ stands for a product of finite numbers with a factor 0.
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
             product(self.low, other.low),
             product(self.low, other.high),
@@ -309,6 +307,12 @@ impl<'g> Encloser<'g> {
             }
         }
     }
+}
+
+/// Returns a product of two ends.
+fn product(a: f64, b: f64) -> f64 {
+    // 0 · ∞ stands for a product of finite numbers with a factor 0.
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
 /// Bisects a box across its longest side. A side that spans several orders of magnitude is cut at their

@@ -356,13 +356,13 @@ impl Polynomial {
         }
         // p - m² with the centre m leaves nothing except the squares. Each linear term needs the square of
         // its coordinate.
-        let squared = |monomial: &Monomial| {
+        let is_complete = self.0.keys().all(|monomial| {
             monomial.iter().sum::<u8>() != 1 || self.0.contains_key(&monomial.map(|e| 2 * e))
-        };
+        });
         let constant = self.0.get(&[0; 4]).cloned().unwrap_or_else(|| Number::int(0));
         let middle = sum.checked_div(&four).unwrap_or_else(|| Number::int(0));
         let rounding = (&constant - &middle).to_f64().abs();
-        self.0.keys().all(squared) && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
+        is_complete && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
     }
 
     /// Writes the sum of its terms as an expression, without the terms that cancelled.

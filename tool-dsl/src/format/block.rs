@@ -69,10 +69,11 @@ impl<'t> Reader<'t> {
     /// Returns the next comments that are on one line.
     fn comments(&self) -> &'t [Token<'t>] {
         let rest = &self.tokens[self.at..];
-        let belongs = |(at, token): (usize, &Token<'_>)| {
-            token.is_comment() && (at == 0 || token.newlines == 0)
-        };
-        &rest[..rest.iter().enumerate().take_while(|next| belongs(*next)).count()]
+        let run = rest
+            .iter()
+            .enumerate()
+            .take_while(|(at, token)| token.is_comment() && (*at == 0 || token.newlines == 0));
+        &rest[..run.count()]
     }
 
     /// Returns whether there are comments that end their line, except for a `}` after them.

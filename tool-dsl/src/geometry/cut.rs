@@ -117,18 +117,16 @@ impl Piece {
     /// Returns whether a point lies on an edge, or may lie on the curve that an edge is a chord of.
     pub(crate) fn has_on_edge(&self, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
         let tolerance = COINCIDENCE_FRACTION * size;
-        let is_on = |[a, b]: [Point; 2], edge: Edge| {
-            let bulge = MAX_SAGITTA_IN_CHORDS * norm(minus(b, a)) + tolerance;
-            match edge {
-                Edge::Straight => is_along(p, [a, b], tolerance),
-                Edge::Along(curve) => {
-                    shapes[curve].side(p, size) == 0 && is_along(p, [a, b], bulge)
-                }
-                Edge::Chord => is_along(p, [a, b], bulge),
-            }
-        };
         let count = self.vertices.len();
-        (0..count).any(|k| is_on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
+        (0..count).any(|k| {
+            let ends @ [a, b] = [self.vertices[k], self.vertices[(k + 1) % count]];
+            let bulge = MAX_SAGITTA_IN_CHORDS * norm(minus(b, a)) + tolerance;
+            match self.edges[k] {
+                Edge::Straight => is_along(p, ends, tolerance),
+                Edge::Along(curve) => shapes[curve].side(p, size) == 0 && is_along(p, ends, bulge),
+                Edge::Chord => is_along(p, ends, bulge),
+            }
+        })
     }
 
     /// Returns twice its area.
@@ -153,18 +151,17 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let next = (k + 1) % count;
             let (a, b, edge) = (piece.vertices[k], piece.vertices[next], piece.edges[k]);
             corners.push((a, sides[k], edge));
-            let mut add = |p: Point, side: i8| corners.push((p, side, edge));
             if sides[k] * sides[next] < 0 {
-                add(self.crossing(a, b, edge), 0);
+                corners.push((self.crossing(a, b, edge), 0, edge));
             } else if let Some((top, side)) =
                 self.farthest_crossing([a, b], [sides[k], sides[next]], edge)
             {
                 if sides[k] != 0 {
-                    add(self.crossing(a, top, edge), 0);
+                    corners.push((self.crossing(a, top, edge), 0, edge));
                 }
-                add(top, side);
+                corners.push((top, side, edge));
                 if sides[next] != 0 {
-                    add(self.crossing(top, b, edge), 0);
+                    corners.push((self.crossing(top, b, edge), 0, edge));
                 }
             }
         }
@@ -356,22 +353,25 @@ pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], tolerance: f64) -> bool {
     cross(chord_vector, off).abs() / length < tolerance && (0.0..=length).contains(&along)
 }
 
+/// Returns the vertex that is farthest from a point.
+fn farthest_from(a: Point, vertices: &[Point]) -> Point {
+    let (mut most, mut farthest) = (0.0, a);
+    for b in vertices {
+        let offset = minus(*b, a);
+        let square = offset[0] * offset[0] + offset[1] * offset[1];
+        if square > most {
+            (most, farthest) = (square, *b);
+        }
+    }
+    farthest
+}
+
 /// Returns whether all vertices lie on one line, up to rounding.
 fn is_thin(vertices: &[Point], size: f64) -> bool {
     let Some(&first) = vertices.first() else { return true };
-    let farthest_from = |a: Point| {
-        let (mut most, mut farthest) = (0.0, a);
-        for b in vertices {
-            let offset = minus(*b, a);
-            let square = offset[0] * offset[0] + offset[1] * offset[1];
-            if square > most {
-                (most, farthest) = (square, *b);
-            }
-        }
-        farthest
-    };
-    let last = farthest_from(first);
-    let extent = minus(last, farthest_from(last));
+    // The vertex farthest from any one is an end of the longest extent, nearly, and the one farthest from it the other.
+    let last = farthest_from(first, vertices);
+    let extent = minus(last, farthest_from(last, vertices));
     // Points that coincide have no direction, and are thin.
     let min_width = ON_CURVE_FRACTION * size * norm(extent);
     !vertices.iter().any(|p| cross(extent, minus(*p, last)).abs() > min_width)

@@ -61,8 +61,9 @@ impl<'t> Interpreter<'t> {
     pub fn evaluate(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
         self.evaluator.evaluate(EvaluationPoint { length, ..EvaluationPoint::new(x, y, z) });
         let model = &self.tool.model;
-        let value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
-        let region = model.regions.iter().position(|region| region.inside.holds(&value))?;
+        let region = model.regions.iter().position(|region| {
+            region.inside.holds(&|curve: CurveIndex| self.evaluator.get(model.curves[curve].value))
+        })?;
         let get = |id: Id| self.evaluator.get(id);
         let outputs = &model.regions[region].outputs;
         Some(Evaluation {

@@ -198,9 +198,10 @@ impl PlanEvaluator {
         while let Some((at, test)) = pending.pop() {
             match &self.forks[at] {
                 PlanNode::Owner(owner) => {
-                    let depth = |owner: usize| &self.regions[owner][0];
-                    let owner = owner
-                        .map(|owner| (owner, self.value(depth(owner), point, length, scratch)));
+                    let owner = owner.map(|owner| {
+                        let depth = &self.regions[owner][0];
+                        (owner, self.value(depth, point, length, scratch))
+                    });
                     visit(owner, test);
                 }
                 PlanNode::Test { curve, strict, above } => {

@@ -181,8 +181,10 @@ impl<'m> Linter<'m> {
 
     fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
         self.set_point(point);
-        let value = |curve: CurveIndex| self.value(curve);
-        self.model.regions.iter().position(|region| region.inside.holds(&value))
+        self.model
+            .regions
+            .iter()
+            .position(|region| region.inside.holds(&|curve: CurveIndex| self.value(curve)))
     }
 
     /// Returns the lowest z found inside.
@@ -449,7 +451,6 @@ enum Fault {
 impl Fault {
     /// Returns the first operation, from the operands up, whose result is not finite.
     fn of(graph: &Graph, evaluator: &Evaluator<'_>, mut id: Id) -> Fault {
-        let is_finite = |id: &Id| evaluator.get(*id).is_finite();
         loop {
             let node = graph.node(id);
             let operands: Vec<Id> = match *node {
@@ -459,8 +460,8 @@ impl Fault {
                 }
                 _ => node.operands().collect(),
             };
-            match operands.iter().find(|id| !is_finite(id)) {
-                Some(operand) => id = *operand,
+            match operands.into_iter().find(|id| !evaluator.get(*id).is_finite()) {
+                Some(operand) => id = operand,
                 None => {
                     return match *node {
                         Node::Sqrt(_) => Fault::Root,

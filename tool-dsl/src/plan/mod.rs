@@ -13,7 +13,7 @@ mod signs;
 
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic};
-use crate::expr::{Coord, Id};
+use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{Curve, CurveIndex};
 use crate::model::Model;
 use crate::number::Number;
@@ -174,10 +174,8 @@ fn limited_to_box(
 ) -> Tree<Option<usize>> {
     let graph = &mut model.graph;
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-    let [radius, low, high] = [extent.radius, extent.low, extent.high].map(|value| {
-        let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
-        graph.number(number)
-    });
+    let [radius, low, high] =
+        [extent.radius, extent.low, extent.high].map(|value| constant(graph, value));
     let sides = [graph.sub(d, radius), graph.sub(low, z), graph.sub(z, high)];
     sides.into_iter().fold(tree, |tree, value| {
         let known = model.curves.iter().position(|curve| curve.value == value);
@@ -198,11 +196,10 @@ const OUTSIDE_RANGE_IN_SIZES: f64 = 48.0;
 fn limited_outside(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
     let bound = distance_to_box(model, extent);
     let graph = &mut model.graph;
-    let number = |value: f64| Number::from_f64(value).unwrap_or_else(|| Number::int(0));
     let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
     let limit = OUTSIDE_RANGE_IN_SIZES * height.hypot(extent.radius);
     let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
-    let (middle, limit) = (graph.number(number(middle)), graph.number(number(limit * limit)));
+    let (middle, limit) = (constant(graph, middle), constant(graph, limit * limit));
     let up = graph.sub(z, middle);
     let up = graph.mul(up, up);
     let squared_distance = graph.add(q, up);
@@ -219,10 +216,7 @@ fn distance_to_box(model: &mut Model, extent: &Extent) -> Id {
     for (coord, axis, _) in model.domain.coordinates().iter().rev() {
         let coordinate = graph.coord(*coord);
         let side = extent.cell().sides[*axis];
-        let [low, high] = [side.low, side.high].map(|value| {
-            let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
-            graph.number(number)
-        });
+        let [low, high] = [side.low, side.high].map(|value| constant(graph, value));
         let mut excess = graph.sub(coordinate, high);
         // The half plane has no points beyond the axis.
         if *coord != Coord::D {
@@ -243,24 +237,23 @@ fn too_large(model: &Model) -> Diagnostic {
 
 /// Returns the cost of evaluating each curve, in additions.
 fn costs(model: &Model) -> Vec<f64> {
-    use crate::expr::{Coord, Node};
-    let cost = |node: &Node| match node {
+    let graph = &model.graph;
+    let nodes = model.curves.iter().map(|curve| graph.dependencies([curve.value]));
+    nodes.map(|nodes| nodes.into_iter().map(|id| cost(graph.node(id))).sum()).collect()
+}
+
+/// Returns the cost of a node, in additions. A root or a quotient takes about eight times as long as a sum.
+fn cost(node: &Node) -> f64 {
+    match node {
         Node::Const(_) | Node::Coord(Coord::X | Coord::Y | Coord::Z) => 0.0,
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
-    };
-    model
-        .curves
-        .iter()
-        .map(|curve| {
-            model
-                .graph
-                .dependencies([curve.value])
-                .into_iter()
-                .map(|id| cost(model.graph.node(id)))
-                .sum()
-        })
-        .collect()
+    }
+}
+
+/// Adds the constant of an extent to a graph.
+fn constant(graph: &mut Graph, value: f64) -> Id {
+    graph.number(Number::from_f64(value).unwrap_or_else(|| Number::int(0)))
 }
 
 /// Returns the information content of a part of a whole in bits, multiplied by the part's weight.

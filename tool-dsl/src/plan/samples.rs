@@ -44,17 +44,6 @@ impl Samples {
     pub(super) fn new(all: &[Sample], shapes: &[CurveFunction<'_>]) -> Samples {
         let runs: Vec<&[Sample]> =
             all.chunk_by(|a, b| a.owner == b.owner).flat_map(|run| run.chunks(64)).collect();
-        let below = |shape: &CurveFunction<'_>| {
-            runs.iter()
-                .map(|run| {
-                    let mut bits = 0;
-                    for (k, sample) in run.iter().enumerate() {
-                        bits |= u64::from(shape.below(sample.point)) << k;
-                    }
-                    bits
-                })
-                .collect()
-        };
         let owners: Vec<usize> =
             runs.iter().map(|run| run[0].owner.map_or(0, |owner| owner + 1)).collect();
         Samples {
@@ -63,7 +52,10 @@ impl Samples {
                 .iter()
                 .map(|run| run.iter().map(|sample| sample.weight).collect())
                 .collect(),
-            below: shapes.iter().map(below).collect(),
+            below: shapes
+                .iter()
+                .map(|shape| runs.iter().map(|run| bits_below(run, shape)).collect())
+                .collect(),
             owners,
         }
     }
@@ -157,4 +149,13 @@ impl Samples {
             owners.map(|owners| if owners > 1 { BITS_PER_ADDITION * MIN_SIDE_COST } else { 0.0 });
         entropy - remaining_bits / (totals[0] + totals[1]) - side_cost[0] - side_cost[1] - penalty
     }
+}
+
+/// Returns a bit for each sample of a word that is below a curve.
+fn bits_below(word: &[Sample], shape: &CurveFunction<'_>) -> u64 {
+    let mut bits = 0;
+    for (k, sample) in word.iter().enumerate() {
+        bits |= u64::from(shape.below(sample.point)) << k;
+    }
+    bits
 }

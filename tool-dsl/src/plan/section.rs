@@ -179,16 +179,16 @@ impl Polygons<'_> {
         }
         let conditions = section.outside.iter().map(|part| &part.condition).collect();
         let nearest = plan(model, shapes, size, input, conditions)?;
-        let part_at = |p, distance| {
+        let wrong = section.outer.wrongly_assigned_point(|p, distance| {
             // A region may own an outside point only within rounding of the surface.
             let is_free = distance <= ROUNDING * size || self.leaf_at(owners, p).is_none();
             self.leaf_at(&nearest, p).filter(|_| is_free)
-        };
-        if let Some(p) = section.outer.wrongly_assigned_point(part_at) {
+        });
+        if let Some(p) = wrong {
             return Err(inseparable_owners(model, p));
         }
-        let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
-        let clearances = nearest.map(&clearance);
+        let clearances =
+            nearest.map(&|part: &Option<usize>| part.map(|part| section.outside[part].clearance));
         Ok(clearances.unwrap_or(Tree::Leaf(section.outside[0].clearance)))
     }
 }
@@ -249,14 +249,15 @@ impl Over {
     fn owner_at(&self, part: usize, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> OwnerAt {
         let on_border = Cell::new(false);
         let first_condition = |sign_on_border: f64| {
-            let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
-                0 => {
-                    on_border.set(true);
-                    sign_on_border
-                }
-                _ => shapes[curve].value(p),
-            };
-            self.conditions.iter().position(|condition| condition.holds(&value))
+            self.conditions.iter().position(|condition| {
+                condition.holds(&|curve: CurveIndex| match shapes[curve].side(p, size) {
+                    0 => {
+                        on_border.set(true);
+                        sign_on_border
+                    }
+                    _ => shapes[curve].value(p),
+                })
+            })
         };
         let low = first_condition(-1.0);
         // Away from every curve that was evaluated, the sign does not matter.
@@ -402,11 +403,9 @@ impl Planner<'_> {
                 (gain - BITS_PER_ADDITION * cost_factor * self.costs[*curve], *curve)
             })
             .collect();
-        let listed_rank = |curve: CurveIndex| {
-            let listed = self.model.first_curves.iter().position(|first| *first == curve);
-            listed.unwrap_or(usize::MAX)
-        };
-        ranked.sort_by(|a, b| listed_rank(a.1).cmp(&listed_rank(b.1)).then(b.0.total_cmp(&a.0)));
+        ranked.sort_by(|a, b| {
+            self.listed_rank(a.1).cmp(&self.listed_rank(b.1)).then(b.0.total_cmp(&a.0))
+        });
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
@@ -438,6 +437,12 @@ impl Planner<'_> {
         })
     }
 
+    /// Returns the position of a curve in the list of `bsp`. Curves that are not listed come last.
+    fn listed_rank(&self, curve: CurveIndex) -> usize {
+        let listed = self.model.first_curves.iter().position(|first| *first == curve);
+        listed.unwrap_or(usize::MAX)
+    }
+
     /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
     /// curve and its chord.
     fn largest_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
@@ -459,25 +464,14 @@ impl Planner<'_> {
 
     fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
-        let (whole_piece, shape) = (&self.whole_pieces, &self.shapes[curve]);
+        let whole_pieces = &self.whole_pieces;
         let sides = &mut self.sides[curve];
-        sides.resize(whole_piece.len(), None);
-        let side = |origin: usize| {
-            let WholePiece { piece, middle, half } = &whole_piece[origin];
-            match shape.side_of_box(*middle, *half) {
-                -1 => return Side::Below,
-                1 => return Side::Above,
-                _ => {}
-            }
-            match piece.cut(cutter) {
-                Cut::Below => Side::Below,
-                Cut::Above => Side::Above,
-                Cut::Nothing | Cut::Both(..) => Side::Torn,
-            }
-        };
+        sides.resize(whole_pieces.len(), None);
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            let cut = match *sides[piece.origin].get_or_insert_with(|| side(piece.origin)) {
+            let origin = piece.origin;
+            let side = sides[origin].get_or_insert_with(|| whole_pieces[origin].side(cutter));
+            let cut = match *side {
                 Side::Below => Cut::Below,
                 Side::Above => Cut::Above,
                 Side::Torn => piece.cut(cutter),
@@ -530,6 +524,20 @@ impl WholePiece {
         let [middle, half] = piece.bounding_box();
         WholePiece { piece: Rc::clone(piece), middle, half }
     }
+
+    fn side(&self, cutter: Cutter<'_, '_>) -> Side {
+        // A bound over the box decides most pieces without a cut.
+        match cutter.shapes[cutter.curve].side_of_box(self.middle, self.half) {
+            -1 => return Side::Below,
+            1 => return Side::Above,
+            _ => {}
+        }
+        match self.piece.cut(cutter) {
+            Cut::Below => Side::Below,
+            Cut::Above => Side::Above,
+            Cut::Nothing | Cut::Both(..) => Side::Torn,
+        }
+    }
 }
 
 /// Returns the points where whole pieces meet.
@@ -540,26 +548,31 @@ fn corners(
     size: f64,
 ) -> Vec<Corner> {
     let tolerance = COINCIDENCE_FRACTION * size;
-    let are_near =
-        |p: Point, q: Point| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance;
     points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-    points.dedup_by(|p, q| are_near(*p, *q));
-    let corner = |point: Point| {
+    points.dedup_by(|p, q| are_near(*p, *q, tolerance));
+    let mut corners = Vec::new();
+    for at in points {
         let mut owners = Vec::new();
         for WholePiece { piece, middle, half } in whole {
-            let [u, v] = minus(point, *middle);
+            let [u, v] = minus(at, *middle);
+            // The box rules out most pieces before their vertices and edges are compared.
             if u.abs() <= half[0] + tolerance
                 && v.abs() <= half[1] + tolerance
                 && !owners.contains(&piece.owner)
-                && (piece.vertices.iter().any(|p| are_near(*p, point))
-                    || piece.has_on_edge(point, shapes, size))
+                && (piece.vertices.iter().any(|p| are_near(*p, at, tolerance))
+                    || piece.has_on_edge(at, shapes, size))
             {
                 owners.push(piece.owner);
             }
         }
-        Corner { at: point, owners }
-    };
-    points.into_iter().map(corner).collect()
+        corners.push(Corner { at, owners });
+    }
+    corners
+}
+
+/// Returns whether two points differ by less than a tolerance in each coordinate.
+fn are_near(p: Point, q: Point, tolerance: f64) -> bool {
+    (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance
 }
 
 impl Planner<'_> {
@@ -630,7 +643,7 @@ impl Planner<'_> {
         points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
         // Vertices that pieces share agree except for their last bits.
         let tolerance = 1e-12 * self.size;
-        points.dedup_by(|p, q| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance);
+        points.dedup_by(|p, q| are_near(*p, *q, tolerance));
         for p in points {
             let [b, a] = [&below, &above]
                 .map(|border_points| border_points.first_at(p, COINCIDENCE_FRACTION * self.size));
@@ -655,7 +668,7 @@ impl Planner<'_> {
         let shape = &self.shapes[curve];
         let mut border_points = BorderPoints::default();
         for piece in pieces {
-            let rank = piece.owner.unwrap_or(usize::MAX);
+            let rank = rank(piece.owner);
             let is_on_curve: Vec<bool> =
                 piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
             for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| is_on_curve[*k]) {
@@ -703,8 +716,8 @@ struct BorderPoints {
 impl BorderPoints {
     /// Returns the rank of the first listed owner that touches a point.
     fn first_at(&self, p: Point, tolerance: f64) -> usize {
-        let is_near = |q: Point| (p[0] - q[0]).abs() < tolerance && (p[1] - q[1]).abs() < tolerance;
-        let points = self.points.iter().filter(|(q, _)| is_near(*q)).map(|(_, rank)| *rank);
+        let points = self.points.iter().filter(|(q, _)| are_near(p, *q, tolerance));
+        let points = points.map(|(_, rank)| *rank);
         let edges = self
             .edges
             .iter()
@@ -714,13 +727,17 @@ impl BorderPoints {
     }
 }
 
+/// Returns an owner's index in the list of regions, or `usize::MAX` for the outside.
+fn rank(owner: Option<usize>) -> usize {
+    owner.unwrap_or(usize::MAX)
+}
+
 /// Returns a tree whose leaves are the first listed of the owners in two trees.
 fn first(a: &Owners, b: &Owners) -> Owners {
     match a {
         Tree::Leaf(own) => {
-            let rank = |owner: &Option<usize>| owner.unwrap_or(usize::MAX);
             let first_listed =
-                |other: &Option<usize>| Some(if rank(other) < rank(own) { *other } else { *own });
+                |other: &Option<usize>| Some(if rank(*other) < rank(*own) { *other } else { *own });
             b.map(&first_listed).unwrap_or(Tree::Leaf(*own))
         }
         Tree::Split { curve, strict, below, above } => {

@@ -153,19 +153,20 @@ impl<'m> BorderProver<'m> {
             Some(_) => None,
             None => RootSum::of(&model.graph, forms, value),
         });
-        let square = |curve: &Option<Curve>| {
-            let (curve, _) = curve.as_ref()?;
-            curve.times(curve)
-        };
         let is_straight =
             |curve: &Option<Curve>| curve.as_ref().is_some_and(|(curve, _)| curve.is_linear());
         BorderProver {
             model,
             size,
             depth_differences: BTreeMap::new(),
-            squares: curves.iter().map(square).collect(),
+            squares: curves
+                .iter()
+                .map(|curve| curve.as_ref().and_then(|(curve, _)| curve.times(curve)))
+                .collect(),
             may_jump,
+            // No more than what a point box may hide: a later try of the proof, with larger boxes, accepts more.
             max_jump: point_box_fraction.min(MAX_TANGENT_JUMP) * size,
+            // Where depth is the distance, the owner is proved to be the nearest instead.
             check_listed_owners: !model.is_exact(),
             values: Evaluator::new(&model.graph, ids.iter().copied()),
             ids,
@@ -226,12 +227,14 @@ impl<'m> BorderProver<'m> {
         let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
         let is_in_region =
             |owner: usize| model.regions[owner].inside.decide_with(&mut sign) == Some(true);
+        // A point outside needs no region; that none contains it is the question of overlaps below.
         if !claim.owner.is_none_or(is_in_region) {
             return false;
         }
         !check_overlaps
             || (0..model.regions.len()).all(|other| {
                 let mut open_signs = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
+                // Borders belong to both neighbours, so the other regions are tested without theirs.
                 Some(other) == claim.owner
                     || model.regions[other].inside.decide_with(&mut open_signs) == Some(false)
                     || self.excluded(claim, other)
@@ -245,23 +248,27 @@ impl<'m> BorderProver<'m> {
             return *known;
         }
         let signs_on_path = self.signs(claim);
-        let linear = &self.linear;
-        // Tests one of the alternatives, with borders left out.
-        let empty = |demands: &[&Formula]| {
-            let mut demanded_signs = vec![ANY_SIGN; signs_on_path.len()];
-            demands.iter().for_each(|formula| formula.narrow_signs(&mut demanded_signs));
-            let mut signs = signs_on_path.clone();
-            for (sign, demanded) in signs.iter_mut().zip(demanded_signs) {
-                *sign &= if demanded == ANY_SIGN { ANY_SIGN } else { demanded & !ZERO };
-            }
-            signs.contains(&0) || linear.contradictory(&signs)
-        };
         let inside = &self.model.regions[region].inside;
-        let is_excluded =
-            |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
-        let excluded = empty(&[inside]) || inside.disjunctions().iter().any(is_excluded);
+        // A region with alternatives has no point here if each alternative has none.
+        let excluded = self.contradict(&signs_on_path, &[inside])
+            || inside.disjunctions().iter().any(|choices| {
+                choices.iter().all(|choice| self.contradict(&signs_on_path, &[inside, choice]))
+            });
         self.excluded.insert(key, excluded);
         excluded
+    }
+
+    /// Returns whether linear curves prove that no point with these signs satisfies all of some formulas, with borders
+    /// left out.
+    fn contradict(&self, signs: &[Signs], demands: &[&Formula]) -> bool {
+        let mut demanded_signs = vec![ANY_SIGN; signs.len()];
+        demands.iter().for_each(|formula| formula.narrow_signs(&mut demanded_signs));
+        let mut signs = signs.to_vec();
+        for (sign, demanded) in signs.iter_mut().zip(demanded_signs) {
+            // A curve that no formula mentions may be 0 there.
+            *sign &= if demanded == ANY_SIGN { ANY_SIGN } else { demanded & !ZERO };
+        }
+        signs.contains(&0) || self.linear.contradictory(&signs)
     }
 
     /// Returns a curve with two claims to a box on its two sides, and the continuity of depth there. Returns
@@ -276,10 +283,12 @@ impl<'m> BorderProver<'m> {
     ) -> Option<Separation> {
         self.cell = cell;
         let curves = separating_curves(claims);
+        // A curve on both paths separates the claims without further proof, so it is tried first.
         let agreed = curves.iter().copied().find(|curve| self.agreement(pair, *curve).is_some());
         let joint = agreed.or_else(|| {
             self.joints(pair).into_iter().find(|curve| {
                 let [of_a, of_b] = claims.map(|claim| self.sign_on(claim, *curve, cover));
+                // On opposite sides, and together on the curve at most, where the depths agree.
                 of_a & of_b & !ZERO == 0
             })
         });
@@ -307,6 +316,7 @@ impl<'m> BorderProver<'m> {
         let is_other_branch = branch.is_some_and(|branch| branch.high < 0.0);
         let is_this_branch = branch.is_none_or(|branch| branch.low > 0.0);
         let joint = if depths_differ || is_other_branch {
+            // The claims meet only where the depths agree, and here these differ: they do not meet.
             if is_this_branch {
                 return None;
             }
@@ -331,6 +341,7 @@ impl<'m> BorderProver<'m> {
         depths_differ: bool,
     ) -> Option<Separation> {
         let curve = *curves.first()?;
+        // Arcs and lines written with doubles are tangent only up to rounding, which no argument below explains.
         if let Some(smooth) = self.smooth_separation(pair, curves) {
             return Some(smooth);
         }
@@ -338,6 +349,8 @@ impl<'m> BorderProver<'m> {
             return Some(Separation { curve, joint: Joint::None, below: false, difference: 0.0 });
         };
         let difference = self.without_rounding(difference);
+        // Ordered depths are equal where the claims meet, so depths that differ show that these do not. A
+        // difference that is only bounded shows nothing.
         let meet = !depths_differ || difference != 0.0;
         meet.then_some(Separation { curve, joint: Joint::Lower, below: false, difference })
     }
@@ -393,6 +406,7 @@ fn closure(signs: Signs) -> Signs {
 fn separating_curves([a, b]: [&Claim; 2]) -> Vec<CurveIndex> {
     let mut curves = Vec::new();
     for (curve, signs) in &a.signs {
+        // 0 may be on both paths, since only one of the two has the curve itself.
         let is_opposite =
             b.signs.iter().any(|(other, others)| other == curve && signs & others & !ZERO == 0);
         if is_opposite && !curves.contains(curve) {
@@ -428,6 +442,7 @@ impl BorderProver<'_> {
 
     /// Returns how two owners' depths agree on a curve, if they do.
     fn agreement(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
+        // Rows grow when they are needed, since most pairs of a large tool never meet.
         let row = &mut self.agreements[pair.own];
         row.resize(self.depths.len() + 1, Vec::new());
         let by_curve = &mut row[pair.other.map_or(0, |other| other + 1)];
@@ -452,23 +467,31 @@ impl BorderProver<'_> {
         if let Some(known) = self.differences.get(&[own, other]) {
             return known.clone();
         }
-        let graph = &self.model.graph;
+        let curves = 0..self.model.curves.len();
+        let found = curves
+            .filter_map(|curve| Some((curve, self.is_positive_where_larger(curve, [own, other])?)));
+        let found = Rc::new(found.collect());
+        self.differences.insert([own, other], Rc::clone(&found));
+        found
+    }
+
+    /// Returns whether a curve is positive where the first of two depths is larger, if it is their difference up to a
+    /// factor.
+    fn is_positive_where_larger(
+        &self,
+        curve: CurveIndex,
+        [own, other]: [usize; 2],
+    ) -> Option<bool> {
         let [a, b] = [own, other].map(|depth| self.ids[depth]);
-        let forms = self.depths[own].as_ref().zip(self.depths[other].as_ref());
-        let first_is_larger = |curve: CurveIndex| match *graph.node(self.model.curves[curve].value)
-        {
+        match *self.model.graph.node(self.model.curves[curve].value) {
             Node::Sub(more, less) if [more, less] == [a, b] => Some(true),
             Node::Sub(more, less) if [more, less] == [b, a] => Some(false),
             _ => {
-                let ratio = self.sums[curve].as_ref()?.ratio_to_difference(forms?.0, forms?.1)?;
+                let (own, other) = (self.depths[own].as_ref()?, self.depths[other].as_ref()?);
+                let ratio = self.sums[curve].as_ref()?.ratio_to_difference(own, other)?;
                 Some(!ratio.is_negative())
             }
-        };
-        let curves = 0..self.model.curves.len();
-        let found =
-            Rc::new(curves.filter_map(|curve| Some((curve, first_is_larger(curve)?))).collect());
-        self.differences.insert([own, other], Rc::clone(&found));
-        found
+        }
     }
 }
 
@@ -478,11 +501,13 @@ impl BorderProver<'_> {
     fn sign_on(&mut self, claim: &Claim, curve: CurveIndex, cover: &mut Cover<'_>) -> Signs {
         let mut signs = cover.sign_at_claim(claim, curve);
         for (other, side) in &claim.signs {
+            // A curve that may have both signs implies nothing about another.
             if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
                 signs &= self.implied(*other, *side & NEGATIVE != 0, curve);
             }
         }
         if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
+            // The costlier arguments are asked only while both sides are possible.
             signs &= self.signs_by_linear(claim, curve);
         }
         if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
@@ -509,6 +534,7 @@ impl BorderProver<'_> {
                 POSITIVE => 1,
                 _ => continue,
             };
+            // Between a line and a conic, `implied` decides.
             if self.is_straight[*other] || self.is_straight[curve] {
                 continue;
             }
@@ -517,6 +543,7 @@ impl BorderProver<'_> {
             };
             let key = (*other, curve);
             let search = match self.contacts.get(&key) {
+                // Newton steps from another box may find a contact that was too far from the last one.
                 Some(ContactSearch::Failed(attempts)) if *attempts < MAX_CONTACT_BOXES => {
                     search_contact([conic, own], box_corner, self.size, *attempts)
                 }
@@ -550,6 +577,7 @@ impl BorderProver<'_> {
         let mut possible = ANY_SIGN;
         for side in [NEGATIVE, POSITIVE] {
             signs[curve] = side;
+            // Elimination proves a side empty; that it finds no contradiction proves nothing.
             if self.linear.contradictory_in(claim.owner, &signs) {
                 possible &= !side;
             }
@@ -561,11 +589,11 @@ impl BorderProver<'_> {
     /// Returns the signs that a curve can have on one side of another, if one of them is straight and the two
     /// do not cross.
     fn implied(&mut self, known: CurveIndex, below: bool, curve: CurveIndex) -> Signs {
-        let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
         match (self.clear_side(known, curve), self.clear_side(curve, known)) {
-            (Some(clear), _) if clear.is_below == below => side(clear.is_positive),
+            // The points are beside the line, on the side where the conic has one sign.
+            (Some(clear), _) if clear.is_below == below => closed_side(clear.is_positive),
             // The points are inside the conic, which lies on the other side of the line.
-            (_, Some(clear)) if clear.is_positive == below => side(clear.is_below),
+            (_, Some(clear)) if clear.is_positive == below => closed_side(clear.is_below),
             _ => ANY_SIGN,
         }
     }
@@ -594,12 +622,17 @@ fn search_contact(
     let Some(contact) = Contact::near(conic, other, near, size) else {
         return ContactSearch::Failed(attempts + 1);
     };
-    let possible = |from: i64| {
+    ContactSearch::Found([-1, 1].map(|from| {
+        // If the second curve is at least 0 there, it is not negative, and vice versa.
         let excluded = [(1, NEGATIVE), (-1, POSITIVE)];
         let implied = excluded.into_iter().filter(|(to, _)| contact.implies(from, *to));
         implied.fold(ANY_SIGN, |possible, (_, sign)| possible & !sign)
-    };
-    ContactSearch::Found([possible(-1), possible(1)])
+    }))
+}
+
+/// Returns the signs on one side of a curve and on the curve itself.
+fn closed_side(positive: bool) -> Signs {
+    ZERO | if positive { POSITIVE } else { NEGATIVE }
 }
 
 /// The largest difference, in half diagonals of the box, between a candidate third depth and the depths of
@@ -648,6 +681,7 @@ impl BorderProver<'_> {
                 known
             }
         };
+        // Both depths are 0 where the claims meet.
         let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
         let Pair { own, other: Some(other) } = pair else {
             let own = Some(pair.own);
@@ -668,6 +702,8 @@ impl BorderProver<'_> {
         let (side, excess) = match excess {
             [Some(a), Some(b)] => return Some(a.max(b)),
             [None, None] => return None,
+            // One half is proved. The other depth may be no more than a third, which continues its neighbour's
+            // across the border.
             [Some(excess), None] => (1, excess),
             [None, Some(excess)] => (0, excess),
         };
@@ -694,6 +730,7 @@ impl BorderProver<'_> {
         [less, more]: [Owner; 2],
         cover: &mut Cover<'_>,
     ) -> Option<f64> {
+        // The third depths come last: each costs a comparison with both.
         if self.ordered([less, more], claim, cover) {
             return Some(0.0);
         }
@@ -726,11 +763,16 @@ impl BorderProver<'_> {
             let entry = self.beside_line.entry((own, is_more, *curve, is_below));
             let known = entry.or_insert_with(|| {
                 let (line, _) = curves[*curve].as_ref()?;
+                // With a gradient of length 1, the line is a distance like the depth.
                 let line = line.is_linear().then(|| line.with_unit_slope())??;
                 let sign = Number::int(if is_below == is_more { -1 } else { 1 });
+                // With this sign the line is at most 0 where the depth is bounded above, and at least 0 where it is
+                // bounded below: it lies between the depth and 0.
                 let line = RootForm::from_polynomial(&line.scaled(&sign));
                 let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
                 match (less.polynomial(), more.polynomial()) {
+                    // A difference of two polynomials is enclosed in each box. With a root, it has one bound
+                    // everywhere.
                     (Some(less), Some(more)) => {
                         let minus = more.scaled(&Number::int(-1));
                         Some(ExcessBesideLine::Polynomial(less.clone().plus(&minus)))
@@ -775,6 +817,7 @@ impl BorderProver<'_> {
         let [less, more] = [less?, more?];
         let (a, b) = (self.depths[less].as_ref()?, self.depths[more].as_ref()?);
         let excess = *self.excesses.entry((less, more)).or_insert_with(|| excess(a, b));
+        // Elimination could not improve on this.
         if excess == Some(0.0) {
             return excess;
         }
@@ -809,24 +852,23 @@ impl BorderProver<'_> {
     /// Returns candidates for a depth between two others throughout the current box, if that is small. The
     /// choice affects only the run time.
     fn third_depths(&mut self, pair: [Owner; 2]) -> Vec<Owner> {
+        // In a large box too many depths are near the two, and few of them lie between.
         let reach = half_diagonal(&self.cell);
         if reach > SMALL_BOX_FRACTION * self.size {
             return Vec::new();
         }
         let middle @ [x, y, z] = self.cell.middle();
+        // All pairs of a box ask for the same point.
         if self.evaluated_at != Some(middle) {
             self.evaluated_at = Some(middle);
             self.values.evaluate(EvaluationPoint::new(x, y, z));
         }
         let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
-        let is_near = |third: &Owner| {
-            let difference = |owner: Owner| (depth(*third) - depth(owner)).abs();
-            !pair.contains(third)
-                && pair
-                    .into_iter()
-                    .all(|owner| difference(owner) <= MAX_DIFFERENCE_IN_HALF_DIAGONALS * reach)
-        };
-        (0..self.ids.len()).map(Some).filter(is_near).collect()
+        let (depths, max_difference) = (pair.map(depth), MAX_DIFFERENCE_IN_HALF_DIAGONALS * reach);
+        let others = (0..self.ids.len()).map(Some).filter(|third| !pair.contains(third));
+        others
+            .filter(|third| depths.iter().all(|own| (depth(*third) - own).abs() <= max_difference))
+            .collect()
     }
 
     /// Returns the signs at a claim's points.
@@ -841,6 +883,7 @@ impl BorderProver<'_> {
 
     /// Returns the order of two depths according to all linear curves on the paths to the claims.
     fn lower_by_linear(&self, pair: Pair, signs: &[Vec<Signs>; 2]) -> LowerByLinear {
+        // This also settles a border with the outside, whose depth is 0.
         if self.are_zero_where_claims_meet(pair, [&signs[0], &signs[1]]) {
             return LowerByLinear::Zero;
         }
@@ -872,24 +915,23 @@ impl BorderProver<'_> {
         separating_curves: &[CurveIndex],
     ) -> bool {
         (0..self.depths.len()).any(|third| {
-            let smooth = |curve: &CurveIndex| {
-                let Some(agreement) =
-                    self.agreement(Pair { own: other, other: Some(third) }, *curve)
-                else {
-                    return false;
-                };
-                // A depth is not negative in its own region.
-                let depth = self.depths[other].as_ref().and_then(RootForm::polynomial);
-                let ratio = |branch: &Polynomial| branch.ratio(depth?);
-                agreement.smooth
-                    && agreement.branch.as_ref().is_none_or(|branch| {
-                        ratio(branch).is_some_and(|ratio| !ratio.is_negative())
-                    })
-            };
             third != own
                 && third != other
-                && separating_curves.iter().any(smooth)
+                && separating_curves.iter().any(|curve| self.is_continued(other, third, *curve))
                 && self.linear.no_deeper(signs, Some(own), Some(third))
         })
+    }
+
+    /// Returns whether a third depth continues a region's own one smoothly across a curve.
+    fn is_continued(&mut self, own: usize, third: usize, curve: CurveIndex) -> bool {
+        let Some(agreement) = self.agreement(Pair { own, other: Some(third) }, curve) else {
+            return false;
+        };
+        // Without roots there is no other branch, and the slopes decide.
+        let Some(branch) = &agreement.branch else { return agreement.smooth };
+        // A depth is not negative in its own region, and neither is a positive multiple of it.
+        let depth = self.depths[own].as_ref().and_then(RootForm::polynomial);
+        let ratio = depth.and_then(|depth| branch.ratio(depth));
+        agreement.smooth && ratio.is_some_and(|ratio| !ratio.is_negative())
     }
 }

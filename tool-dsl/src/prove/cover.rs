@@ -71,8 +71,10 @@ impl<'m> Cover<'m> {
             }
             return;
         };
+        // A path may test a curve more than once.
         let known = path.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
         let possible_signs = known.fold(self.sign(*curve), |allowed, signs| allowed & signs);
+        // The test is `c < 0` or `c ≤ 0`, and the curve itself belongs to one side only.
         let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
         let sides = [(below, possible_signs & low), (above, possible_signs & !low & ANY_SIGN)];
         for (is_above, (side, signs)) in sides.into_iter().enumerate() {

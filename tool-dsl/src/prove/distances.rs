@@ -69,12 +69,14 @@ pub(super) fn excess(a: &RootForm, b: &RootForm) -> Option<f64> {
             let signed = match (a.sign, b.sign) {
                 (-1, 1) => -&distance,
                 (1, 1) | (-1, -1) => distance,
+                // A sum of two distances grows without bound.
                 _ => return None,
             };
             vec![a.rest, -&b.rest, signed]
         }
         _ => return None,
     };
+    // The terms may cancel, as for a circle within another that it touches. What then remains is rounding.
     let (max_excess, size) = Number::sum(&terms);
     let max_excess = max_excess.to_f64();
     Some(if max_excess <= ROUNDING * size { 0.0 } else { max_excess.next_up() })
@@ -131,6 +133,7 @@ impl Tangency {
         let axis_and_monomial =
             [(0, Coord::D), (2, Coord::Z)].into_iter().find_map(|(axis, coord)| {
                 let monomial_of_axis = monomial_of(coord);
+                // The coordinate is free if the line's equation, solved for one of the two, leaves it.
                 let remainder =
                     Polynomial::from_constant(&Number::int(1)).plus(&Polynomial::coordinate(coord));
                 let is_free = remainder
@@ -155,6 +158,7 @@ impl Tangency {
             && of_a.factor.nearly_equals(&of_b.factor)
             && tangency.rest.is_zero()
         {
+            // The difference is then that of the roots alone, which `by_roots` bounds.
             let [p, q] = [of_a.radicand.on_line(line)?, of_b.radicand.on_line(line)?];
             let difference = p.clone().plus(&q.scaled(&Number::int(-1)));
             tangency.radicands = Some([p, q, difference]);
@@ -176,12 +180,14 @@ impl Tangency {
         }
         let signed = |n: Number| if is_subtracted { -&n } else { n };
         let [rest, slope, square] = coefficients(&depth.part().on_line(line)?, monomial_of_axis)?;
+        // The part without the root is linear for a distance.
         if !square.is_zero() {
             return None;
         }
         self.slope = &self.slope + &signed(slope);
         self.rest = &self.rest + &signed(rest);
         let Some(RootTerm { factor, radicand }) = depth.root() else {
+            // The depth's slope across the line is its product with the line's unit normal.
             let size = line.slope_squared()?.to_f64().sqrt();
             let slopes = [Coord::D, Coord::Z].map(|coord| {
                 let by = monomial_of(coord);
@@ -194,6 +200,8 @@ impl Tangency {
             return Some(());
         };
         let [rest, slope, square] = coefficients(&radicand.on_line(line)?, monomial_of_axis)?;
+        // With `square · t² + slope · t + rest`, this is the least value's place, and what is left over is the
+        // squared distance from the line.
         let foot = -&slope.checked_div(&(&Number::int(2) * &square))?;
         let squared_distance = &rest - &(&(&foot * &foot) * &square);
         let scale = square.sqrt()?;
@@ -201,6 +209,7 @@ impl Tangency {
             factor: signed(factor * &scale),
             enclosed_foot: Interval::enclosing(&foot),
             foot,
+            // Rounding may make a square of 0 negative.
             distance: squared_distance.to_f64().max(0.0).sqrt().next_up(),
             scale: scale.to_f64(),
         });
@@ -222,8 +231,10 @@ impl Tangency {
         let [p, q, difference] = self.radicands.as_ref()?;
         let difference = difference.over(cell).abs();
         let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
+        // At a common foot both roots are 0, and the quotient says nothing.
         (lengths.low > 0.0).then(|| DepthDifference {
             jump: difference.times(lengths.reciprocal()).high,
+            // No slope of a distance is more than 1.
             slope_across: 1.0,
         })
     }
@@ -234,6 +245,7 @@ impl Tangency {
         let mut before_feet = 0;
         for (k, root) in self.roots.iter().enumerate() {
             let from_foot = t.plus(root.enclosed_foot.negated());
+            // At the foot, `|t - foot|` has a kink, so the difference is not affine.
             if from_foot.low <= 0.0 && from_foot.high >= 0.0 {
                 return None;
             }

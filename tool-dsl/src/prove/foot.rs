@@ -68,6 +68,7 @@ impl ProfileFeet {
         let (features, whole) = (section.inner.features(), tool.extent.cell());
         let mut max_difference = 0.0f64;
         let ends = model.regions.iter().enumerate().map(|(index, region)| {
+            // With regions from `over`, several may belong to one part of the profile.
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].part);
             let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
@@ -97,6 +98,7 @@ impl ProfileFeet {
         for end in 0..self.ends[owner].len() {
             let mut overshoot = -self.ends[owner][end].enclosed.over(&cell).low;
             for (curve, _) in &claim.signs {
+                // The box alone proves it, as for most boxes inside a region.
                 if overshoot <= 0.0 {
                     break;
                 }
@@ -106,6 +108,7 @@ impl ProfileFeet {
                 }
             }
             let side = self.ends[owner][end].side.as_ref();
+            // Behind the centre of an arc, twice the overshoot is not enough: see the module.
             let far_side = side.filter(|(side, _)| side.over(&cell).low < 0.0);
             max_overshoot =
                 max_overshoot.max(overshoot * far_side.map_or(1.0, |(_, scale)| *scale));
@@ -124,7 +127,9 @@ impl ProfileFeet {
         cell: Cell,
     ) -> Option<f64> {
         let (curves, ends) = (&self.curves, &self.ends);
-        let bound = || {
+        let known = &mut self.bounds[owner][end];
+        known.resize(curves.len(), Bounds::default());
+        let bound = known[curve][usize::from(below)].get_or_init(|| {
             let curve = curves[curve].as_ref()?;
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
@@ -134,11 +139,10 @@ impl ProfileFeet {
                 return is_clear.then(|| Polynomial::zero().enclosed());
             }
             let sign = Number::int(if below { 1 } else { -1 });
+            // With this sign the line is at most 0 on its side, so the end's function is at least the sum of the
+            // two. That is nearly constant if the line is the normal up to rounding.
             Some(curve.with_unit_slope()?.scaled(&sign).plus(end).enclosed())
-        };
-        let known = &mut self.bounds[owner][end];
-        known.resize(curves.len(), Bounds::default());
-        let bound = known[curve][usize::from(below)].get_or_init(bound);
+        });
         bound.as_ref().map(|min_distance| min_distance.over(&cell).low)
     }
 }
@@ -170,10 +174,9 @@ fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
         let forward = segment.direction()?;
         let backward = forward.each_ref().map(|part| -part);
-        let end = |inside: Polynomial| End::new(inside, None);
         return Some(vec![
-            end(linear_function(&forward, &segment.from)),
-            end(linear_function(&backward, &segment.to)),
+            End::new(linear_function(&forward, &segment.from), None),
+            End::new(linear_function(&backward, &segment.to), None),
         ]);
     };
     // To the left of the ray to one end and to the right of that to the other, or vice versa. Arcs span at

@@ -49,9 +49,11 @@ impl Profile {
         let mirrored: Vec<Segment> = outline.iter().map(Segment::mirrored).collect();
         let radii = outline.iter().filter_map(|piece| Some(piece.round()?.1));
         let min_radius = radii.fold(f64::INFINITY, f64::min);
+        // Points of one arc face each other across its circle.
         let mut narrowest = 2.0 * min_radius;
         for (index, piece) in outline.iter().enumerate() {
             for (other, other_segment) in outline.iter().enumerate().skip(index + 1) {
+                // At a common end the distance is 0, but consecutive segments do not face each other there.
                 let joints: &[_] = if other == index + 1 { &[[1, 0]] } else { &[] };
                 narrowest = narrowest.min(facing_distance(piece, other_segment, joints));
             }
@@ -60,6 +62,7 @@ impl Profile {
             for (other, image) in mirrored.iter().enumerate().skip(index) {
                 let mut joints = Vec::new();
                 if other == index && index == 0 {
+                    // Where the profile begins and ends on the axis, it continues as its image.
                     joints.push([0, 1]);
                 }
                 if other == index && index + 1 == outline.len() {
@@ -107,6 +110,7 @@ fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64
         |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
     for [p, q] in normals(one, other) {
         let inward_sides_oppose = dot(one.inward(p), other.inward(q)) < 0.0;
+        // On the same normal, but facing only if the material is on opposite sides of the two points.
         if inward_sides_oppose && is_between_normals(one, p) && is_between_normals(other, q) {
             min_distance = min_distance.min(norm(minus(p, q)));
         }
@@ -117,15 +121,13 @@ fn facing_distance(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64
 /// Returns the pairs of points, one on each line or circle, that lie on a common normal. Two lines and two
 /// concentric circles have none: the distances from their ends suffice.
 fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
-    let point_along = |from: Point, direction: Point, by: f64| {
-        [from[0] + by * direction[0], from[1] + by * direction[1]]
-    };
     match (one.round(), other.round()) {
         (None, None) => Vec::new(),
         (None, Some((centre, radius, _))) => {
             let (start, along) = (one.ends()[0], one.tangent(false));
             let foot = point_along(start, along, dot(minus(centre, start), along));
             let across = [-along[1], along[0]];
+            // The common normal passes through the centre and meets the circle on both sides of it.
             [radius, -radius].map(|by| [foot, point_along(centre, across, by)]).to_vec()
         }
         (Some(_), None) => normals(other, one).into_iter().map(|[p, q]| [q, p]).collect(),
@@ -141,6 +143,10 @@ fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
                 .to_vec()
         }
     }
+}
+
+fn point_along(from: Point, direction: Point, by: f64) -> Point {
+    [from[0] + by * direction[0], from[1] + by * direction[1]]
 }
 
 #[cfg(test)]

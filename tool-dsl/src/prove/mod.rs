@@ -53,7 +53,7 @@ const TOLERANCE: f64 = 1e-6;
 const SMALL_BOX_FRACTION: f64 = 1.0 / 1024.0;
 
 /// The relative tolerance within which both bounds must be 1 for depth to count as the distance, see
-/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`nonsmooth::SLOPE_MARGIN`]).
+/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`slope::SLOPE_MARGIN`]).
 const EXACT_TOLERANCE: f64 = 1e-8;
 
 /// The number of boxes that a proof may use, and that a proof during compilation may use.
@@ -216,12 +216,14 @@ impl Bounds {
         let rounding_error = rounding::bound_over_tool(tool);
         let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
         let mut sources = tool.model.regions.iter().map(|region| region.source);
+        // Depth and directions then follow from the construction, so no point can show an error.
         if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
         // A statement that is undecided here may be provable with more boxes.
         let diagnostics = certificate.certain_diagnostics(tool);
+        // A proof that stays open does not weaken what the construction gives; only its errors count.
         if tool.model.is_exact() {
             return (exact, diagnostics);
         }
@@ -259,6 +261,7 @@ impl Certificate {
     pub fn lipschitz(&self) -> Option<f64> {
         let steepest =
             self.regions.iter().map(|region| region.gradient_length.high).fold(0.0, f64::max);
+        // The slopes bound the changes within regions only; a jump would be a change along a path of no length.
         (self.is_continuous() && steepest.is_finite()).then_some(steepest)
     }
 
@@ -271,8 +274,8 @@ impl Certificate {
     /// Returns whether depth is proved to be the distance to the surface, to a part in 10^8 and up to the
     /// [slack](Certificate::slack).
     pub fn is_exact(&self) -> bool {
-        let is_one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT_TOLERANCE);
-        is_one(self.lipschitz()) && is_one(self.lower_slope())
+        let bounds = [self.lipschitz(), self.lower_slope()];
+        bounds.iter().all(|b| b.is_some_and(|b| (b - 1.0).abs() < EXACT_TOLERANCE))
     }
 }
 

@@ -68,6 +68,7 @@ impl Ranges<'_, '_> {
         let mut largest = f64::NEG_INFINITY;
         for _ in 0..MAX_BOXES {
             let Some(OpenBox { bound, cell }) = open.pop() else { return largest };
+            // The largest bound of all open boxes is near a value that is attained: boxes come in that order.
             if bound - largest <= RELATIVE_ACCURACY * bound.abs().max(1.0) {
                 return bound;
             }
@@ -83,6 +84,7 @@ impl Ranges<'_, '_> {
                 if is_owned {
                     largest = largest.max(middle);
                 }
+                // A part of a box is bounded by the whole, too.
                 open.push(OpenBox { bound: box_bound.min(bound), cell });
             }
         }
@@ -98,6 +100,7 @@ impl Ranges<'_, '_> {
         self.slopes.set(cell);
         let (depth_slope, niceness_slope) =
             (self.slopes.get(region.depth), self.slopes.get(region.niceness));
+        // Depth is at least 0 inside.
         if depth_slope.value.high < 0.0 {
             return None;
         }
@@ -112,8 +115,10 @@ impl Ranges<'_, '_> {
             let middle = cell.middle()[axis];
             sum = sum.plus(slope.times(cell.sides[axis].plus(Interval::new(-middle, -middle))));
         }
+        // Points of the box with a depth below 0 are not in the region.
         let inside = Interval { low: depth_slope.value.low.max(0.0), high: depth_slope.value.high };
         let bound = sum.plus(rate_interval.times(inside).negated()).high;
+        // Infinite slopes cancel to NaN; the direct enclosure still holds.
         let bound = if bound.is_nan() { direct_bound } else { bound.min(direct_bound) };
         Some((bound, signed(centre_niceness).middle()))
     }
@@ -122,11 +127,12 @@ impl Ranges<'_, '_> {
 /// Returns the rate at which niceness changes with depth, from the midpoints of their slopes; 0 where that is
 /// not finite.
 fn rate(depth: &Slope, niceness: &Slope) -> f64 {
-    let dot_product = |one: &Slope, other: &Slope| -> f64 {
-        (0..3).map(|k| one.partials[k].middle() * other.partials[k].middle()).sum()
-    };
     let rate = dot_product(depth, niceness) / dot_product(depth, depth);
     if rate.is_finite() { rate } else { 0.0 }
+}
+
+fn dot_product(one: &Slope, other: &Slope) -> f64 {
+    (0..3).map(|k| one.partials[k].middle() * other.partials[k].middle()).sum()
 }
 
 #[cfg(test)]

@@ -97,12 +97,14 @@ impl Difference {
         square: Option<&Polynomial>,
     ) -> Option<Agreement> {
         let Difference { squared, branch, is_opposite, positive } = self;
+        // A difference that is a multiple of the curve's square has a slope of 0 on the curve.
         let is_square = square.is_some_and(|square| squared.ratio(square).is_some());
         let (smooth, ratio) = (squared.is_zero() || is_square, squared.ratio(curve));
         let agrees = smooth || ratio.is_some() || squared.vanishes_on_line(curve);
         agrees.then(|| Agreement {
             smooth,
             branch: branch.clone(),
+            // Only a simple multiple of the curve changes its sign there.
             order: ratio.map(|ratio| Order {
                 falls: ratio.is_negative() != *is_opposite,
                 positive: branch
@@ -186,6 +188,7 @@ impl RootForm {
                 // |√P - √Q| is at most √|P - Q|.
                 let squares =
                     a.radicand.clone().plus(&b.radicand.scaled(&minus_one)).over(cell).abs();
+                // Roots of opposite sign add up, whatever their radicands.
                 a.factor.nearly_equals(&b.factor).then(|| polynomial.plus(squares.sqrt()).high)
             }
             _ => None,
@@ -231,6 +234,7 @@ impl RootForm {
 
     /// `(c + k √P)² = c² + k² P + 2 c k √P`
     fn square(&self) -> Option<RootForm> {
+        // With a polynomial for `c`, the product `2 c k` would not be a constant factor of the root.
         let (c, root) = (self.polynomial.constant()?, self.root.as_ref()?);
         let polynomial = Polynomial::from_constant(&(&c * &c)).plus(&root.square());
         let doubled = &(&Number::int(2) * &c) * &root.factor;
@@ -241,6 +245,7 @@ impl RootForm {
     fn over(&self, divisor: &RootForm) -> Option<RootForm> {
         let dividend = self.polynomial()?;
         let Some(root) = &divisor.root else {
+            // A quotient by a polynomial that is not constant has no such form.
             let divisor = divisor.polynomial.constant()?;
             return Some(self.scaled(&Number::int(1).checked_div(&divisor)?));
         };
@@ -265,6 +270,7 @@ impl RootForm {
         let squares_difference = a.square().plus(&b.square().scaled(&minus));
         if constant_difference.is_zero() {
             let is_opposite = a.factor.is_negative();
+            // `k √P - m √Q` with factors of opposite sign is 0 only where both roots are.
             let same_sign = is_opposite == b.factor.is_negative();
             return same_sign.then_some(Difference {
                 squared: squares_difference,
@@ -308,6 +314,7 @@ impl RootForm {
     pub(super) fn gradient_direction(&self) -> Option<[Polynomial; 4]> {
         let radicand = match &self.root {
             None => &self.polynomial,
+            // The gradient of `c + k √P` is that of `P`, up to a factor that is not 0.
             Some(root) => self.polynomial.constant().map(|_| &root.radicand)?,
         };
         Some([0, 1, 2, 3].map(|by| radicand.derivative(by)))
@@ -387,6 +394,7 @@ impl RootSum {
     pub(super) fn ratio_to_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
         let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
         let root = self.roots.first()?;
+        // The factors of one common root give the only possible ratio.
         let other = difference.roots.iter().find(|other| other.has_radicand_of(root))?;
         let ratio = root.factor.checked_div(&other.factor)?;
         let rest = difference.scaled(&-&ratio).plus(self.clone());
@@ -413,6 +421,7 @@ impl RootSum {
                 None => self.roots.push(root),
             }
         }
+        // So that a sum that cancels is recognised as 0.
         self.roots.retain(|root| !root.factor.is_zero());
         RootSum { polynomial: self.polynomial.plus(&other.polynomial), roots: self.roots }
     }

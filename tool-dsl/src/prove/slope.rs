@@ -82,11 +82,13 @@ impl Slope {
     fn plus(self, other: Slope, sign: Interval) -> Slope {
         let other = other.scaled(sign);
         let value = self.value.plus(other.value);
+        // The length of the other's gradient may be known better than its components give it.
         if self.is_constant() || other.is_constant() {
             let varying = if self.is_constant() { other } else { self };
             return Slope { value, ..varying };
         }
         let partials = [0, 1, 2].map(|k| self.partials[k].plus(other.partials[k]));
+        // By the triangle inequality, where the enclosures of components are wide.
         let max_length = self.length.plus(other.length).high;
         let kinks = union(self.kinks, other.kinks);
         Slope::new(value, partials, kinks).with(Interval { low: 0.0, high: max_length })
@@ -178,18 +180,19 @@ fn length(partials: [Interval; 3]) -> Interval {
 fn norm(partials: &[Slope]) -> Slope {
     let squares = partials.iter().map(|part| part.value.square());
     let value = squares.fold(ZERO, Interval::plus).sqrt();
+    // No component of a unit vector is longer than it.
     let unit_range = Interval { low: -1.0, high: 1.0 };
     // A length is not negative.
     let per_length =
         Interval { low: (1.0 / value.high).next_down(), high: (1.0 / value.low).next_up() };
     let unit_vector: Vec<Interval> =
         partials.iter().map(|part| part.value.times(per_length).common(unit_range)).collect();
-    let slope = |k: usize| {
+    let gradient = [0, 1, 2].map(|k| {
         partials
             .iter()
             .zip(&unit_vector)
             .fold(ZERO, |sum, (part, way)| sum.plus(part.partials[k].times(*way)))
-    };
+    });
     // The squares of the singular values lie around the diagonal of J Jᵀ, within its row sums (Gershgorin
     // 1931).
     let mut singular: Option<Interval> = None;
@@ -208,10 +211,12 @@ fn norm(partials: &[Slope]) -> Slope {
         singular = Some(singular.map_or(circle, |hull| hull.hull(circle)));
     }
     let squared = singular.unwrap_or(ZERO);
+    // The gradient is the image of a unit vector, so its length lies between the singular values.
     let known = Interval { low: squared.low.max(0.0), ..squared }.sqrt();
+    // A length is a nonlinear function of its parts. It has a kink of its own, pointing down, where it is 0.
     let component_kinks = partials.iter().fold(NO_KINKS, |hull, part| nonlinear(hull, part.kinks));
     let kinks = if value.low > 0.0 { component_kinks } else { union(component_kinks, KINK_DOWN) };
-    Slope::new(value, [0, 1, 2].map(slope), kinks).with(known)
+    Slope::new(value, gradient, kinks).with(known)
 }
 
 /// Encloses chosen nodes of a graph with their slopes, over one box after another. For each box only the
@@ -239,6 +244,7 @@ impl<'g> Slopes<'g> {
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
             let mut order = graph.dependencies([root]);
+            // Constants are the same in every box.
             order.retain(|id| match graph.constant(*id) {
                 Some(value) => {
                     values[id.index()] = Slope::constant(Interval::enclosing(value));
@@ -267,6 +273,7 @@ impl<'g> Slopes<'g> {
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
             let index = id.index();
+            // Roots share nodes, and only some roots are asked for in a box.
             if self.computed_for[index] != self.box_number {
                 self.computed_for[index] = self.box_number;
                 self.values[index] = self.node(id, self.cell);
@@ -283,9 +290,11 @@ impl<'g> Slopes<'g> {
             Node::Neg(a) => v(a).scaled(ONE.negated()),
             Node::Add(a, b) => v(a).plus(v(b), ONE),
             Node::Sub(a, b) => v(a).plus(v(b), ONE.negated()),
+            // The two factors are the same number, which a product of intervals would not know.
             Node::Mul(a, b) if a == b => v(a).square(),
             Node::Mul(a, b) => v(a).times(v(b)),
             Node::Div(a, b) | Node::Quotient(a, b) => v(a).over(v(b)),
+            // Where one is the smaller throughout the box there is no kink.
             Node::Min(a, b) if v(a).value.high <= v(b).value.low => v(a),
             Node::Min(a, b) if v(b).value.high <= v(a).value.low => v(b),
             Node::Max(a, b) if v(a).value.low >= v(b).value.high => v(a),
@@ -309,8 +318,10 @@ impl<'g> Slopes<'g> {
             }
             Node::Sqrt(a) => match self.graph.squares_of(*a) {
                 Some(parts) => {
-                    let radius = || self.coordinate(Coord::D, cell);
-                    let parts = parts.iter().map(|part| part.as_ref().map_or_else(radius, v));
+                    let parts = parts.iter().map(|part| match part {
+                        Some(part) => v(part),
+                        None => self.coordinate(Coord::D, cell),
+                    });
                     norm(&parts.collect::<Vec<_>>())
                 }
                 None => v(a).sqrt(),
@@ -321,6 +332,7 @@ impl<'g> Slopes<'g> {
                 } else if v(low).value.low > v(high).value.high {
                     v(other)
                 } else {
+                    // The two may differ where they meet, so nothing is known about the kink.
                     v(then).hull(v(other)).kinked([true; 2])
                 }
             }
@@ -341,6 +353,7 @@ impl<'g> Slopes<'g> {
             Coord::D => norm(&[coordinate_slope(0), coordinate_slope(1)]),
             Coord::Q => {
                 let d = self.coordinate(Coord::D, cell);
+                // `d²` is smooth on the axis, where `d` is not.
                 Slope { value: cell.squared_radius(), kinks: NO_KINKS, ..d.square() }
             }
             Coord::Length | Coord::PerLength => Slope { value: ENTIRE, ..Slope::constant(ZERO) },
@@ -395,12 +408,14 @@ pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bo
     let falls = if below { rise.low } else { -rise.high };
     // The two slopes differ only along the curve's gradient, since depths agree on the curve: by -falls
     // divided by its length.
+    // Each depth is then the smaller on its own side, and both sides lead down.
     if falls >= 0.0 || falls >= -SLOPE_TOLERANCE * curve.length.low {
         return (f64::INFINITY, 0.0);
     }
     let difference = components.map(|[a, b]| b - a);
     let [start, squared_length] = [components.map(|[a, _]| a), difference]
         .map(|v| v.iter().zip(difference).map(|(a, b)| a * b).sum::<f64>());
+    // The shortest vector of the segment from one slope to the other.
     let part = if squared_length > 0.0 { (-start / squared_length).clamp(0.0, 1.0) } else { 0.0 };
     let nearest = components.map(|[a, b]| a + part * (b - a));
     // Each component is known to half its width, and the vector to √3 times that.

@@ -21,10 +21,6 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
         let touches =
             lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
-        let lies_on_axis = |segment: &Segment| {
-            let [[from, _], [to, _]] = segment.ends();
-            segment.round().is_none() && from == 0.0 && to == 0.0
-        };
         if lies_on_axis(segment) {
             diagnostics.push(Diagnostic::new(segment.span, ProfileKind::OnAxis));
         } else if lowest < -1e-12 * high[0] || to < 0.0 {
@@ -106,6 +102,11 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         }
     }
     diagnostics
+}
+
+fn lies_on_axis(segment: &Segment) -> bool {
+    let [[from, _], [to, _]] = segment.ends();
+    segment.round().is_none() && from == 0.0 && to == 0.0
 }
 
 /// Returns whether a line follows another at an angle that is not 0 and yet small enough to count as tangent. Points

@@ -115,6 +115,16 @@ pub(crate) struct Overlay {
     pub(crate) doubly_covered: Option<(usize, usize, Point)>,
 }
 
+/// Returns whether a point satisfies a formula, whatever the signs of curves within rounding of it.
+fn is_clearly_inside(formula: &Formula, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
+    [-1.0, 1.0].into_iter().all(|sign| {
+        formula.holds(&|curve: usize| match shapes[curve].side(p, size) {
+            0 => sign,
+            _ => shapes[curve].value(p),
+        })
+    })
+}
+
 /// Intersects conditions with the cells of parts. The area between a curve and its chord counts only if a point of it
 /// is clearly inside.
 pub(crate) fn overlay(
@@ -125,14 +135,6 @@ pub(crate) fn overlay(
     size: f64,
 ) -> Overlay {
     let mut result = Overlay { parts: Vec::new(), uncovered: None, doubly_covered: None };
-    // A point within rounding of a curve counts as inside only if it is so for both signs of the curve.
-    let inside = |formula: &Formula, p: Point| {
-        let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
-            0 => sign,
-            _ => shapes[curve].value(p),
-        };
-        [-1.0, 1.0].into_iter().all(|sign| formula.holds(&|curve| value(curve, sign)))
-    };
     for cell in cells {
         let cell_piece = piece(cell, Some(cell.part), shapes, size);
         for (part, holding) in divided(cell_piece, conditions, shapes, size) {
@@ -140,9 +142,10 @@ pub(crate) fn overlay(
             if part.is_sliver() {
                 let Some(first) = holding.first() else { continue };
                 let formulas = [parts[cell.part], &conditions[*first]];
-                let is_clearly_inside =
-                    |p: &Point| formulas.into_iter().all(|formula| inside(formula, *p));
-                if !part.chords().any(|p| is_clearly_inside(&p)) {
+                let any_inside = part.chords().any(|p| {
+                    formulas.into_iter().all(|formula| is_clearly_inside(formula, p, shapes, size))
+                });
+                if !any_inside {
                     continue;
                 }
             }

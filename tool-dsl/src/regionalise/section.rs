@@ -1,7 +1,9 @@
 //! One side of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
 //! feature grows before it touches another.
 
-use crate::geometry::outline::{Point, Segment, bounding_box, cross, dot, minus, norm, turn};
+use crate::geometry::outline::{
+    Point, Segment, bounding_box, cross, dot, minus, mirrored_direction, norm, turn,
+};
 use std::f64::consts::PI;
 
 /// A feature to which a point can be nearest.
@@ -78,16 +80,16 @@ impl<'o> Section<'o> {
     /// Collects the segments of the outline and the reflex corners between them. At the axis the outline meets its own
     /// mirror image, and only half of a corner's fan lies on this side.
     fn find_features(&mut self) {
-        let mirrored = |t: Point| [t[0], -t[1]];
         let (Some(first), Some(last)) = (self.outline.first(), self.outline.last()) else { return };
         let start = first.tangent(false);
-        self.add_corner(None, mirrored(start), start);
+        self.add_corner(None, mirrored_direction(start), start);
         for (index, segment) in self.outline.iter().enumerate() {
             self.features.push(Feature::Piece(index));
             self.fans.push([0.0; 2]);
             let end = segment.tangent(true);
             let next = self.outline.get(index + 1);
-            let next = next.map_or(mirrored(last.tangent(true)), |next| next.tangent(false));
+            let next =
+                next.map_or(mirrored_direction(last.tangent(true)), |next| next.tangent(false));
             self.add_corner(Some(index), end, next);
         }
     }
@@ -318,15 +320,13 @@ impl<'o> Section<'o> {
 
     /// Returns whether two features touch only where they join, as far as a ball at `foot_point` can tell.
     fn shares_end(&self, feature: usize, foot_point: &FootPoint, other: usize) -> bool {
-        let are_joined = |piece: usize, previous: Option<usize>| {
-            self.adjacent_segments(previous)
-                .into_iter()
-                .flatten()
-                .any(|(adjacent, _)| adjacent == piece)
-        };
         match (self.features[feature], self.features[other]) {
             (Feature::Piece(piece), Feature::Corner(previous))
-            | (Feature::Corner(previous), Feature::Piece(piece)) => are_joined(piece, previous),
+            | (Feature::Corner(previous), Feature::Piece(piece)) => self
+                .adjacent_segments(previous)
+                .into_iter()
+                .flatten()
+                .any(|(adjacent, _)| adjacent == piece),
             (Feature::Piece(a), Feature::Piece(b)) if a.abs_diff(b) == 1 => {
                 let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
                 if turn(low.tangent(true), high.tangent(false)) != 0.0 {

@@ -7,7 +7,9 @@
 //! the surface.
 
 use crate::diagnostic::format_number;
-use crate::geometry::outline::{Circle, ExactPoint, Segment, cross, dot, doubles, minus, turn};
+use crate::geometry::outline::{
+    Circle, ExactPoint, Segment, cross, dot, doubles, minus, mirrored_direction, turn,
+};
 use crate::number::Number;
 use std::f64::consts::PI;
 
@@ -40,13 +42,11 @@ pub(crate) fn rounded(
     // Corner `k` precedes segment `k`; the last corner follows all segments.
     let corners: Vec<Option<Corner>> =
         (0..=count).map(|k| corner(outline, k, length)).collect::<Result<_, _>>()?;
-    let taken = |k: usize| {
-        let [before, after] = [&corners[k], &corners[k + 1]];
-        let [before, after] =
-            [before.as_ref().map(|c| c.taken[1]), after.as_ref().map(|c| c.taken[0])];
-        before.unwrap_or(0.0) + after.unwrap_or(0.0)
+    let fraction_available = |k: &usize| {
+        let before = corners[*k].as_ref().map_or(0.0, |corner| corner.taken[1]);
+        let after = corners[*k + 1].as_ref().map_or(0.0, |corner| corner.taken[0]);
+        size(&outline[*k]) / (before + after)
     };
-    let fraction_available = |k: &usize| size(&outline[*k]) / taken(*k);
     if let Some(tightest) =
         (0..count).min_by(|a, b| fraction_available(a).total_cmp(&fraction_available(b)))
         && 1.0 > fraction_available(&tightest) * (1.0 + ROUNDING)
@@ -121,12 +121,12 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
     let behind = k.checked_sub(1);
     let (before, after) = (behind.map(|k| &outline[k]), outline.get(k));
     // At the axis the outline meets its mirror image.
-    let mirrored = |t: [f64; 2]| [t[0], -t[1]];
     let incoming = before.map(|s| s.tangent(true));
     let outgoing = after.map(|s| s.tangent(false));
-    let (Some(a), Some(b)) =
-        (incoming.or(outgoing.map(mirrored)), outgoing.or(incoming.map(mirrored)))
-    else {
+    let (Some(a), Some(b)) = (
+        incoming.or(outgoing.map(mirrored_direction)),
+        outgoing.or(incoming.map(mirrored_direction)),
+    ) else {
         return Ok(None);
     };
     let turned = turn(a, b);

@@ -194,19 +194,22 @@ fn names(
     Outline { segments: outline, surfaces, .. }: &Outline,
     parts: &[Derived],
 ) -> Vec<(String, usize, Span)> {
-    let name = |piece: usize| {
-        let surface = outline[piece].surface;
-        let of_surface = |other: &&Segment| other.surface == surface;
-        let segment_count = outline.iter().filter(of_surface).count();
-        let before = outline[..=piece].iter().filter(of_surface).count();
-        let word = &surfaces[surface].name;
-        if segment_count > 1 { format!("{word}.{before}") } else { word.clone() }
-    };
     let mut fans = std::collections::BTreeMap::new();
     parts
         .iter()
         .map(|part| match part.feature {
-            Feature::Piece(piece) => (name(piece), outline[piece].surface, outline[piece].span),
+            Feature::Piece(piece) => {
+                let Segment { surface, span, .. } = outline[piece];
+                let count = |segments: &[Segment]| {
+                    segments.iter().filter(|other| other.surface == surface).count()
+                };
+                let word = &surfaces[surface].name;
+                let name = match count(outline) {
+                    1 => word.clone(),
+                    _ => format!("{word}.{}", count(&outline[..=piece])),
+                };
+                (name, surface, span)
+            }
             Feature::Corner(behind) => {
                 let first = behind.unwrap_or(0);
                 let second = behind.map_or(0, |piece| (piece + 1).min(outline.len() - 1));

@@ -243,7 +243,6 @@ fn definitions(
 
 /// Returns the file's unit, which has to be the first item and stated exactly once.
 fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
-    let missing = |span: Span| Diagnostic::new(span, ValueKind::MissingUnit);
     let Some(Item::Units(name)) = tool.items.first() else {
         let later = tool.items.iter().find_map(|item| match item {
             Item::Units(name) => Some(name.span),
@@ -251,7 +250,7 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
         });
         return Err(match later {
             Some(span) => Diagnostic::new(span, ValueKind::UnitNotFirst),
-            None => missing(tool.name.span),
+            None => Diagnostic::new(tool.name.span, ValueKind::MissingUnit),
         });
     };
     if let Some(Item::Units(second_unit)) =

@@ -490,7 +490,7 @@ fn transformed_outline(
     first: usize,
 ) -> Vec<Segment> {
     let transformed = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
-    let transformed_outline = |segment: &Segment| {
+    let segments = outline.iter().map(|segment| {
         let circle = segment.circle.as_ref().map(|circle| Circle {
             centre: transformed(&circle.centre),
             radius: &circle.radius * scale,
@@ -498,8 +498,8 @@ fn transformed_outline(
         });
         let ends = [transformed(&segment.from), transformed(&segment.to)];
         Segment::new(ends, circle, segment.surface + first, segment.span)
-    };
-    outline.iter().map(transformed_outline).collect()
+    });
+    segments.collect()
 }
 
 /// Returns the outline of the solid `lower` below a plane across the axis and of the solid `upper` above it. `upper`

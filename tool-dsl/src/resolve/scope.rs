@@ -178,8 +178,12 @@ fn circular(cycle: &[Step<'_>], span: Span) -> Diagnostic {
         return Diagnostic::new(span, kind);
     };
     let next = cycle.iter().skip(1).chain(&cycle[..1]);
-    let link = |(step, next): (&Step<'_>, &Step<'_>)| [step.word(), next.word()].map(str::to_owned);
-    let links: Vec<[String; 2]> = cycle.iter().zip(next).take(MAX_LISTED_LINKS).map(link).collect();
+    let links: Vec<[String; 2]> = cycle
+        .iter()
+        .zip(next)
+        .take(MAX_LISTED_LINKS)
+        .map(|(step, next)| [step.word(), next.word()].map(str::to_owned))
+        .collect();
     let more = cycle.len() - links.len();
     let kind = ValueKind::CircularDefinition { name, links: CycleLinks(links), more };
     Diagnostic::new(span, kind).with_label(second.span, "first link of the cycle")

@@ -115,9 +115,10 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
         let start = pair.as_span().start();
         Span { start, end: start + length }
     };
-    let name = |pair: &Pair<'_, Rule>| pair.as_rule() == Rule::name;
-    let long =
-        pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > MAX_NAME_BYTES);
+    let long = pairs
+        .clone()
+        .flatten()
+        .find(|pair| pair.as_rule() == Rule::name && pair.as_str().len() > MAX_NAME_BYTES);
     if let Some(pair) = long {
         return Some(Diagnostic::new(
             span(&pair, MAX_NAME_BYTES),

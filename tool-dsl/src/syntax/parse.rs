@@ -130,8 +130,9 @@ impl Reader<'_> {
                 let words: Vec<&str> =
                     text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
-                let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
-                let defined = words.windows(2).filter(|pair| defines(pair[0]));
+                let defined = words
+                    .windows(2)
+                    .filter(|pair| ["let", "param", "curve", "region"].contains(&pair[0]));
                 self.broken.extend(defined.map(|pair| pair[1].to_owned()));
                 None
             }

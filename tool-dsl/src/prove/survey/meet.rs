@@ -45,6 +45,8 @@ impl Survey<'_> {
                 && (is_small || box_size.is_last())
                 && !self.jump_points.contains_key(&key)
             {
+                // Only in small boxes: there a few test points suffice, and a jump is not that of a larger box's
+                // corner.
                 let jump_point = self.witness.find_jump(meeting.pair, cell);
                 self.jump_points.extend(jump_point.map(|jump_point| (key, jump_point)));
             }
@@ -59,6 +61,7 @@ impl Survey<'_> {
             // In a point box other regions may lie between the two.
             if box_size != BoxSize::Point && self.feet.is_none() {
                 let (fall, slack) = self.fall_across(meeting);
+                // A smaller box may show that both sides lead down.
                 any_vague |= fall < STEEP_SLOPE && slack > MAX_SLOPE_UNCERTAINTY;
                 min_fall = min_fall.min(fall);
             }
@@ -135,6 +138,7 @@ impl Survey<'_> {
         let (Joint::Kinked, Pair { own, other: Some(other) }) =
             (meeting.separation.joint, meeting.pair)
         else {
+            // Otherwise each side leads down by its own slope, or both slopes agree.
             return (f64::INFINITY, 0.0);
         };
         let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
@@ -191,6 +195,7 @@ impl Survey<'_> {
             let statement = Statement::ContinuousDepth(from, to);
             self.undecided.push(OpenProof { cell, statement });
         }
+        // Where magnitude is depth, the two differ as exactly as depths do; enclosures would show a difference.
         let mut sides = [Some(own), other].into_iter().flatten();
         let magnitude_jump = if sides.all(|side| regions[side].magnitude == regions[side].depth) {
             jump

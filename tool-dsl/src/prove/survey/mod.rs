@@ -58,6 +58,7 @@ const MAX_SLOPE_UNCERTAINTY: f64 = 0.1;
 /// `check_overlaps` is set, that no two of them overlap.
 pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> Certificate {
     let boxes = boxes.min(MAX_BOXES_TIMES_REGIONS / tool.model.regions.len().max(1));
+    // During compilation there are boxes for one try only.
     let single_try = [(POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[0].0, 3)];
     for (point_box_fraction, thirds) in if boxes > MAX_BOXES_IN_COMPILATION {
         &POINT_BOX_FRACTIONS_AND_BUDGET_THIRDS[..]
@@ -65,6 +66,7 @@ pub(super) fn survey(tool: &PlannedTool, boxes: usize, check_overlaps: bool) -> 
         &single_try
     } {
         let mut survey = Survey::new(tool, *point_box_fraction, check_overlaps);
+        // With an open proof, larger point boxes may still finish it, at the price of more slack.
         if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
             return survey.certificate();
         }
@@ -218,17 +220,21 @@ impl<'t> Survey<'t> {
             owners.dedup();
             let box_size = match half_diagonal(&cell) / self.size {
                 reach if reach <= self.point_box_fraction => BoxSize::Point,
+                // What is not proved in such a box stays open.
                 _ if boxes.count > budget => BoxSize::Last,
                 reach if reach <= self.border_box_fraction => BoxSize::Fine,
                 _ => BoxSize::Coarse,
             };
             let done = match owners.as_slice() {
+                // Outside there is no depth, but no region of the list may contain the box either.
                 [None] => self.check_owners(cell, &claims, box_size),
                 [Some(owner)] => {
                     self.check_owners(cell, &claims, box_size)
                         && self.examine_interior(*owner, cell, box_size)
                 }
+                // A border in a large box encloses too wide ranges of depths and turns.
                 _ if box_size == BoxSize::Coarse => false,
+                // Division leaves fewer claims; their pairs would be too many here.
                 _ if claims.len() > MAX_CLAIMS && box_size == BoxSize::Fine => false,
                 _ => {
                     self.check_owners(cell, &claims, box_size)
@@ -250,6 +256,7 @@ impl<'t> Survey<'t> {
             return self.check_feet(cell, claims, box_size);
         }
         // If depth is the distance, the owner is the nearest.
+        // In a point box, borders that touch cannot be told apart; its depths are compared instead.
         if self.tool.model.is_exact() || box_size == BoxSize::Point {
             return true;
         }
@@ -293,8 +300,10 @@ impl<'t> Survey<'t> {
     fn examine_interior(&mut self, owner: usize, cell: Cell, box_size: BoxSize) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        // Wide slopes would make `L` too large and `c` too small.
         let known = depth.length.high - depth.length.low <= SLOPE_ACCURACY * depth.length.high;
         let is_positive = depth.value.low >= -TOLERANCE * self.size;
+        // The feet of a profile prove `c` without descents.
         let falls = self.feet.is_some() || self.fall_rate(owner, &[Some(owner)], cell) > 0.0;
         // In the half plane a direction vanishes at points, which small boxes locate well.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
@@ -306,6 +315,7 @@ impl<'t> Survey<'t> {
         if !box_size.is_last() && !(is_positive && falls && (known || box_size == BoxSize::Fine)) {
             return false;
         }
+        // Only a box that is not divided further comes here with a depth that may be below 0.
         if !is_positive {
             let statement = Statement::NonNegativeDepth(self.region_name(Some(owner)));
             self.undecided.push(OpenProof { cell, statement });
@@ -353,10 +363,9 @@ impl<'t> Survey<'t> {
         let niceness = self.slopes.get(region.niceness);
         let dot_product =
             (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
-        // A point of the region is not outside.
-        let clamp_at_zero = |value: Interval| Interval { low: value.low.max(0.0), ..value };
         let facts_here = RegionFacts {
-            depth: clamp_at_zero(depth.value),
+            // A point of the region is not outside.
+            depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
             gradient_length: depth.length,
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
@@ -423,6 +432,7 @@ impl Survey<'_> {
         let middle = cell.middle();
         let point = Cell::point(middle);
         let claims = self.cover.claims(point);
+        // The point would prove nothing about the region if it might be another's.
         if !matches!(claims.as_slice(), [claim] if claim.owner == Some(owner)) {
             return;
         }
@@ -431,6 +441,7 @@ impl Survey<'_> {
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
         let direction = self.raw_direction(owner);
+        // An enclosure over a point is nearly a value, so its lower end is certain.
         let certain = &mut self.certain_facts[owner];
         if let Some(angle) = angle_to_descent(direction, depth, self.directions[owner].is_parallel)
             && angle.low > ANGLE_TOLERANCE
@@ -443,6 +454,7 @@ impl Survey<'_> {
         if dot_product.low > SLOPE_MARGIN * depth.length.high * niceness.length.high
             && niceness.value.low > 0.0
         {
+            // Along the gradient of depth, over a length of 1/|∇depth| per unit of depth.
             let rate = dot_product.low / (depth.length.high * depth.length.high);
             keep_larger(&mut certain.rises, rate, middle);
         }
@@ -457,6 +469,7 @@ impl Survey<'_> {
         let (min_slope, missed_distance) = self.min_slope();
         let slack = [
             self.jump_bound(),
+            // Twice, by Theorem 2 of `docs/proofs.md`.
             2.0 * self.overshoot,
             sum_rounded_up(0.0, min_slope.max(0.0) * missed_distance),
         ];
@@ -478,6 +491,7 @@ impl Survey<'_> {
         for (region, direction) in self.directions.into_iter().enumerate() {
             let facts = self.regions[region].take().unwrap_or(RegionFacts::NONE);
             let is_distance = self.border_prover.is_distance(region);
+            // The identity is exact, where enclosures of the slope have rounding.
             let exact_length = Interval::new(1.0, 1.0);
             regions.push(RegionFacts {
                 share: shares[region],
@@ -524,6 +538,7 @@ impl Survey<'_> {
             return passes * sum_rounded_up(self.jumps, 2.0 * steps);
         };
         let deviation = unless_rounding(feet.max_difference, self.size);
+        // Each pair of neighbours is crossed once after loops are removed, and each adds twice the deviation.
         let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
         self.largest_jumps.values().copied().fold(
             sum_rounded_up(steps, sum_rounded_up(deviation, 2.0 * pairs * deviation)),
