@@ -47,6 +47,7 @@ pub(super) struct Nearness {
 pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness) -> Vec<Border> {
     let (mut points, mut edges) = edges(pieces, near);
     let mut chains = chains(&edges, points.len());
+    // First, so that a joint knows the curves on both sides of a speck.
     contract(&mut edges, &mut chains, &points, 0.2 * near.visible_length);
     polish(curves, &edges, &chains, &mut points, near.reach);
     chains.iter().map(|chain| border(curves, &edges, chain, &points, near)).collect()
@@ -62,6 +63,7 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     }
     let next = |index: usize| {
         let corner = edges[index].ends[1];
+        // A joint of more than two borders ends the chain.
         let ([after], [_]) = (leaving[corner].as_slice(), coming[corner].as_slice()) else {
             return None;
         };
@@ -84,6 +86,7 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
         let mut chain = vec![start];
         taken[start] = true;
         while let Some(after) = chain.last().and_then(|last| next(*last)) {
+            // A closed loop has come back to its start.
             if taken[after] {
                 break;
             }
@@ -135,6 +138,7 @@ fn polish(
         let (first, last) = (edges[chain[0]], edges[chain[chain.len() - 1]]);
         for (edge, joint) in [(first, first.ends[0]), (last, last.ends[1])] {
             let constraint = match (edge.sides[1], edge.curve) {
+                // The axis is a constraint like a curve.
                 (Side::Axis, _) => None,
                 (_, Some(curve)) => Some(curve),
                 _ => continue,
@@ -174,6 +178,7 @@ fn border(
     let ends = ends(edges, chain);
     let mut row: Vec<Point> = vec![points[ends[0]]];
     row.extend(chain.iter().map(|index| points[edges[*index].ends[1]]));
+    // Corners between the ends are on the line, apart from rounding.
     let straight =
         first.sides[1] == Side::Axis || first.curve.is_some_and(|curve| curves.straight(curve));
     let (strokes, exact) = if straight && ends[0] != ends[1] {
@@ -212,6 +217,7 @@ fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
     let mut halves = Halves::new();
     for (index, piece) in pieces.iter().enumerate() {
         for (from, to, curve) in weld.edges_of_piece(piece) {
+            // Both polygons of a side find the same entry, whatever their direction.
             let (key, side_index) = if from < to { ([from, to], 0) } else { ([to, from], 1) };
             halves.entry(key).or_default()[side_index].get_or_insert((index, curve));
         }
@@ -313,6 +319,7 @@ struct Weld {
 
 impl Weld {
     fn corner(&mut self, p: Point) -> usize {
+        // Buckets twice as wide as the tolerance: a near corner is in this one or beside it.
         let key = p.map(|part| (part / (2.0 * self.near)).floor() as i64);
         for i in [0, -1, 1] {
             for j in [0, -1, 1] {
@@ -340,6 +347,7 @@ impl Weld {
             .filter(|k| corners[*k] != next(*k))
             .map(|k| (corners[k], next(k), piece.corners[k].curve))
             .collect();
+        // What is left of a sliver encloses nothing.
         if sides.len() < 3 { Vec::new() } else { sides }
     }
 }

@@ -119,6 +119,7 @@ impl CuttingPart {
             })
         };
         let high = cutting().map(|stroke| stroke.span()[1]).reduce(f64::max)?;
+        // From the tool's lowest point, even if that does not cut.
         let low = outline(whole).map(|(_, stroke)| stroke.span()[0]).fold(high, f64::min);
         let radius = cutting().map(Stroke::widest).fold(radius(whole, high), f64::max);
         Some(CuttingPart { low, high, radius })

@@ -161,6 +161,7 @@ impl<'m> Picture<'m> {
         let shapes = (0..model.regions.len()).map(|region| {
             let mut shape = Shape::new(&borders, &view, |side| side == Side::Region(region));
             let half = view.half + 1.0;
+            // Marks keep off the break lines.
             for y in view.seams() {
                 shape.keep_off(
                     [-5.0, 0.0, 5.0].map(|shift| [[-half, y + shift], [half, y + shift]]),

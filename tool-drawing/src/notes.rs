@@ -116,6 +116,7 @@ fn chosen(picture: &Picture<'_>, capacity: usize) -> Vec<Face> {
         let least_telling = (0..chosen.len())
             .filter(|index| !alone(&chosen[*index]))
             .min_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length));
+        // Every surface keeps one face.
         let Some(least_telling) = least_telling else { break };
         chosen.remove(least_telling);
     }
@@ -294,6 +295,7 @@ fn spread(target_heights: &[f64], gap: f64) -> Vec<f64> {
             if end <= cluster.0 / cluster.1 as f64 {
                 break;
             }
+            // The two clusters would overlap: they become one, centred on all its notes.
             clusters.pop();
             let shifted = cluster.0 - gap * (count * cluster.1) as f64;
             cluster = (sum + shifted, count + cluster.1);
@@ -385,6 +387,7 @@ fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
             match known {
                 Some(face) => {
                     face.length += length;
+                    // Of equal strokes the first stays, whatever the rounding of their lengths.
                     if length > face.longest.length() * (1.0 + LENGTH_TOLERANCE_FRACTION) {
                         face.longest = *stroke;
                     }
@@ -398,6 +401,7 @@ fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
 
 fn measure(stroke: &Stroke, exact: bool, size: f64) -> Measure {
     match stroke.circle {
+        // Only an exact arc has a radius that may be printed.
         Some((centre, radius)) if exact => Measure::Arc(centre, radius),
         None if (stroke.from[0] - stroke.to[0]).abs() < LENGTH_TOLERANCE_FRACTION * size => {
             Measure::Cylinder(stroke.from[0] / 2.0 + stroke.to[0] / 2.0)
@@ -442,6 +446,7 @@ pub(super) fn heights(
                 && surface(before) == surface(border)
                 && before.strokes.last().is_some_and(|last| one(last, first, size))
         });
+        // A joint within one face is no height of its own.
         if !goes_on {
             steps.push(first.from);
         }

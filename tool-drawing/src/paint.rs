@@ -176,7 +176,9 @@ pub(super) fn area_colours(regions: usize, borders: &[Border]) -> Vec<&'static s
             .collect();
         let colour = (0..REGION_FILLS.len())
             .filter(|colour| !neighbour_colours.contains(colour))
+            // The least used colour, so that the palette is used evenly.
             .min_by_key(|colour| used[*colour])
+            // Neighbours have all of them.
             .unwrap_or(region % REGION_FILLS.len());
         used[colour] += 1;
         chosen.push(colour);

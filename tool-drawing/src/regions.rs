@@ -302,6 +302,7 @@ impl<'m> Directions<'m> {
                     free_distance.min(24.0) + 0.3 * distance_to_chosen.min(90.0)
                 }
             };
+            // `max_by` returns the last of equal candidates, and the first one counts.
             let best = (0..candidates.len())
                 .rev()
                 .max_by(|a, b| score(&candidates[*a]).total_cmp(&score(&candidates[*b])));

@@ -79,6 +79,7 @@ pub(super) fn divide(
     fineness: Fineness,
 ) -> Vec<Piece> {
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
+    // At most 64 root cells in a row, also for a needle.
     let root = width.min(height).max(width.max(height) / 64.0);
     let lattice = Lattice { low, unit: root / f64::from(1 << MAX_HALVINGS) };
     let mut division =
@@ -111,6 +112,7 @@ impl Division<'_, '_> {
         if cell.side == 1 || self.cells.len() > MAX_CELLS || self.is_fine_enough(&tree, low, high) {
             let [i, j] = cell.corner;
             let s = cell.side;
+            // A larger neighbour takes these corners into its sides, so that both cut them alike.
             self.corners.extend([[i, j], [i + s, j], [i + s, j + s], [i, j + s]]);
             self.cells.push((cell, tree));
             return;
@@ -139,6 +141,7 @@ impl Division<'_, '_> {
             return self.subdivide(above, low, high);
         }
         let (below, above) = (self.subdivide(below, low, high), self.subdivide(above, low, high));
+        // The curve separates owners elsewhere only.
         if below == above {
             return below;
         }
@@ -154,8 +157,10 @@ impl Division<'_, '_> {
         let bent: Vec<CurveIndex> =
             splits.iter().copied().filter(|curve| !self.curves.straight(*curve)).collect();
         if bent.is_empty() {
+            // Straight lines cut exactly, but each split may double the polygons.
             return splits.len() <= MAX_SPLITS_PER_CELL || side < self.fineness.flat;
         }
+        // A chord in so small a cell is flat.
         if side < 2.0 * self.fineness.flat {
             return true;
         }
@@ -208,9 +213,11 @@ impl Division<'_, '_> {
 
     /// Returns the crossing of a curve with a side. The result does not depend on the order of the ends.
     fn crossing(&mut self, curve: CurveIndex, a: Valued, b: Valued) -> Point {
+        // Both cells of a side must find the same point to the last bit.
         let (a, b) = if (a.at[1], a.at[0]) <= (b.at[1], b.at[0]) { (a, b) } else { (b, a) };
         let between = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
         let (mut low, mut high) = ((0.0, a.value), (1.0, b.value));
+        // A secant alone would miss a bent curve; for a line it is exact.
         if !self.curves.straight(curve) {
             for _ in 0..16 {
                 let t = (low.0 + high.0) / 2.0;
@@ -219,6 +226,7 @@ impl Division<'_, '_> {
             }
         }
         let share = low.1 / (low.1 - high.1);
+        // Infinite values, where the curve is undefined, give no share.
         let share = if share.is_finite() { share } else { 0.5 };
         between(low.0 + share * (high.0 - low.0))
     }
@@ -234,6 +242,7 @@ impl Division<'_, '_> {
         }
         let mut pieces = Vec::new();
         self.cut(corners, tree, &mut pieces);
+        // Two polygons meet along one side, with the same ends.
         if pieces.len() > 2 {
             joined(&mut pieces, 1e-9 * (s as f64) * self.lattice.unit);
         }
@@ -259,6 +268,7 @@ impl Division<'_, '_> {
             Tree::Split { curve, below, above, .. } => {
                 let values = self.values(*curve, &corners);
                 let changes = changes(&values);
+                // A bent curve enters twice. The corners of a triangle change signs at most twice.
                 if changes > 2 {
                     for triangle in fan(&corners) {
                         self.cut(triangle, tree, pieces);
@@ -279,6 +289,7 @@ impl Division<'_, '_> {
     fn values(&mut self, curve: CurveIndex, corners: &[Corner]) -> Vec<f64> {
         let values: Vec<f64> =
             corners.iter().map(|corner| self.curves.value(curve, corner.at)).collect();
+        // A vertex that an earlier cut put on the curve must not be cut off as a sliver.
         let largest = values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
         values.into_iter().map(|v| if v.abs() < 1e-10 * largest { 0.0 } else { v }).collect()
     }

@@ -97,6 +97,7 @@ fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (uu, vv) = (dot(u, u), dot(v, v));
     let q = [(v[1] * uu - u[1] * vv) / double_cross, (u[0] * vv - v[0] * uu) / double_cross];
     let radius = norm(q);
+    // Nearly collinear points fit a circle of any radius.
     let flat = radius > 1e4 * norm(v).max(norm(u));
     (radius.is_finite() && !flat).then_some(([a[0] + q[0], a[1] + q[1]], radius))
 }
@@ -122,7 +123,9 @@ pub(super) fn round(
     }
     let arc = |from: Point, to: Point| Stroke { from, to, circle: Some((centre, radius)) };
     let swept: f64 = row.windows(2).map(|pair| arc(pair[0], pair[1]).turn()).sum();
+    // A stroke is less than half a circle.
     let parts = ((swept.abs() / (0.9 * PI)).ceil() as usize).max(1);
+    // Each arc needs a row of points of its own.
     if parts > last {
         return None;
     }

@@ -42,6 +42,7 @@ impl View {
             _ => (0.0, 0.0),
         };
         let length = high - low;
+        // Levels that differ by rounding are one.
         levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
         let plain: Vec<[f64; 2]> = levels
             .windows(2)

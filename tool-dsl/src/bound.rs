@@ -46,8 +46,7 @@ impl std::fmt::Debug for Prover<'_> {
 impl<'m> Prover<'m> {
     /// Makes a prover that uses the curves only.
     pub fn new(model: &'m Model) -> Prover<'m> {
-        let values = model.curves.iter().map(|curve| curve.value);
-        let encloser = Encloser::new(&model.graph, values);
+        let encloser = Encloser::new(&model.graph, model.curve_values());
         let everywhere = Cell { sides: [ENTIRE; 3] };
         Prover { model, encloser, reaches: vec![everywhere; model.regions.len()] }
     }
@@ -61,6 +60,7 @@ impl<'m> Prover<'m> {
             region.inside.narrow_signs(&mut signs);
             let mut reach = linear.bounding_box(&signs);
             for choices in region.inside.disjunctions() {
+                // A point of the region satisfies one of the choices.
                 let hull = choices
                     .iter()
                     .map(|choice| {
@@ -91,12 +91,14 @@ impl<'m> Prover<'m> {
         let model = self.model;
         let mut position = BoxPosition::Outside;
         for (index, region) in model.regions.iter().enumerate() {
+            // The linear curves exclude the region here.
             if !self.reaches[index].meets(&cell) {
                 continue;
             }
             match region.inside.decide_with(&mut |curve| self.signs(curve)) {
                 Some(true) => return BoxPosition::Inside,
                 Some(false) => {}
+                // A later region may still contain the whole box.
                 None => position = BoxPosition::Unknown,
             }
         }
@@ -122,6 +124,7 @@ impl<'m> Prover<'m> {
         let mut pending = vec![cell];
         let mut remaining = budget;
         while let Some(cell) = pending.pop() {
+            // The box is nearer to the axis than the points in question.
             if cell.radius().high < radius {
                 continue;
             }
@@ -170,6 +173,7 @@ impl Extent {
         let sides = self.cell().sides;
         let largest = sides.iter().fold(0.0, |m: f64, s| m.max(s.high.abs()).max(s.low.abs()));
         let mut scale = 2f64.powi(largest.log2().floor() as i32);
+        // Once, and again if the logarithm was rounded down.
         while scale <= largest {
             scale *= 2.0;
         }
@@ -229,6 +233,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     for pass in 0..2 {
         for (axis, high) in domain.axis_directions() {
             let side = cell.sides[*axis];
+            // In the second pass the other end is already near the solid.
             let opposite = if pass == 0 { domain_box.sides[*axis] } else { side };
             let end = if *high {
                 inward(side.high, opposite.low, 52, |v| {
@@ -268,6 +273,7 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     if !beyond(2f64.powi(power)) {
         return None;
     }
+    // Large steps first: each costs a proof for all directions.
     for step in [64, 16, 4, 1] {
         while power - step > -280 && beyond(2f64.powi(power - step)) {
             power -= step;
@@ -301,6 +307,7 @@ fn endless(model: &Model) -> Diagnostic {
     let domain = model.domain;
     let mut alone = model.clone();
     for region in &model.regions {
+        // One region by itself shows which of them is unbounded.
         alone.regions = vec![region.clone()];
         let out = unbounded_direction(
             domain,
@@ -431,6 +438,7 @@ fn split_until_full(slabs: &mut Vec<EnvelopeSlab>, prover: &mut Prover<'_>, exte
     let mut halves: Vec<Option<[EnvelopeSlab; 2]>> = vec![None; slabs.len()];
     while slabs.len() < MAX_SLABS + SPARE_SLABS {
         for (slab, halves) in slabs.iter().zip(&mut halves) {
+            // A proof per half: those of other slabs are kept.
             halves.get_or_insert_with(|| {
                 let ends = [slab.low, slab.low / 2.0 + slab.high / 2.0, slab.high];
                 [0, 1].map(|k| slab_between(prover, extent, ends[k], ends[k + 1], slab.radius))
@@ -455,6 +463,7 @@ fn merge_neighbours(slabs: &mut Vec<EnvelopeSlab>) {
         };
         let best = (0..slabs.len() - 1).min_by(|&i, &j| added(i).total_cmp(&added(j)));
         let Some(best) = best else { return };
+        // With few enough slabs, only mergers that add next to nothing.
         if slabs.len() <= MAX_SLABS && added(best) > MAX_ADDED_FRACTION * slabs[best].area() {
             return;
         }
@@ -472,6 +481,7 @@ pub fn lateral_extent(extent: &Extent) -> [[f64; 2]; 2] {
 /// Returns a short decimal that is at least `value`: a multiple of `1 / steps`.
 fn rounded_up(value: f64, steps: f64) -> f64 {
     let count = (value * steps).ceil();
+    // A quotient by a power of ten is the nearest double to the decimal; `1 / steps` is an integer otherwise.
     let short = if steps >= 1.0 { count / steps } else { count * (1.0 / steps) };
     if short >= value { short } else { (count + 1.0) / steps }
 }

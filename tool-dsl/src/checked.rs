@@ -67,7 +67,7 @@ pub(crate) fn check(
     // The plan would only repeat these errors.
     without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
-    let file_curves: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
+    let file_curves: Vec<Id> = model.curve_values().collect();
     let planned =
         plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     debug_assert_eq!(
@@ -87,7 +87,7 @@ pub(crate) fn check(
 /// [`CheckKind::ConstantOverflow`] if one overflows.
 fn finite(model: &Model) -> Result<(), Diagnostic> {
     let outputs = model.regions.iter().flat_map(|region| region.outputs.roots());
-    let curves = model.curves.iter().map(|curve| curve.value);
+    let curves = model.curve_values();
     let needed = model.graph.dependencies(outputs.chain(curves));
     let beyond =
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());

@@ -1,12 +1,11 @@
 //! The source text of a tool, and locations in it.
 
+use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
-
-use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// The length of the longest text that is read, in bytes.
 pub const MAX_SOURCE_BYTES: usize = 1 << 20;

@@ -91,6 +91,7 @@ impl Condition {
         for (variable, value) in exact.factors.iter().enumerate() {
             let rounding_error = number::ROUNDING * sizes[variable];
             let is_rounding = rounding_error.is_finite() && value.to_f64().abs() <= rounding_error;
+            // A factor that cancels leaves its rounding, which is not a variable left over.
             if Some(variable) == wanted {
                 factor = value.clone();
             } else if !value.is_zero() && !is_rounding {
@@ -133,6 +134,7 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
         |n: &Number| scale.as_ref().and_then(|scale| n.checked_div(scale)).unwrap_or(n.clone());
     let (x, y) = (rescale(&x), rescale(&y));
     let mut exact = a.exact.combined(&x, &b.exact, &y);
+    // It cancels by construction, apart from rounding.
     exact.factors[sum.variable] = Number::int(0);
     let combine = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
     let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| combine(*a, *b)).collect();
@@ -197,6 +199,7 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
             _ => rest.push(condition),
         }
     }
+    // The number may square with each variable. Giving up proves less, but nothing false.
     if rest.len() + upper.len() * lower.len() > MAX_CONDITIONS {
         return None;
     }

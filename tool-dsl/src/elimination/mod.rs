@@ -62,8 +62,8 @@ impl Linear {
     /// If some curve compares squares of expressions with roots, every comparison of squares becomes a
     /// comparison of the squared expressions, where their signs are known in a box that contains the tool.
     pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
-        let mut values = model.curves.iter().map(|curve| curve.value);
-        let roots = values.any(|value| compares_roots(&model.graph, value)).then_some(cell);
+        let compares_roots = model.curve_values().any(|value| compares_roots(&model.graph, value));
+        let roots = compares_roots.then_some(cell);
         Linear::of(model, model.depths(), roots)
     }
 
@@ -73,9 +73,8 @@ impl Linear {
         for (coord, axis, _) in model.domain.coordinates() {
             axes[*axis] = Some(variables.of(Variable::Monomial(monomial_of(*coord))));
         }
-        let curves = model.curves.iter().map(|curve| curve.value);
         let mut forms: Vec<Option<Form>> =
-            curves.chain(depths).map(|value| variables.form(value)).collect();
+            model.curve_values().chain(depths).map(|value| variables.form(value)).collect();
         if let Some(cell) = roots {
             for (form, curve) in forms.iter_mut().zip(&model.curves) {
                 if let Some(compared) = variables.comparison_without_squares(curve.value, cell) {
@@ -85,6 +84,7 @@ impl Linear {
         }
         let (mut facts, choices) = variables.facts();
         if roots.is_some() {
+            // With roots as variables, elimination needs to know how they bound one another.
             facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
         }
         let count = variables.count();
@@ -131,6 +131,7 @@ impl Linear {
                 _ if approximate_factor < -ROUNDING => end > range.low,
                 _ => false,
             };
+            // A repetition with 256 bits is slow, so only bounds that matter are confirmed.
             if !tighter {
                 continue;
             }
@@ -196,6 +197,7 @@ impl Linear {
     /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
         let mut conditions = self.conditions(signs);
+        // A point of a region has a depth of 0 or more, which the path does not say.
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
         conditions.extend(depth.map(|depth| depth.sides[1].clone()));
         self.has_no_solution(conditions)
@@ -211,6 +213,7 @@ impl Linear {
             None => Some(&zero_form),
         };
         let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
+        // `b - a < 0`; a contradiction shows that no such point exists.
         let deeper = b.combined(&Number::int(1), a, &Number::int(-1));
         let mut conditions = self.conditions(signs);
         conditions.push(Condition::from_exact(&Rc::new(deeper), true));
@@ -238,6 +241,7 @@ impl Linear {
             .filter(|(root, choices)| mentioned[*root] && choices.iter().all(is_relevant))
             .map(|(_, choices)| choices)
             .take_while(|choices| {
+                // All combinations are tried, and their number is a product.
                 count *= choices.len();
                 count <= MAX_CHOICES
             })

@@ -315,6 +315,11 @@ fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
+/// Encloses the dot product of two vectors.
+pub(crate) fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    (0..3).fold(ZERO, |sum, k| sum.plus(a[k].times(b[k])))
+}
+
 /// Bisects a box across its longest side. A side that spans several orders of magnitude is cut at their
 /// geometric middle, or at 0.
 pub(crate) fn halves(cell: Cell) -> [Cell; 2] {

@@ -65,6 +65,7 @@ impl Piece {
                 let [below, above] = [-1, 1].map(|side| {
                     let (vertices, edges) = cutter.half(&corners, side)?;
                     let part = Piece { vertices, edges, ..*self };
+                    // A part without area has no points to own.
                     (!is_thin(&part.vertices, cutter.size)).then_some(part)
                 });
                 Cut::Both(below, above)
@@ -88,6 +89,7 @@ impl Piece {
             },
         );
         let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
+        // A chord is no longer than the box's diagonal, which is at most twice this sum.
         let bulge = 2.0 * MAX_SAGITTA_IN_CHORDS * (half[0] + half[1]);
         [between(low, high, 0.5), [half[0] + bulge, half[1] + bulge]]
     }
@@ -156,6 +158,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             } else if let Some((top, side)) =
                 self.farthest_crossing([a, b], [sides[k], sides[next]], edge)
             {
+                // From a vertex on the curve, the crossing is the vertex itself.
                 if sides[k] != 0 {
                     corners.push((self.crossing(a, top, edge), 0, edge));
                 }
@@ -184,6 +187,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let other = match edge {
             Edge::Straight => return on_other_side(between(a, b, self.extremum(a, b)?)),
             Edge::Along(other) if other != self.curve => other,
+            // An edge along the cutting curve does not cross it, and the curve of other chords is not known.
             Edge::Along(_) | Edge::Chord => return None,
         };
         // A curve deviates from its chord and may therefore reach across.
@@ -213,6 +217,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let [previous_value, value, next_value] = values;
             let step = DIFFERENCE_STEP_IN_CHORDS / 2.0 * (previous_value - next_value)
                 / (previous_value - 2.0 * value + next_value);
+            // The value does not bend, or the edge has no such point.
             if !step.is_finite() {
                 return None;
             }
@@ -238,6 +243,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let (own, along) = (self.shape().at(a).gradient, self.shapes[other].at(a).gradient);
         let (way, chord) = ([-along[1], along[0]], minus(b, a));
         let slope = dot(own, way) * dot(way, chord).signum();
+        // It leaves to the side of its far end, where nothing is cut off.
         if slope * f64::from(far_side) >= -ON_CURVE_FRACTION * norm(own) * norm(along) {
             return None;
         }
@@ -271,6 +277,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 edges.push(if own == 0 && next_side != side { along } else { edge });
             }
         }
+        // A part between the curve and its chord has no area until a point of the curve is added.
         if along != Edge::Straight && is_thin(&vertices, self.size) {
             let bend = self.bend(*vertices.last()?, *vertices.first()?, 0.5)?;
             vertices.push(bend);
@@ -295,6 +302,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 (other.value * a - own.value * c) / determinant,
             ];
             p = minus(p, step);
+            // Rounding permits no better.
             if norm(step) <= 1e-17 * self.size {
                 break;
             }
@@ -449,6 +457,7 @@ impl<'g> CurveFunction<'g> {
                     evaluator.evaluate(EvaluationPoint::on_meridian(d, z));
                     evaluator.get(*id)
                 };
+                // Without a polynomial, the gradient is that of central differences.
                 let value_here = value(p[0], p[1]);
                 let step = 1e-6 * (norm(p) + 1e-3);
                 let gradient = [0, 1].map(|k| {
@@ -493,6 +502,7 @@ impl<'g> CurveFunction<'g> {
         let CurveFunction::Conic { factors: c, .. } = self else { return 0 };
         let Value { value, gradient: [a, b], terms } = self.at(middle);
         let [u, v] = half;
+        // By Taylor's formula about the centre, which is exact for a conic.
         let max_change = a.abs() * u + b.abs() * v;
         let max_change = max_change + c[3].abs() * u * u + c[4].abs() * u * v + c[5].abs() * v * v;
         if value.abs() <= 1.001 * max_change + 2.0 * ROUNDING * terms {
@@ -513,6 +523,7 @@ impl<'g> CurveFunction<'g> {
         if matches!(self, CurveFunction::Conic { .. }) {
             let [v0, slope, bend] = self.quadratic_along(a, b);
             let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
+            // The form of both roots that does not cancel.
             let q = -(slope + root.copysign(slope)) / 2.0;
             if let Some(t) = [v0 / q, q / bend].into_iter().find(|t| (0.0..=1.0).contains(t)) {
                 return t;

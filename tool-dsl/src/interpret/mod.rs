@@ -52,7 +52,7 @@ impl<'t> Interpreter<'t> {
             .regions
             .iter()
             .flat_map(|region| region.outputs.roots())
-            .chain(model.curves.iter().map(|curve| curve.value));
+            .chain(model.curve_values());
         Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots) }
     }
 

@@ -34,6 +34,7 @@ pub(crate) fn undefined_curves(model: &Model) -> Vec<Diagnostic> {
     for power in -20..=20 {
         let size = 2f64.powi(power);
         let extent = Extent::of(model.domain.bounding_cell(size), size);
+        // Each size by itself, so that the nearest fault is reported.
         let mut linter = Linter::new(model, &extent);
         for point in spread(model.domain, &extent, 50, 0.0) {
             linter.set_point(point);
@@ -85,6 +86,7 @@ pub(crate) fn lint(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     }
     linter.report_idle_regions();
     if !any_error(&linter.found) {
+        // Steps without a common factor pair points from all over.
         let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
         for (a, b) in pairs.take(if outside.is_empty() { 0 } else { SURFACE_SEGMENTS }) {
             linter.check_crossing(*a, *b);
@@ -115,20 +117,10 @@ struct Linter<'m> {
 
 impl<'m> Linter<'m> {
     fn new(model: &'m Model, extent: &Extent) -> Linter<'m> {
-        let roots = model
-            .regions
-            .iter()
-            .flat_map(|r| {
-                [r.depth, r.magnitude, r.niceness]
-                    .into_iter()
-                    .chain(r.raw_direction.0)
-                    .chain(r.direction)
-            })
-            .chain(model.curves.iter().map(|curve| curve.value));
         Linter {
             model,
             size: extent.scale(),
-            evaluator: Evaluator::new(&model.graph, roots),
+            evaluator: Evaluator::new(&model.graph, model.roots()),
             found: Vec::new(),
             owned_points: vec![0; model.regions.len()],
             holds: vec![0; model.regions.len()],
@@ -145,6 +137,7 @@ impl<'m> Linter<'m> {
             self.set_point(point);
             for curve in 0..self.scales.len() {
                 let size = self.value(curve).abs();
+                // An undefined value is reported elsewhere.
                 if size.is_finite() {
                     self.scales[curve] = self.scales[curve].max(size);
                 }
@@ -202,6 +195,7 @@ impl<'m> Linter<'m> {
                 let point = |z: f64| [d.max(0.0), 0.0, z];
                 let inside = (0..=COLUMNS).find(|step| self.owner(point(at(*step))).is_some());
                 let Some(step) = inside else { continue };
+                // One step lower is outside, or below the box.
                 let (mut inside_z, mut outside_z) = (at(step), at(step - 1));
                 for _ in 0..50 {
                     let middle = inside_z / 2.0 + outside_z / 2.0;
@@ -245,6 +239,7 @@ impl<'m> Linter<'m> {
         let claims: Vec<usize> = (0..self.model.regions.len())
             .filter(|r| self.model.regions[*r].inside.holds(&value))
             .collect();
+        // Neighbours share their border, so only points clearly in both count as an overlap.
         let is_well_inside =
             |r: usize| holds_with_margin(&self.model.regions[r].inside, &value, &self.scales);
         let overlap = match claims.as_slice() {

@@ -45,6 +45,7 @@ pub enum Tree<L> {
 impl<L: Clone + PartialEq> Tree<L> {
     /// Returns a split, or the common subtree if both sides are equal.
     fn split(curve: CurveIndex, strict: bool, below: Tree<L>, above: Tree<L>) -> Tree<L> {
+        // The test decides nothing.
         if below == above {
             return below;
         }
@@ -178,11 +179,13 @@ fn limited_to_box(
         [extent.radius, extent.low, extent.high].map(|value| constant(graph, value));
     let sides = [graph.sub(d, radius), graph.sub(low, z), graph.sub(z, high)];
     sides.into_iter().fold(tree, |tree, value| {
+        // The file may have the side as a curve.
         let known = model.curves.iter().position(|curve| curve.value == value);
         let curve = known.unwrap_or_else(|| {
             model.curves.push(Curve { name: None, value });
             model.curves.len() - 1
         });
+        // Inside the side, the tree need not test it again.
         Tree::split(curve, false, tree.simplified(curve, false, true), Tree::Leaf(None))
     })
 }
@@ -199,6 +202,7 @@ fn limited_outside(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<I
     let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
     let limit = OUTSIDE_RANGE_IN_SIZES * height.hypot(extent.radius);
     let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
+    // Squares, so that the test needs no root.
     let (middle, limit) = (constant(graph, middle), constant(graph, limit * limit));
     let up = graph.sub(z, middle);
     let up = graph.mul(up, up);

@@ -86,6 +86,7 @@ impl Samples {
     fn sides(&self, part: WordPart, curve: CurveIndex) -> [WordPart; 2] {
         let none = WordPart { bits: 0, weight: 0.0, ..part };
         let below = part.bits & self.below[curve][part.word];
+        // The weight of a whole part is known.
         if below == part.bits {
             return [part, none];
         }

@@ -32,6 +32,7 @@ const REPEATED_TEST_COST_FACTOR: f64 = 0.3;
 /// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let mut result = try_trees(model, section, CHORDS_PER_EDGE[0]);
+    // More chords cost time in every cut, and few tools need them.
     for chords in &CHORDS_PER_EDGE[1..] {
         if result.is_err() {
             result = try_trees(model, section, *chords);
@@ -99,6 +100,7 @@ fn try_trees(
     let outer = section.outer.cells(chords);
     let polygons = Polygons { model, section, chords, outer, shapes: &shapes, size };
     let owners = polygons.plan_inside()?;
+    // The division of the outside is checked where no region owns the point.
     let clearances = polygons.plan_outside(&owners)?;
     Ok((owners, clearances))
 }
@@ -140,6 +142,7 @@ impl Polygons<'_> {
             for (piece, holding) in overlay::divided(whole, &over.conditions, shapes, size) {
                 let first = holding.first().copied();
                 let region = first.and_then(|condition| over.region(cell.part, condition));
+                // Only slivers beside a curved edge can be without a region.
                 if region.is_some() {
                     input.add_piece(Piece { owner: region, ..piece });
                 }
@@ -262,6 +265,7 @@ impl Over {
         let low = first_condition(-1.0);
         // Away from every curve that was evaluated, the sign does not matter.
         let high = if on_border.get() { first_condition(1.0) } else { low };
+        // Whatever the sign on the border, the same condition is first, or the point is undecided.
         let decided = low.filter(|_| low == high);
         match decided.and_then(|condition| self.region(part, condition)) {
             Some(region) => OwnerAt::Known(Some(region)),
@@ -358,6 +362,7 @@ impl Planner<'_> {
             return Ok(self.leaf(first, pieces, corners));
         }
         let Some(choice) = self.choose(pieces, samples, &mut candidates) else {
+            // No curve separates these pieces: they differ by slivers along chords.
             return Ok(self.leaf(self.largest_owner(pieces), pieces, corners));
         };
         let Choice { curve, halves, zeros } = choice;
@@ -377,6 +382,7 @@ impl Planner<'_> {
         let below = self.tree(&halves.below, &low, &corners_below, candidates.clone())?;
         let above = self.tree(&halves.above, &high, &corners_above, candidates)?;
         Ok(match on_curve {
+            // A test with `<` sends the zeros above; otherwise a second test singles them out.
             Some(on_curve) if on_curve == above => Tree::split(curve, true, below, above),
             Some(on_curve) if on_curve != below => {
                 let below = Tree::split(curve, true, below, on_curve);
@@ -409,6 +415,7 @@ impl Planner<'_> {
         let (mut fallback, mut with_double_zeros, mut skipped_count) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
+            // It divides nothing here, and so nothing below.
             if halves.below.is_empty() || halves.above.is_empty() {
                 candidates.retain(|other| *other != curve);
                 continue;
@@ -447,6 +454,7 @@ impl Planner<'_> {
     /// curve and its chord.
     fn largest_owner(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
         let true_pieces: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
+        // If no centre tells, all pieces are slivers.
         let candidates = if true_pieces.is_empty() { pieces.iter().collect() } else { true_pieces };
         let largest = candidates.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
         largest.and_then(|piece| piece.owner)
@@ -470,6 +478,7 @@ impl Planner<'_> {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
             let origin = piece.origin;
+            // What is cut from a piece lies where the piece does, so the side is found once.
             let side = sides[origin].get_or_insert_with(|| whole_pieces[origin].side(cutter));
             let cut = match *side {
                 Side::Below => Cut::Below,
@@ -535,6 +544,7 @@ impl WholePiece {
         match self.piece.cut(cutter) {
             Cut::Below => Side::Below,
             Cut::Above => Side::Above,
+            // No side holds for everything that is cut from it.
             Cut::Nothing | Cut::Both(..) => Side::Torn,
         }
     }
@@ -548,6 +558,7 @@ fn corners(
     size: f64,
 ) -> Vec<Corner> {
     let tolerance = COINCIDENCE_FRACTION * size;
+    // Every cell gives the corners that it shares, and these differ by rounding.
     points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
     points.dedup_by(|p, q| are_near(*p, *q, tolerance));
     let mut corners = Vec::new();
@@ -591,6 +602,7 @@ impl Planner<'_> {
             return Tree::Leaf(owner);
         };
         let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
+        // On the corner's own side of the splitting curve there is no piece to keep.
         if pieces.is_empty() {
             return Tree::Leaf(*first);
         }
@@ -598,6 +610,7 @@ impl Planner<'_> {
             .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
             .filter(|(_, side)| *side != 0)
             .collect();
+        // The cheapest curve that keeps the corner away from all pieces.
         curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
         let separating = curves.into_iter().find(|(curve, side)| {
             let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
@@ -630,8 +643,7 @@ enum Zeros {
 impl Planner<'_> {
     /// Returns the side to which the points on a curve go: the side of the solid, so that it includes its
     /// surface. Where the solid is on both sides, it is the side of the owner listed first, if that is the
-    /// same side along the whole curve; otherwise the side below. Where some points belong only to the solid
-    /// below and others only to the solid above, both sides need the curve's points.
+    /// same side along the whole curve; otherwise the side below.
     fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
         let [below, above] =
             [&halves.below, &halves.above].map(|half| self.border_points(curve, half));
@@ -657,6 +669,7 @@ impl Planner<'_> {
             }
         }
         match (is_required, is_preferred) {
+            // Some points belong to the solid below only, and others to the solid above only.
             ([true, true], _) => Zeros::Both,
             ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
             _ => Zeros::Below,
@@ -692,12 +705,14 @@ impl Planner<'_> {
         open: &[CurveIndex],
     ) -> Result<Owners, Diagnostic> {
         let shape = &self.shapes[curve];
+        // Only pieces that reach the curve can own its points.
         let touches =
             |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
         let [below, above] = [&halves.below, &halves.above]
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
         let [corners_below, corners_above] =
             [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        // Samples lie beside curves, so they say nothing about points on this one.
         let none = SampleSubset::default();
         let below = self.tree(&below, &none, &corners_below, open.to_vec())?;
         let above = self.tree(&above, &none, &corners_above, open.to_vec())?;

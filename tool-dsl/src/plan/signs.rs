@@ -38,8 +38,7 @@ struct Sample {
 }
 
 fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
-    let values = model.curves.iter().map(|curve| curve.value);
-    let mut evaluator = Evaluator::new(&model.graph, values);
+    let mut evaluator = Evaluator::new(&model.graph, model.curve_values());
     spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
             evaluator.evaluate(EvaluationPoint::new(x, y, z));
@@ -74,6 +73,7 @@ impl Planner<'_> {
     ) -> Result<Tree<Option<usize>>, Diagnostic> {
         loop {
             let possible = self.possible(&signs);
+            // All regions but one are excluded, or one contains every such point.
             if let [only] = possible.as_slice() {
                 return Ok(Tree::Leaf(*only));
             }
@@ -116,6 +116,7 @@ impl Planner<'_> {
         let mut possible = Vec::new();
         for (index, region) in self.model.regions.iter().enumerate() {
             match region.inside.decide(signs) {
+                // Regions listed later do not matter: the first that contains a point owns it.
                 Some(true) => {
                     possible.push(Some(index));
                     return possible;
@@ -157,6 +158,7 @@ impl Planner<'_> {
         // The zeros go to the side of the region listed earlier.
         let below = atoms.iter().find(|(c, _)| *c == curve).is_none_or(|(_, below)| *below);
         let strict = match signs[curve] {
+            // Only one open side and the zeros are left, and the test must separate these two.
             s if s & (NEGATIVE | POSITIVE) == NEGATIVE => true,
             s if s & (NEGATIVE | POSITIVE) == POSITIVE => false,
             _ => !below,
@@ -236,6 +238,7 @@ impl<'m> EmptinessProver<'m> {
 
     /// Returns whether no box of a cover of the domain can have the signs.
     fn is_excluded_by_boxes(&mut self, signs: &[Signs]) -> bool {
+        // All points that a query can have.
         let mut pending = vec![self.domain.bounding_cell(2f64.powi(300))];
         let mut boxes_left = match self.domain {
             Domain::HalfPlane => MAX_BOXES_IN_HALF_PLANE,

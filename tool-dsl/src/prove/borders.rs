@@ -147,9 +147,8 @@ impl<'m> BorderProver<'m> {
     ) -> BorderProver<'m> {
         let (size, ids) = (half_diagonal(&cell), model.depths());
         let depths: Vec<Option<RootForm>> = ids.iter().map(|depth| forms.of(*depth)).collect();
-        let values = || model.curves.iter().map(|curve| curve.value);
-        let curves: Vec<_> = values().map(|value| forms.of(value)?.curve()).collect();
-        let sums = values().zip(&curves).map(|(value, curve)| match curve {
+        let curves: Vec<_> = model.curve_values().map(|value| forms.of(value)?.curve()).collect();
+        let sums = model.curve_values().zip(&curves).map(|(value, curve)| match curve {
             Some(_) => None,
             None => RootSum::of(&model.graph, forms, value),
         });

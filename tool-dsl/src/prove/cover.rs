@@ -33,8 +33,7 @@ const NO_CONTINUATIONS: Continuations = [[0; ANY_SIGN as usize + 1]; 2];
 
 impl<'m> Cover<'m> {
     pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
-        let values = model.curves.iter().map(|curve| curve.value);
-        let encloser = Encloser::new(&model.graph, values);
+        let encloser = Encloser::new(&model.graph, model.curve_values());
         Cover { model, tree, encloser, paths: vec![NO_CONTINUATIONS] }
     }
 

@@ -3,7 +3,7 @@
 use super::root::RootForm;
 use super::slope::{Slope, angle};
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::interval::{Cell, Interval, ZERO, dot};
 use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
 use crate::expr::{Graph, Id, Node};
 use crate::model::{Model, Region};
@@ -119,8 +119,7 @@ pub(super) fn angle_to_descent(
     is_parallel: bool,
 ) -> Option<Interval> {
     let descent = depth.partials.map(Interval::negated);
-    let dot_product = (0..3).fold(ZERO, |sum, k| sum.plus(direction[k].times(descent[k])));
-    match dot_product {
+    match dot(direction, descent) {
         _ if vanishes(direction) => None,
         // Parallel by an identity: the sign of the product decides between 0 and half a turn, exactly.
         Interval { low, .. } if is_parallel && low > 0.0 => Some(ZERO),

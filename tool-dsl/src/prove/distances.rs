@@ -5,9 +5,7 @@
 //! from that point.
 //!
 //! *On a straight border* where a profile is smooth, depths agree up to rounding: lines and arcs whose ends were
-//! written with the digits of a double are not exactly tangent. Along a line, the distance from a point is
-//! `√(t² + e²)`, with `t` measured from the foot of the point and `e` its distance from the line. It differs from
-//! `|t|` by at most `e`. The difference of two depths on the line is therefore affine in `t`, up to these `e`.
+//! written with the digits of a double are not exactly tangent. The difference is affine along the line, up to that.
 
 use super::root::{RootForm, RootTerm};
 use crate::expr::Coord;
@@ -250,8 +248,8 @@ impl Tangency {
                 return None;
             }
             before_feet |= usize::from(from_foot.high < 0.0) << k;
-            // A root differs from the form without `distance` by at most `distance`. Twice that also covers the
-            // rounding of `distance` and of the sum.
+            // `√(t² + e²)` differs from `|t|` by at most `e`, the distance of the root's point from the line. Twice that
+            // also covers the rounding of `distance` and of the sum.
             error += 2.0 * root.distance;
             slope_across =
                 slope_across.max(2.0 * root.distance / (root.scale * from_foot.abs().low));

@@ -2,11 +2,7 @@
 //! corner of its region.
 //!
 //! Depth, being the distance to the foot, is then at least the distance to the surface, whatever the borders
-//! of regions are. A point that is beyond the normal at a segment's end by `o` is as near to that end as to
-//! the line or circle, up to `2 o`. For an arc this holds on the end's side of the centre. A point on the
-//! other side, at the distance `ρ` from the centre, is as near up to `2 ρ`. If the arc turns by `T`, that
-//! point is beyond the normal at one end by at least `ρ sin (T/2)`, and `sin (T/2)` is half the chord divided
-//! by the radius.
+//! of regions are.
 
 use super::cover::{Claim, Cover};
 use super::root::{Forms, RootForm};
@@ -107,8 +103,11 @@ impl ProfileFeet {
                     overshoot = overshoot.min(-min_distance);
                 }
             }
+            // A point that is beyond the normal at an end by `o` is as near to that end as to the line or circle, up to
+            // `2 o`. Behind the centre of an arc, at a distance `ρ` from it, the bound is `2 ρ`; if the arc turns by `T`,
+            // such a point is beyond the normal at one end by at least `ρ sin (T/2)`, and `sin (T/2)` is half the chord
+            // divided by the radius.
             let side = self.ends[owner][end].side.as_ref();
-            // Behind the centre of an arc, twice the overshoot is not enough: see the module.
             let far_side = side.filter(|(side, _)| side.over(&cell).low < 0.0);
             max_overshoot =
                 max_overshoot.max(overshoot * far_side.map_or(1.0, |(_, scale)| *scale));

@@ -229,13 +229,7 @@ fn in_half_plane(model: &Model, axis: usize, perpendicular: [usize; 2]) -> Optio
     coordinates[perpendicular[0]] = graph.coord(Coord::D);
     let squares = [0, 1].map(|axis| graph.mul(coordinates[axis], coordinates[axis]));
     let square = graph.add(squares[0], squares[1]);
-    let evaluation = model.regions.iter().flat_map(|region| {
-        let evaluation = [region.depth, region.magnitude, region.niceness];
-        evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
-    });
-    for id in
-        model.graph.dependencies(evaluation.chain(model.curves.iter().map(|curve| curve.value)))
-    {
+    for id in model.graph.dependencies(model.roots()) {
         let at = |id: &Id| mapped[id];
         let image = match model.graph.node(id) {
             Node::Const(value) => graph.number(value.clone()),

@@ -4,19 +4,6 @@
 //! A *claim* is a leaf of the emitted tree that a box may have points of, with the signs that the tests on
 //! the path to it demand. A *point box* is so small that it is not divided further. `docs/proofs.md` has the
 //! other terms and the mathematics.
-//!
-//! The submodules:
-//!
-//! - `cover`: the regions that may have points in a box.
-//! - `slope`: the steepness of expressions in a box.
-//! - `rounding`: the error of computed depths.
-//! - `root`: agreement of depths on a curve, and curves that are differences of depths.
-//! - `tangency`: implications between conics that touch.
-//! - `distances`: the difference of two distances, everywhere and where a profile is nearly smooth.
-//! - `jordan`: whether a profile encloses the solid.
-//! - `borders`: the curves that separate two regions.
-//! - `survey`: the traversal of all boxes.
-//! - `meridian`: the half plane in which a solid of revolution is surveyed.
 
 use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Statement};
 use crate::expr::interval::{Cell, Interval, ZERO};
@@ -208,10 +195,6 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the bounds that can be proved quickly, and diagnostics for the errors found.
-    ///
-    /// The depth of a profile is the distance by construction, which [`Certificate::prove`] proves
-    /// independently. Regions by hand are examined in a few thousand boxes, except for their owners, which
-    /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding_error = rounding::bound_over_tool(tool);
         let exact = Bounds { lower_slope: Some(1.0), lipschitz: Some(1.0), rounding_error };
@@ -220,6 +203,7 @@ impl Bounds {
         if tool.model.is_exact() && sources.all(|source| source != DirectionSource::Written) {
             return (exact, Vec::new());
         }
+        // Owners are not examined, since planning proves them.
         let certificate = prove_with_budget(tool, MAX_BOXES_IN_COMPILATION, false);
         // A statement that is undecided here may be provable with more boxes.
         let diagnostics = certificate.certain_diagnostics(tool);

@@ -2,11 +2,7 @@
 //!
 //! An enclosure over a box that extends beyond the region also holds for points outside the tool, where
 //! `1 - depth/r` is more than 1. Boxes are therefore divided by branch and bound, and in each the niceness is
-//! enclosed together with the depth. Let `λ` be the rate at which niceness falls with depth at the centre of
-//! the box. The sum `s = niceness + λ depth` hardly changes in the box. By the mean value theorem it is
-//! within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. No point of the region has a depth below 0. If
-//! `λ` is not negative, niceness is therefore at most the upper end of that minus `λ` times the least depth.
-//! For a niceness that is affine in depth, the overestimate falls with the square of the box's size.
+//! enclosed together with the depth.
 
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
@@ -108,6 +104,10 @@ impl Ranges<'_, '_> {
         let direct_bound = signed(niceness_slope.value).high;
         let rate = -sign * rate(&depth_slope, &niceness_slope);
         let rate_interval = Interval::new(rate, rate);
+        // With the rate `λ` at which niceness falls with depth, `s = niceness + λ depth` hardly changes in the box. By the
+        // mean value theorem it is within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. Niceness is at most the
+        // upper end of that minus `λ` times the least depth. If niceness is affine in depth, the overestimate falls with
+        // the square of the box's size.
         let mut sum = signed(centre_niceness).plus(rate_interval.times(depth));
         for axis in 0..3 {
             let slope = signed(niceness_slope.partials[axis])

@@ -88,9 +88,6 @@ pub(super) struct Difference {
 impl Difference {
     /// Returns how the two forms agree wherever a curve's polynomial is zero, if they do. `square` is that
     /// polynomial's square, if it has one.
-    ///
-    /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
-    /// includes a polynomial that is at least 0 where it is this branch.
     pub(super) fn agreement_on(
         &self,
         curve: &Polynomial,
@@ -103,6 +100,7 @@ impl Difference {
         let agrees = smooth || ratio.is_some() || squared.vanishes_on_line(curve);
         agrees.then(|| Agreement {
             smooth,
+            // Squaring also finds where a form agrees with another's opposite branch.
             branch: branch.clone(),
             // Only a simple multiple of the curve changes its sign there.
             order: ratio.map(|ratio| Order {

@@ -3,7 +3,7 @@
 
 use super::borders::MAX_TANGENT_SLOPE;
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO};
+use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO, dot};
 use crate::expr::{Coord, Graph, Id, Node};
 
 /// A function over a box: its values, its partial derivatives by x (for a tool, by the distance from the
@@ -45,10 +45,9 @@ impl Slope {
 
     /// Returns a lower bound of the rate at which the function falls in some direction, from any point of the
     /// box.
-    ///
-    /// At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope
-    /// is a mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
     pub(super) fn fall(&self) -> f64 {
+        // At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope is a
+        // mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
         if self.kinks[0] { length(self.partials).low } else { self.length.low }
     }
 
@@ -388,16 +387,13 @@ const ACOS_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// Encloses the angle between two unit vectors, in radians.
 pub(super) fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
-    let product = (0..3).fold(ZERO, |sum, k| sum.plus(a[k].times(b[k])));
+    let product = dot(a, b);
     let [low, high] = [product.high, product.low].map(|cos| cos.clamp(-1.0, 1.0).acos());
     Interval { low: (low - ACOS_ERROR).max(0.0), high: high + ACOS_ERROR }
 }
 
 /// Returns a lower bound of the rate at which depth falls toward one of the sides of a border on which two
 /// depths agree, and its uncertainty.
-///
-/// Where each is the smaller on its own side, descents lead to both sides. Otherwise depth falls along every
-/// combination of the two slopes, and therefore at least at the rate of the shortest (Clarke 1983).
 pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
     let products = [0, 1, 2]
         .map(|k| own.partials[k].plus(other.partials[k].negated()).times(curve.partials[k]));
@@ -412,6 +408,8 @@ pub(super) fn fall_rate_across(own: Slope, other: Slope, curve: Slope, below: bo
     if falls >= 0.0 || falls >= -SLOPE_TOLERANCE * curve.length.low {
         return (f64::INFINITY, 0.0);
     }
+    // Depth falls along every combination of the two slopes, and therefore at least at the rate of the shortest
+    // (Clarke 1983).
     let difference = components.map(|[a, b]| b - a);
     let [start, squared_length] = [components.map(|[a, _]| a), difference]
         .map(|v| v.iter().zip(difference).map(|(a, b)| a * b).sum::<f64>());

@@ -125,8 +125,7 @@ impl Contact {
         touches.then_some(Contact { gradients, conics })
     }
 
-    /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1. Then `to b` is a
-    /// positive multiple of `from a` plus a sum of squares that is 0 at the point of contact.
+    /// Returns whether `from · a ≥ 0` implies `to · b ≥ 0`, for `from` and `to` of 1 or -1.
     pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
         let [[ad, az], [bd, bz]] = &self.gradients;
@@ -145,6 +144,8 @@ impl Contact {
         let (dz, dz_size) = rest(&a.dz, &b.dz);
         let (zz, zz_size) = rest(&a.zz, &b.zz);
         let size = dd_size.max(dz_size).max(zz_size);
+        // `to b - ratio · from a` is 0 at the point of contact with its gradient, so it is its quadratic part there, and
+        // has to be a sum of squares.
         // A quadratic form is not negative if its diagonal and its determinant are not.
         let (discriminant, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
         is_not_negative(&dd, size)

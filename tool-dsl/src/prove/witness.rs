@@ -29,7 +29,7 @@ impl<'t> Witness<'t> {
     pub(super) fn new(tool: &'t PlannedTool, size: f64) -> Witness<'t> {
         let model = &tool.model;
         let depths = model.regions.iter().map(|region| region.depth);
-        let outputs = depths.chain(model.curves.iter().map(|curve| curve.value));
+        let outputs = depths.chain(model.curve_values());
         Witness { tool, values: LazyEvaluator::new(&model.graph, outputs), size }
     }
 

@@ -19,6 +19,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
         });
         let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
+        // Only the last segment may end on the axis.
         let touches =
             lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
         if lies_on_axis(segment) {
@@ -33,6 +34,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         return diagnostics;
     }
     let area: f64 = points.windows(2).map(|pair| cross(pair[0], pair[1])).sum();
+    // Twice the area, with arcs as chords; the closing side on the axis adds nothing.
     if area <= 0.0 {
         diagnostics.push(Diagnostic::new(first.span, ProfileKind::Clockwise));
         return diagnostics;
@@ -164,6 +166,7 @@ fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
     let from = minus(doubles(&line.from), centre);
     let foot = -dot(direction, from);
     let distance = cross(direction, from);
+    // A tangent may miss the circle by rounding.
     let half_chord = (radius * radius - distance * distance).max(0.0).sqrt();
     [foot - half_chord, foot + half_chord]
         .map(|t| [centre[0] + from[0] + t * direction[0], centre[1] + from[1] + t * direction[1]])

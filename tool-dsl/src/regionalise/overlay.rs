@@ -76,6 +76,7 @@ fn divide(
         });
         let Some((before, curve)) = undecided.next() else {
             let all = 0..conditions.len();
+            // No condition is undecided any more in this piece.
             let holding = all.filter(|k| conditions[*k].decide(&decided.signs) == Some(true));
             parts.push((piece, holding.collect()));
             return;
@@ -91,6 +92,7 @@ fn divide(
                 }
                 return;
             }
+            // No area, so nothing to own.
             Cut::Nothing => return,
             Cut::Above => decided.signs[curve] = POSITIVE,
             Cut::Below => decided.signs[curve] = NEGATIVE,

@@ -55,10 +55,12 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
                 let foot_point = section.foot_point(slice.feature, t);
                 let stop = section.grow_ball(slice.feature, &foot_point);
                 let parameter = section.parameter(other, foot_point.at(stop.radius));
+                // The vertex seen from the other side, with its neighbourhood.
                 samples[other].extend([parameter - 1e-7, parameter, parameter + 1e-7]);
             }
         }
         slices = envelope(section, &mut samples);
+        // No new vertex: the samples found all.
         if slices.iter().map(Vec::len).sum::<usize>() == count_before {
             break;
         }
@@ -79,6 +81,7 @@ fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> 
             parameters.dedup();
             let mut walk = EnvelopeWalk { section, feature, slices: Vec::new() };
             let mut previous = walk.sampled(parameters[0]);
+            // The ball at the very end of a feature is a limit, so the first sample stands for it.
             walk.append(0.0, previous.t, previous.obstacle);
             for &t in &parameters[1..] {
                 let current = walk.sampled(t);
@@ -152,6 +155,7 @@ impl EnvelopeWalk<'_> {
             let foot_point = self.section.foot_point(self.feature, middle);
             let [to_first, to_last] = [first, last]
                 .map(|sampled| self.section.growth_to(self.feature, &foot_point, sampled.obstacle));
+            // The nearer of the two is the one that stops the ball.
             if to_first < to_last {
                 low = middle;
             } else {

@@ -16,7 +16,6 @@ use crate::diagnostic::{
     Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,
 };
 use crate::domain::Domain;
-
 use crate::model::{Model, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};

@@ -42,14 +42,13 @@ impl Survey<'_> {
 
     /// Returns whether the points of a box at which a region's depth is 0 are proved to be next to points outside the
     /// solid. Their distance from these is recorded.
-    ///
-    /// This is for edges in space, which have too many point boxes. It succeeds for edges along an axis: the box
-    /// shrinks to the edge, and the shrunk box is outside if it is moved a little.
     fn is_zero_on_surface_only(&mut self, owner: usize, cell: Cell) -> bool {
         // In the half plane a length is 0 at points, which a few point boxes cover.
         if self.tool.model.domain != Domain::Space {
             return false;
         }
+        // An edge along an axis has too many point boxes. But the box shrinks to the edge, and the shrunk box is outside
+        // if it is moved a little.
         let zeros = self.shrunk_to_zeros(owner, cell);
         self.slopes.set(cell);
         let step = ZERO_OFFSET_FRACTION * self.size;

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use crate::expr::interval::{Cell, Interval, dot};
 use crate::formula::CurveIndex;
 use crate::number;
 use crate::plan::PlannedTool;
@@ -151,11 +151,6 @@ struct Survey<'t> {
 impl<'t> Survey<'t> {
     fn new(tool: &'t PlannedTool, point_box_fraction: f64, check_overlaps: bool) -> Survey<'t> {
         let model = &tool.model;
-        let outputs = model.regions.iter().flat_map(|region| {
-            let evaluation = [region.depth, region.magnitude, region.niceness];
-            evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
-        });
-        let roots = outputs.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
         let feet = ProfileFeet::of(tool, &mut forms, half_diagonal(&whole));
@@ -173,7 +168,7 @@ impl<'t> Survey<'t> {
         Survey {
             tool,
             cover: Cover::new(model, &tool.plan.owner),
-            slopes: Slopes::new(&model.graph, model.domain, roots),
+            slopes: Slopes::new(&model.graph, model.domain, model.roots()),
             errors: RoundingErrors::new(
                 &model.graph,
                 model.domain,
@@ -361,8 +356,7 @@ impl<'t> Survey<'t> {
         let region = &self.tool.model.regions[owner];
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
-        let dot_product =
-            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
+        let dot_product = dot(depth.partials, niceness.partials);
         let facts_here = RegionFacts {
             // A point of the region is not outside.
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
@@ -448,8 +442,7 @@ impl Survey<'_> {
         {
             keep_larger(&mut certain.oblique, angle.low, middle);
         }
-        let dot_product =
-            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.partials[k].times(niceness.partials[k])));
+        let dot_product = dot(depth.partials, niceness.partials);
         // Niceness below 0 counts as 0.
         if dot_product.low > SLOPE_MARGIN * depth.length.high * niceness.length.high
             && niceness.value.low > 0.0
@@ -518,19 +511,13 @@ impl Survey<'_> {
 
     /// Returns an upper bound of the amount that depth may gain by jumps along a straight path, and by
     /// differing from an exact distance.
-    ///
-    /// Let all depths differ by less than `deviation` from distances to lines, circles or points. On a path of
-    /// length `t`, each of these distances minus `t` does not grow, inside or outside its own region. When
-    /// the path returns to a region, it has therefore not gained since it left. Only the jumps that remain
-    /// after such loops are removed count: one per pair of regions. Other depths may be steep outside their
-    /// regions, so every jump counts. A straight path crosses a conic twice.
-    ///
-    /// A straight path in space around the axis is a branch of a hyperbola in the half plane, on which `z` is linear
-    /// and `d` convex. It passes a box at most twice, since `d` is below an upper end on one interval and above a
-    /// lower end on two. It crosses a conic at most four times.
     fn jump_bound(&self) -> f64 {
         let steps = self.smooth_border_jumps.values().copied().fold(0.0, sum_rounded_up);
         let Some(feet) = &self.feet else {
+            // Depths of regions by hand may be steep outside their regions, so every jump counts. A straight path
+            // in space is a branch of a hyperbola in the half plane, on which `z` is linear and `d` convex. It
+            // passes a box at most twice, since `d` is below an upper end on one interval and above a lower end on
+            // two. It crosses a line at most twice, too.
             let passes = match self.tool.model.domain {
                 Domain::HalfPlane => 2.0,
                 Domain::Space => 1.0,
@@ -538,6 +525,8 @@ impl Survey<'_> {
             return passes * sum_rounded_up(self.jumps, 2.0 * steps);
         };
         let deviation = unless_rounding(feet.max_difference, self.size);
+        // Along a path, a distance grows by no more than the path's length, inside or outside its own region. When
+        // the path returns to a region, it has therefore gained nothing since it left, and such loops can be removed.
         // Each pair of neighbours is crossed once after loops are removed, and each adds twice the deviation.
         let pairs = (self.largest_jumps.len() + self.smooth_border_jumps.len()) as f64;
         self.largest_jumps.values().copied().fold(
