@@ -105,9 +105,9 @@ impl Ranges<'_, '_> {
         let rate = -sign * rate(&depth_slope, &niceness_slope);
         let rate_interval = Interval::new(rate, rate);
         // With the rate `λ` at which niceness falls with depth, `s = niceness + λ depth` hardly changes in the box. By the
-        // mean value theorem it is within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. Niceness is at most the
-        // upper end of that minus `λ` times the least depth. If niceness is affine in depth, the overestimate falls with
-        // the square of the box's size.
+        // mean value theorem it is within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. If `λ` is not negative,
+        // niceness is at most the upper end of that minus `λ` times the least depth. For a niceness that is affine in
+        // depth, the overestimate falls with the square of the box's size.
         let mut sum = signed(centre_niceness).plus(rate_interval.times(depth));
         for axis in 0..3 {
             let slope = signed(niceness_slope.partials[axis])
